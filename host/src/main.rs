@@ -1,0 +1,3 @@
+//! The program `peris`.
+
+fn main() {}

@@ -1,0 +1,12 @@
+//! What the host and the PS 340 agree on: values, names, packets and the command language. No I/O.
+//!
+//! The order of the modules is their layer order, lowest first.
+
+pub mod command;
+pub mod name;
+pub mod raster;
+pub mod value;
+pub mod wire;
+
+pub use name::Name;
+pub use value::{Kind, Value};

@@ -1,0 +1,5 @@
+//! The PS 340: a deterministic machine in a thin shell.
+//!
+//! The order of the modules is their layer order, lowest first.
+
+pub mod traversal;

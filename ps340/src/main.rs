@@ -1,0 +1,3 @@
+//! The process `ps340`.
+
+fn main() {}
