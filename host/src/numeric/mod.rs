@@ -1,0 +1,3 @@
+//! Numbers: rays, exact predicates, seeded sampling.
+
+pub mod ray;
