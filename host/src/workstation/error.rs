@@ -1,0 +1,61 @@
+//! What can go wrong between the host and the workstation.
+
+use protocol::address::Address;
+use std::path::PathBuf;
+
+/// A failure on the way to, at or from the workstation.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WorkstationError {
+    /// The emulator's program does not start.
+    #[error("cannot start the workstation {}: {reason}", program.display())]
+    Start {
+        /// Which program.
+        program: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// Nobody listens at the line.
+    #[error("cannot attach to the workstation at {line}: {reason}")]
+    Attach {
+        /// Which line.
+        line: Address,
+        /// Why.
+        reason: String,
+    },
+    /// The line closed.
+    #[error("the workstation closed the line{}", if reason.is_empty() { String::new() } else { format!(": {reason}") })]
+    Closed {
+        /// Why; empty for a plain end.
+        reason: String,
+    },
+    /// No answer in time.
+    #[error("the workstation did not answer within {seconds} s; waited for {what}")]
+    Silent {
+        /// What was waited for.
+        what: String,
+        /// How long.
+        seconds: u64,
+    },
+    /// An answer that cannot be understood.
+    #[error("the workstation answered '{answer}'; expected {expected}")]
+    Answer {
+        /// What came.
+        answer: String,
+        /// What should have.
+        expected: &'static str,
+    },
+    /// The process of the emulator is gone.
+    #[error("the workstation process ended")]
+    Ended,
+    /// An order to the operator line was refused.
+    #[error("the workstation's operator line refused '{order}': {reason}")]
+    Order {
+        /// Which order.
+        order: String,
+        /// Why.
+        reason: String,
+    },
+    /// The scene cannot be shown.
+    #[error("cannot show the scene: {0}")]
+    Scene(String),
+}

@@ -1,0 +1,13 @@
+//! The host's side of the line: scenes, dial networks and images for a PS 340, and the view back from it.
+
+pub mod emulator;
+mod error;
+pub mod network;
+pub mod raster;
+pub mod session;
+pub mod structure;
+
+pub use emulator::Emulator;
+pub use error::WorkstationError;
+pub use session::Session;
+pub use structure::{Drawing, Lines, Shown};

@@ -1,0 +1,137 @@
+//! The function networks that PERIS sets up on the workstation: dials, keys and the way back of the view.
+
+use super::structure::ROOT;
+use glam::DVec3;
+use protocol::{
+    Name, Value,
+    command::{Arc, Command, Destination, Input, Object},
+};
+
+/// Degrees that one turn of a dial rotates. [S]: what clients of the time used.
+pub const DEGREES_PER_TURN: f64 = 200.0;
+/// Scale that one turn of dial 4 adds.
+pub const SCALE_PER_TURN: f64 = 1.0;
+/// Least and greatest scale.
+pub const SCALE_LIMITS: [f64; 2] = [0.01, 1000.0];
+/// What dials 5 to 7 move in one turn, as a part of the scene's diagonal.
+pub const DIAGONALS_PER_TURN: f64 = 0.5;
+
+/// What a message to the host begins with when a function key was pressed; the number follows.
+pub const KEY_PREFIX: &str = "KEY ";
+/// The function that answers with the matrix of the view when it gets TRUE at `<1>`.
+pub const VIEW_TRIGGER: &str = "PERIS_VIEW";
+
+/// What the function keys do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// The host renders the view that is set, and shows the image on the raster screen.
+    Render,
+    /// The dials go back to where they began.
+    Reset,
+    /// The host ends.
+    End,
+}
+
+/// Number, label and meaning of each function key in use.
+pub const KEYS: [(i32, &str, Key); 3] = [(1, "RENDER", Key::Render), (2, "RESET", Key::Reset), (12, "END", Key::End)];
+
+/// Labels over the dials.
+pub const DIAL_LABELS: [&str; 8] = ["ROT X", "ROT Y", "ROT Z", "SCALE", "TRAN X", "TRAN Y", "TRAN Z", ""];
+
+/// A small builder: names of ours are known to be legal.
+#[derive(Debug, Default)]
+struct Build {
+    commands: Vec<Command>,
+}
+
+/// A name that is known to be legal, such as those in this folder.
+pub(super) fn name(text: &str) -> Name {
+    Name::new(text).unwrap_or_else(|e| unreachable!("{text}: {e}"))
+}
+
+impl Build {
+    fn function(&mut self, instance: &str, function: &str) {
+        let object = Object::Function { function: name(function), size: None };
+        self.commands.push(Command::Define { name: Some(name(instance)), object });
+    }
+
+    fn connect(&mut self, source: &str, output: u16, input: u32, to: &str) {
+        let destination = Destination { input: Input::Number(input), name: name(to) };
+        self.commands.push(Command::Connect(Arc { source: name(source), output, destination }));
+    }
+
+    fn send(&mut self, value: Value, input: u32, to: &str) {
+        self.commands.push(send(value, input, to));
+    }
+}
+
+/// `SEND value TO <input>to;`
+pub(super) fn send(value: Value, input: u32, to: &str) -> Command {
+    Command::Send { value, destination: Destination { input: Input::Number(input), name: name(to) } }
+}
+
+/// Dials that rotate, scale and move the scene, with their labels; keys; and the way back of the view.
+///
+/// - `diagonal`: of the scene, scene units.
+pub fn commands(diagonal: f64) -> Vec<Command> {
+    let mut build = Build::default();
+    for (dial, axis) in (1..).zip(["X", "Y", "Z"]) {
+        let function = format!("PERIS_R{axis}");
+        build.function(&function, &format!("D{axis}ROTATE"));
+        build.send(Value::Real(DEGREES_PER_TURN), 3, &function);
+        build.connect("DIALS", dial, 1, &function);
+        build.connect(&function, 1, 1, &format!("{ROOT}.R{axis}"));
+    }
+    build.function("PERIS_S", "DSCALE");
+    build.send(Value::Real(SCALE_PER_TURN), 3, "PERIS_S");
+    build.send(Value::Real(SCALE_LIMITS[1]), 4, "PERIS_S");
+    build.send(Value::Real(SCALE_LIMITS[0]), 5, "PERIS_S");
+    build.connect("DIALS", 4, 1, "PERIS_S");
+    build.connect("PERIS_S", 1, 1, &format!("{ROOT}.S"));
+    build.function("PERIS_T", "ACCUMULATE");
+    build.send(Value::Real(diagonal * DIAGONALS_PER_TURN), 4, "PERIS_T");
+    build.connect("PERIS_T", 1, 1, &format!("{ROOT}.T"));
+    for (dial, axis) in (5..).zip(["X", "Y", "Z"]) {
+        let function = format!("PERIS_V{axis}");
+        build.function(&function, &format!("{axis}VECTOR"));
+        build.connect("DIALS", dial, 1, &function);
+        build.connect(&function, 1, 1, "PERIS_T");
+    }
+    build.commands.extend(reset());
+    for (dial, label) in (1..).zip(DIAL_LABELS) {
+        build.send(Value::string(label), 1, &format!("DLABEL{dial}"));
+    }
+    build.function("PERIS_KEY", "CCONCATENATE");
+    build.function("PERIS_NUMBER", "PRINT");
+    build.send(Value::string(KEY_PREFIX), 1, "PERIS_KEY");
+    build.connect("FKEYS", 1, 1, "PERIS_NUMBER");
+    build.connect("PERIS_NUMBER", 1, 2, "PERIS_KEY");
+    build.connect("PERIS_KEY", 1, 1, "HOST_MESSAGE");
+    for (number, label, _) in KEYS {
+        build.send(Value::string(label), 1, &format!("FLABEL{number}"));
+    }
+    build.function(VIEW_TRIGGER, "XFORMDATA");
+    build.function("PERIS_LIST", "LIST");
+    build.function("PERIS_PRINT", "PRINT");
+    build.send(Value::string(format!("{ROOT}.MATRIX")), 2, VIEW_TRIGGER);
+    build.connect(VIEW_TRIGGER, 1, 1, "PERIS_LIST");
+    build.connect("PERIS_LIST", 1, 1, "PERIS_PRINT");
+    build.connect("PERIS_PRINT", 1, 1, "HOST_MESSAGE");
+    build.commands
+}
+
+/// Puts the dials back to where they began: the accumulators first, then a delta of nothing, which makes the
+/// functions speak.
+pub fn reset() -> Vec<Command> {
+    let mut build = Build::default();
+    for axis in ["X", "Y", "Z"] {
+        let function = format!("PERIS_R{axis}");
+        build.send(Value::Real(0.0), 2, &function);
+        build.send(Value::Real(0.0), 1, &function);
+    }
+    build.send(Value::Real(1.0), 2, "PERIS_S");
+    build.send(Value::Real(0.0), 1, "PERIS_S");
+    build.send(Value::Vector3(DVec3::ZERO), 2, "PERIS_T");
+    build.send(Value::Vector3(DVec3::ZERO), 1, "PERIS_T");
+    build.commands
+}

@@ -1,0 +1,221 @@
+//! A scene as a display structure of the PS 340.
+//!
+//! The modelling space of PERIS is right-handed (z towards the viewer), that of the PS 340 left-handed (z into the
+//! screen): every z is negated on the way.
+
+use super::{WorkstationError, network::name};
+use crate::{
+    illumination::Material,
+    mesh::{Eye, Mesh, Selection, polylines},
+    scene::{Camera, Object, Scene},
+};
+use glam::{DMat4, DVec3};
+use protocol::{
+    Name,
+    command::{Axis, Boundaries, Command, NamePattern, Object as Node, Operate, VectorClass, VectorList},
+};
+
+/// The name of the structure.
+pub const ROOT: &str = "PERIS";
+/// Intensity at the back of the scene; 1 at its front.
+const BACK_INTENSITY: f64 = 0.25;
+
+/// Which lines of the objects are sent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawing {
+    /// Which edges.
+    pub lines: Lines,
+    /// Edges at which two triangles meet at more than this angle are sent whatever `lines` says, degrees.
+    pub crease_degrees: f64,
+    /// Largest distance between a curved surface and its triangles, as a part of the object's diagonal.
+    pub tolerance: f64,
+}
+
+/// Which edges are sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Lines {
+    /// Creases, boundaries, and the parameter lines of curved surfaces; all edges of a mesh that has none.
+    Grid,
+    /// Creases and boundaries, and the outline that the camera sees.
+    Outline,
+    /// All edges of all triangles.
+    All,
+}
+
+impl Default for Drawing {
+    fn default() -> Drawing {
+        Drawing { lines: Lines::Grid, crease_degrees: 25.0, tolerance: 1.0 / 400.0 }
+    }
+}
+
+/// What was made of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// The commands, to be sent in order.
+    pub commands: Vec<Command>,
+    /// Vectors drawn.
+    pub lines: usize,
+    /// Points sent: lines and moves.
+    pub points: usize,
+    /// Whether front and back clip.
+    pub depth_clipping: bool,
+}
+
+/// The commands that build the structure [`ROOT`] and display it.
+///
+/// Its nodes `CLIP`, `VIEW`, `LOOK`, `T`, `RX`, `RY`, `RZ`, `S` take values from networks; `MATRIX` is an XFORM
+/// MATRIX node below them all, whose matrix takes scene coordinates (z negated) to clip space.
+///
+/// # Errors
+/// [`WorkstationError::Scene`], if the camera cannot see or an object cannot be tessellated.
+pub fn commands(scene: &Scene, camera: &Camera, center: DVec3, drawing: &Drawing) -> Result<Shown, WorkstationError> {
+    let failed = |e: String| WorkstationError::Scene(e);
+    camera.check().map_err(|e| failed(e.to_string()))?;
+    let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
+    shown.commands.push(Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())]));
+    begin(&mut shown.commands, ROOT);
+    view(&mut shown.commands, camera, center, shown.depth_clipping)?;
+    for (index, object) in scene.objects.iter().enumerate() {
+        let list = vectors(object, camera, drawing, &mut shown)?;
+        begin(&mut shown.commands, &format!("O{}", index + 1));
+        let [hue, saturation] = hue_saturation(&object.material);
+        operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
+        shown.commands.push(Command::Define { name: Some(name("D")), object: Node::VectorList(list) });
+        shown.commands.push(Command::EndStructure);
+    }
+    shown.commands.push(Command::EndStructure);
+    shown.commands.push(Command::Display(name(ROOT)));
+    Ok(shown)
+}
+
+fn begin(commands: &mut Vec<Command>, structure: &str) {
+    commands.push(Command::Define { name: Some(name(structure)), object: Node::BeginStructure });
+}
+
+fn operate(commands: &mut Vec<Command>, node: Option<&str>, operate: Operate) {
+    let name: Option<Name> = node.map(name);
+    commands.push(Command::Define { name, object: Node::Operate { operate, applied_to: None } });
+}
+
+/// A point or direction in the left-handed space of the workstation.
+fn mirrored(p: DVec3) -> DVec3 {
+    DVec3::new(p.x, p.y, -p.z)
+}
+
+/// Viewport, projection, eye, and what the dials change.
+fn view(
+    commands: &mut Vec<Command>,
+    camera: &Camera,
+    center: DVec3,
+    depth_clipping: bool,
+) -> Result<(), WorkstationError> {
+    let projection = camera.projection().ok_or_else(|| WorkstationError::Scene("the camera cannot see".into()))?;
+    let (horizontal, vertical) = ([-1.0, 1.0], [-1.0, 1.0]);
+    operate(commands, None, Operate::Viewport { horizontal, vertical, intensity: Some([BACK_INTENSITY, 1.0]) });
+    operate(commands, Some("CLIP"), Operate::SetDepthClipping(depth_clipping));
+    // Depth cueing runs from the front to the back of what is looked at, unless the camera says where it ends.
+    let distance = projection.to_clip.row(3).dot(center.extend(1.0));
+    let far = camera.far.unwrap_or(distance * 1.8);
+    let near = if camera.near > 0.0 { camera.near } else { (distance * 0.4).min(far / 2.0) };
+    let boundaries = Some(Boundaries { front: near, back: far });
+    operate(commands, Some("VIEW"), Operate::FieldOfView { angle: camera.field_of_view, boundaries });
+    let (at, from) = (mirrored(camera.at), mirrored(camera.from));
+    // The workstation takes UP as a point above AT.
+    operate(commands, Some("LOOK"), Operate::Look { at, from, up: at + mirrored(camera.up) });
+    operate(commands, Some("T"), Operate::Translate(DVec3::ZERO));
+    operate(commands, None, Operate::Translate(mirrored(center)));
+    for (node, axis) in [("RX", Axis::X), ("RY", Axis::Y), ("RZ", Axis::Z)] {
+        operate(commands, Some(node), Operate::Rotate { axis, angle: 0.0 });
+    }
+    operate(commands, Some("S"), Operate::Scale(DVec3::ONE));
+    operate(commands, None, Operate::Translate(mirrored(-center)));
+    operate(commands, Some("MATRIX"), Operate::XformMatrix);
+    Ok(())
+}
+
+/// The lines of one object.
+fn vectors(
+    object: &Object,
+    camera: &Camera,
+    drawing: &Drawing,
+    shown: &mut Shown,
+) -> Result<VectorList, WorkstationError> {
+    let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
+    let coarse = object.shape.mesh(drawing.tolerance * object.shape.diagonal()).map_err(|e| failed(e.to_string()))?;
+    let mesh = placed(coarse, &object.transform);
+    let selection = match drawing.lines {
+        Lines::Grid => Selection::grid(drawing.crease_degrees),
+        Lines::Outline => Selection::drawing(drawing.crease_degrees, Eye::Point(camera.from)),
+        Lines::All => Selection::ALL,
+    };
+    let runs = polylines(&mesh, &selection);
+    let mut list = VectorList {
+        block_normalized: false,
+        class: VectorClass::Itemized,
+        dimension: 3,
+        estimate: u32::try_from(runs.points.len()).ok(),
+        points: Vec::with_capacity(runs.points.len()),
+        lines: Vec::with_capacity(runs.points.len()),
+    };
+    for run in runs.runs() {
+        for (i, p) in run.iter().enumerate() {
+            let point = mirrored(*p).as_vec3();
+            if !point.is_finite() {
+                return Err(failed(format!("the point {p} is too far away for the workstation")));
+            }
+            list.points.push([point.x, point.y, point.z, 1.0]);
+            list.lines.push(i > 0);
+        }
+    }
+    shown.lines += runs.lines();
+    shown.points += list.points.len();
+    Ok(list)
+}
+
+fn placed(mut mesh: Mesh, transform: &DMat4) -> Mesh {
+    for vertex in &mut mesh.vertices {
+        *vertex = transform.transform_point3(*vertex);
+    }
+    if transform.determinant() < 0.0 {
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        mesh.corner_parameters.iter_mut().for_each(|t| t.swap(1, 2));
+        mesh.corner_normals.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    mesh
+}
+
+/// Hue (0 is blue) and saturation of what a material reflects. The colour of vectors has no value: brightness
+/// comes from the intensity.
+fn hue_saturation(material: &Material) -> [f64; 2] {
+    let color = (material.diffuse + material.mirror).max(DVec3::ZERO);
+    let (high, low) = (color.max_element(), color.min_element());
+    if high <= 0.0 || high == low {
+        return [0.0, 0.0];
+    }
+    let span = high - low;
+    let sector = if high == color.x {
+        (color.y - color.z) / span
+    } else if high == color.y {
+        2.0 + (color.z - color.x) / span
+    } else {
+        4.0 + (color.x - color.y) / span
+    };
+    [(sector * 60.0 + 120.0).rem_euclid(360.0), span / high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::illumination::Bands;
+
+    #[test]
+    fn hues_start_at_blue() {
+        let of = |r, g, b| hue_saturation(&Material { diffuse: Bands::new(r, g, b), ..Material::default() });
+        assert_eq!(of(0.0, 0.0, 1.0), [0.0, 1.0]);
+        assert_eq!(of(1.0, 0.0, 0.0), [120.0, 1.0]);
+        assert_eq!(of(0.5, 0.5, 0.0), [180.0, 1.0]);
+        assert_eq!(of(0.0, 1.0, 0.0), [240.0, 1.0]);
+        assert_eq!(of(0.4, 0.4, 0.4), [0.0, 0.0]);
+        assert_eq!(of(1.0, 0.5, 0.5), [120.0, 0.5]);
+    }
+}

@@ -1,0 +1,113 @@
+//! The numbered messages of the machine.
+
+use crate::{memory::Refusal, port::Fault, structure::NodeFault, traversal::Trouble};
+use protocol::{
+    Name,
+    command::{BinaryError, CommandError},
+};
+
+/// Which of the three instances ERROR, WARNING and INFORMATION passes a message on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Something was not done.
+    Error,
+    /// Something was done that may not be meant.
+    Warning,
+    /// Nothing is wrong.
+    Information,
+}
+
+/// A message of the machine: `E 1 *** Syntax error near 'FOO'`.
+///
+/// # Source
+/// The form is [M]; numbers and texts are ours, since those of the machine are not known.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// E 1: a command that cannot be read.
+    Syntax(CommandError),
+    /// E 1: a binary command that cannot be read.
+    Binary(BinaryError),
+    /// E 2: a name that has to exist does not.
+    NotFound(Name),
+    /// W 3: a name got a new definition.
+    Redefined(Name),
+    /// E 4: structure commands in the wrong place.
+    Structure(String),
+    /// E 5 and on: a message that a function cannot take, or a result that it cannot give.
+    Function {
+        /// Which function.
+        name: String,
+        /// What is wrong.
+        fault: Fault,
+    },
+    /// E 5 and on: a message that a node does not take.
+    Node {
+        /// Which node.
+        name: String,
+        /// What is wrong.
+        fault: NodeFault,
+    },
+    /// E 2, E 8, E 9: an operation on the mass memory that was refused.
+    Refused(Refusal),
+    /// E 8: an update could not show everything.
+    Update(Trouble),
+    /// W 12: bytes on a line that were not a packet.
+    Line(String),
+    /// W 30 to 33, E 550 to 558: a raster operation.
+    Raster(crate::raster::RasterFault),
+}
+
+impl Message {
+    /// Error, warning or information.
+    pub fn class(&self) -> Class {
+        match self {
+            Message::Redefined(_) | Message::Line(_) => Class::Warning,
+            Message::Function { fault, .. } if fault.class() == 'W' => Class::Warning,
+            Message::Raster(fault) if fault.is_warning() => Class::Warning,
+            _ => Class::Error,
+        }
+    }
+
+    /// The number of the message.
+    pub fn number(&self) -> u16 {
+        match self {
+            Message::Syntax(_) | Message::Binary(_) => 1,
+            Message::NotFound(_) | Message::Refused(Refusal::NoFunction(_)) => 2,
+            Message::Redefined(_) => 3,
+            Message::Structure(_) => 4,
+            Message::Function { fault, .. } => fault.number(),
+            Message::Node { fault, .. } => fault.number(),
+            Message::Refused(Refusal::Full) | Message::Update(_) => 8,
+            Message::Refused(_) => 9,
+            Message::Line(_) => 12,
+            Message::Raster(fault) => fault.number(),
+        }
+    }
+}
+
+impl std::fmt::Display for Message {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Message::Function { name, fault } = self {
+            return f.write_str(&fault.text(name));
+        }
+        let letter = match self.class() {
+            Class::Error => 'E',
+            Class::Warning => 'W',
+            Class::Information => 'I',
+        };
+        write!(f, "{letter} {} *** ", self.number())?;
+        match self {
+            Message::Syntax(error) => write!(f, "{error}"),
+            Message::Binary(error) => write!(f, "{error}"),
+            Message::NotFound(name) => write!(f, "Name not found: {name}"),
+            Message::Redefined(name) => write!(f, "{name} redefined"),
+            Message::Structure(text) => f.write_str(text),
+            Message::Function { .. } => Ok(()),
+            Message::Node { name, fault } => f.write_str(&fault.text(name)),
+            Message::Refused(refusal) => write!(f, "{refusal}"),
+            Message::Update(trouble) => write!(f, "Picture incomplete: {trouble}"),
+            Message::Line(text) => f.write_str(text),
+            Message::Raster(fault) => write!(f, "{fault}"),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! The shell that moves bytes: host lines over TCP and Unix sockets, and text lines for operators.
+
+mod host;
+mod operator;
+
+pub use protocol::address::{Address, AddressError};
+pub use host::{MAX_WAITING_BYTES, Writer, serve_hosts};
+pub use operator::{OperatorLine, serve_operators, serve_stdio};
+
+use std::io;
+use tokio::{
+    io::{AsyncRead, AsyncWrite},
+    net::{TcpListener, UnixListener},
+    sync::mpsc,
+};
+
+/// Which host line; numbers are never used twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LineId(pub u64);
+
+/// What the lines tell the machine's thread.
+#[derive(Debug)]
+pub enum LineEvent {
+    /// A host attached.
+    Attached {
+        /// Its line.
+        line: LineId,
+        /// Who, for messages.
+        peer: String,
+        /// Where bytes for it go.
+        writer: Writer,
+    },
+    /// Bytes from a host.
+    Bytes(LineId, Vec<u8>),
+    /// A host line closed.
+    Closed {
+        /// Which.
+        line: LineId,
+        /// Why, if not by a plain end.
+        error: Option<io::Error>,
+    },
+    /// An operator's line of text, which wants one line of reply.
+    Operator(OperatorLine),
+    /// The operator on standard input is gone.
+    OperatorGone,
+    /// The process was asked to end.
+    Interrupted,
+}
+
+/// The way into the machine's thread. It is bounded: when the machine is slower than a host, that host waits.
+pub type Events = mpsc::Sender<LineEvent>;
+
+/// Bytes of a socket, whatever its kind.
+trait Stream: AsyncRead + AsyncWrite + Send + Unpin {}
+impl<T: AsyncRead + AsyncWrite + Send + Unpin> Stream for T {}
+
+/// A listening socket.
+#[derive(Debug)]
+pub enum Listener {
+    /// TCP.
+    Tcp(TcpListener),
+    /// Unix socket; the file is removed at the end.
+    Unix(UnixListener, SocketFile),
+}
+
+/// Removes the file of a Unix socket when dropped.
+#[derive(Debug)]
+pub struct SocketFile(std::path::PathBuf);
+
+impl Drop for SocketFile {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+impl Listener {
+    /// Begins to listen; needs a tokio runtime.
+    ///
+    /// # Errors
+    /// Those of the system, e.g. the address is in use.
+    pub async fn bind(address: &Address) -> io::Result<Listener> {
+        match address {
+            Address::Tcp(at) => Ok(Listener::Tcp(TcpListener::bind(at.as_str()).await?)),
+            Address::Unix(path) => Ok(Listener::Unix(UnixListener::bind(path)?, SocketFile(path.clone()))),
+        }
+    }
+
+    /// The address to connect to: port 0 has become a real port.
+    pub fn address(&self) -> io::Result<Address> {
+        match self {
+            Listener::Tcp(listener) => Ok(Address::Tcp(listener.local_addr()?.to_string())),
+            Listener::Unix(_, file) => Ok(Address::Unix(file.0.clone())),
+        }
+    }
+
+    async fn accept(&self) -> io::Result<(Box<dyn Stream>, String)> {
+        match self {
+            Listener::Tcp(listener) => {
+                let (stream, peer) = listener.accept().await?;
+                stream.set_nodelay(true)?;
+                Ok((Box::new(stream), format!("tcp:{peer}")))
+            }
+            Listener::Unix(listener, file) => {
+                let (stream, _) = listener.accept().await?;
+                Ok((Box::new(stream), format!("unix:{}", file.0.display())))
+            }
+        }
+    }
+}

@@ -1,0 +1,365 @@
+//! The whole machine: owns the parts, wires them, and moves in steps. No thread, window or wall clock here.
+
+mod counters;
+mod describe;
+mod devices;
+mod host_line;
+mod panel;
+
+pub use counters::Counters;
+pub use devices::{Event, TabletEvent};
+pub use host_line::PlainText;
+pub use panel::Panel;
+
+use crate::{
+    calligraphic::Beam,
+    functions::devices,
+    interpreter::{Class, Message},
+    memory::MassMemory,
+    line::LineId,
+    picture::Picture,
+    port::{Effect, ObjectId},
+    raster::FrameBuffer,
+    traversal::{self, Update},
+};
+use devices::Devices;
+use host_line::HostLine;
+use protocol::{Name, Value};
+use std::collections::{BTreeMap, VecDeque};
+
+/// Frames a second: the nominal refresh rate. [M]
+pub const FRAMES_PER_SECOND: u64 = 60;
+/// Function firings between two frames; what is left waits for the next frame, so that a network that never
+/// rests stops neither the display nor the lines. [C]
+pub const FIRINGS_PER_FRAME: u64 = 200_000;
+/// Messages of the machine that [`Machine::log`] keeps.
+const LOG_LINES: usize = 1000;
+/// Messages to the host that wait for the operator.
+const KEPT_MESSAGES: usize = 1000;
+
+/// Microseconds since the machine was made.
+pub type Micros = u64;
+
+/// What comes into the machine.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// A host line opens.
+    Attach(LineId),
+    /// Bytes from a host.
+    Bytes(LineId, Vec<u8>),
+    /// A host line closes.
+    Detach(LineId),
+    /// Something that a person does.
+    Event(Event),
+}
+
+/// Bytes for a host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// On which line.
+    pub line: LineId,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+/// Settings that do not change while the machine runs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Settings {
+    /// Who gets text that arrives outside packets.
+    pub plain_text: PlainText,
+}
+
+/// The PS 340.
+#[derive(Debug)]
+pub struct Machine {
+    settings: Settings,
+    memory: MassMemory,
+    lines: BTreeMap<LineId, HostLine>,
+    devices: Devices,
+    panel: Panel,
+    frame_buffer: FrameBuffer,
+    frame: u64,
+    firings_left: u64,
+    network_idle: bool,
+    update: Update,
+    /// Version of the structure that `update` shows; none before the first.
+    updated: Option<u64>,
+    /// XFORMDATA functions that wait for the next update, with the names of their nodes.
+    transforms: Vec<(ObjectId, Name)>,
+    messages: Vec<Message>,
+    log: VecDeque<String>,
+    to_host: VecDeque<Vec<u8>>,
+    outputs: Vec<Output>,
+    counters: Counters,
+}
+
+impl Machine {
+    /// A machine as after its start: the initial function instances exist, nothing is displayed.
+    pub fn new(settings: Settings) -> Machine {
+        let mut memory = MassMemory::default();
+        for initial in devices::initial() {
+            let made = memory.define_initial(&initial);
+            debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
+        }
+        memory.objects.seal_system();
+        Machine {
+            settings,
+            memory,
+            lines: BTreeMap::new(),
+            devices: Devices::default(),
+            panel: Panel::default(),
+            frame_buffer: FrameBuffer::default(),
+            frame: 0,
+            firings_left: FIRINGS_PER_FRAME,
+            network_idle: true,
+            update: Update::default(),
+            updated: None,
+            transforms: Vec::new(),
+            messages: Vec::new(),
+            log: VecDeque::new(),
+            to_host: VecDeque::new(),
+            outputs: Vec::new(),
+            counters: Counters::default(),
+        }
+    }
+
+    /// Takes the inputs, in order, at the time of the machine; then lets time run to `until` (a time in the
+    /// past changes nothing). Returns what goes to the hosts.
+    pub fn step(&mut self, inputs: impl IntoIterator<Item = Input>, until: Micros) -> Vec<Output> {
+        for input in inputs {
+            match input {
+                Input::Attach(line) => {
+                    self.lines.insert(line, HostLine::new(self.settings.plain_text));
+                }
+                Input::Bytes(line, bytes) => self.receive(line, &bytes),
+                Input::Detach(line) => self.detach(line),
+                Input::Event(event) => self.event(event),
+            }
+        }
+        self.settle();
+        while time_of_frame(self.frame + 1) <= until {
+            self.next_frame();
+        }
+        std::mem::take(&mut self.outputs)
+    }
+
+    /// Something that a person does. Dials speak at the next frame, everything else at once.
+    pub fn event(&mut self, event: Event) {
+        let emissions = self.devices.event(event);
+        self.emit(emissions);
+        self.settle();
+    }
+
+    /// Lets one frame pass: dials and clocks speak, the network runs, the picture is updated.
+    pub fn next_frame(&mut self) {
+        self.frame += 1;
+        self.firings_left = FIRINGS_PER_FRAME;
+        let emissions = self.devices.frame();
+        self.emit(emissions);
+        let centiseconds = self.frame * 100 / FRAMES_PER_SECOND;
+        self.memory.network.advance(self.frame, centiseconds, &mut self.memory.effects);
+        self.settle();
+        self.update_picture();
+        self.settle();
+    }
+
+    /// The number of frames that have passed.
+    pub fn frame(&self) -> u64 {
+        self.frame
+    }
+
+    /// Whether nothing is left to do until something comes in, or a clock ticks.
+    pub fn is_idle(&self) -> bool {
+        self.network_idle
+            && self.transforms.is_empty()
+            && self.devices.is_quiet()
+            && self.updated == Some(self.memory.structures.version())
+    }
+
+    /// What the vector screen shows now.
+    pub fn vector_picture(&mut self, beam: &Beam) -> Picture {
+        self.update_picture();
+        self.settle();
+        beam.picture(&self.update.strokes)
+    }
+
+    /// What the raster screen shows now.
+    pub fn raster_picture(&self) -> Picture {
+        self.frame_buffer.picture()
+    }
+
+    /// The latest update.
+    pub fn latest_update(&self) -> &Update {
+        &self.update
+    }
+
+    /// Labels, lights and texts around the screens.
+    pub fn panel(&self) -> &Panel {
+        &self.panel
+    }
+
+    /// The latest messages of the machine, oldest first.
+    pub fn log(&self) -> impl Iterator<Item = &str> {
+        self.log.iter().map(String::as_str)
+    }
+
+    /// What the machine has counted.
+    pub fn counters(&self) -> Counters {
+        Counters {
+            frame: self.frame,
+            objects: self.memory.objects.len() as u64,
+            bytes: self.memory.bytes() as u64,
+            strokes: self.update.strokes.len() as u64,
+            vectors: self.update.vectors,
+            ..self.counters
+        }
+    }
+
+    /// The oldest message to the host that was not taken here before.
+    pub fn take_message(&mut self) -> Option<Vec<u8>> {
+        self.to_host.pop_front()
+    }
+
+    /// What an object is, in one line; none if the name is unknown.
+    pub fn describe(&self, name: &str) -> Option<String> {
+        let id = self.memory.objects.find(name)?;
+        Some(describe::describe(&self.memory, id))
+    }
+
+    fn emit(&mut self, emissions: Vec<devices::Emission>) {
+        for (instance, output, value) in emissions {
+            if let Some(id) = self.memory.objects.find(instance) {
+                self.memory.network.emit(id, output, value, &mut self.memory.effects);
+            }
+        }
+        self.network_idle = false;
+    }
+
+    fn receive(&mut self, line: LineId, bytes: &[u8]) {
+        let Some(mut host) = self.lines.remove(&line) else { return };
+        self.counters.bytes_in += bytes.len() as u64;
+        host.receive(bytes, self);
+        self.lines.insert(line, host);
+    }
+
+    fn detach(&mut self, line: LineId) {
+        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.interpreter.abandon()) {
+            self.report(Message::Structure(format!("the line closed while {open} was open")));
+        }
+    }
+
+    /// Runs the network until it rests or has used up its share of this frame, and does what it wants.
+    fn settle(&mut self) {
+        loop {
+            self.carry_effects();
+            if self.firings_left == 0 {
+                self.network_idle = false;
+                return;
+            }
+            let ran = self.memory.network.run(self.firings_left, &mut self.memory.effects);
+            self.firings_left = self.firings_left.saturating_sub(ran.firings);
+            self.counters.firings += ran.firings;
+            self.network_idle = ran.idle;
+            if self.memory.effects.is_empty() {
+                return;
+            }
+        }
+    }
+
+    fn carry_effects(&mut self) {
+        while !self.memory.effects.is_empty() {
+            for effect in std::mem::take(&mut self.memory.effects) {
+                self.carry(effect);
+            }
+            for message in std::mem::take(&mut self.messages) {
+                self.report(message);
+            }
+        }
+    }
+
+    fn carry(&mut self, effect: Effect) {
+        match effect {
+            Effect::Deliver { object, input, value } => {
+                if let Err(fault) = self.memory.structures.accept(object, input, value) {
+                    let name = self.memory.objects.name(object).to_string();
+                    self.messages.push(Message::Node { name, fault });
+                }
+            }
+            Effect::Fault { object, fault } => {
+                let name = self.memory.objects.name(object).to_string();
+                self.messages.push(Message::Function { name, fault });
+            }
+            Effect::RequestTransform { function, node } => self.transforms.push((function, node)),
+            Effect::ReportMemory { function } => {
+                let text = format!("{:>8} bytes in use", self.memory.bytes());
+                self.memory.network.emit(function, 1, Value::string(text), &mut self.memory.effects);
+            }
+            Effect::Host { bytes, .. } => self.send_to_host(&bytes),
+            effect => self.panel.carry(effect),
+        }
+    }
+
+    /// A message to the host goes to every host that is attached.
+    fn send_to_host(&mut self, message: &[u8]) {
+        self.counters.messages_out += 1;
+        if self.to_host.len() >= KEPT_MESSAGES {
+            self.to_host.pop_front();
+        }
+        self.to_host.push_back(message.to_vec());
+        for (line, host) in &self.lines {
+            self.outputs.push(Output { line: *line, bytes: host.encode_message(message) });
+        }
+    }
+
+    /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION.
+    fn report(&mut self, message: Message) {
+        let text = message.to_string();
+        let instance = match message.class() {
+            Class::Error => "ERROR",
+            Class::Warning => "WARNING",
+            Class::Information => "INFORMATION",
+        };
+        self.counters.messages += 1;
+        if self.log.len() >= LOG_LINES {
+            self.log.pop_front();
+        }
+        tracing::info!("{text}");
+        self.log.push_back(text.clone());
+        self.emit(vec![(instance, 1, Value::string(&text))]);
+    }
+
+    fn update_picture(&mut self) {
+        let version = self.memory.structures.version();
+        if self.updated == Some(version) && self.transforms.is_empty() {
+            return;
+        }
+        let requests = std::mem::take(&mut self.transforms);
+        let wanted: Vec<ObjectId> =
+            requests.iter().filter_map(|(_, name)| self.memory.objects.find(name.as_str())).collect();
+        let update = traversal::update(&self.memory.structures, &wanted);
+        self.counters.updates += 1;
+        if let Some(trouble) = update.trouble {
+            self.report(Message::Update(trouble));
+        }
+        for (function, name) in requests {
+            let matrix = self.memory.objects.find(name.as_str()).and_then(|id| update.transforms.get(&id));
+            match matrix {
+                Some(m) => {
+                    let value = Value::Transform(Box::new(*m));
+                    self.memory.network.emit(function, 1, value, &mut self.memory.effects);
+                }
+                None => self.report(Message::NotFound(name)),
+            }
+        }
+        self.update = update;
+        self.updated = Some(version);
+    }
+}
+
+/// When a frame begins.
+pub fn time_of_frame(frame: u64) -> Micros {
+    frame * 1_000_000 / FRAMES_PER_SECOND
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,268 @@
+//! Tests of the whole machine: bytes in, strokes and bytes out.
+
+use super::*;
+use crate::port::Label;
+use crate::traversal::Stroke;
+
+const LINE: LineId = LineId(1);
+
+/// A machine with one host, and what it was told so far carried out.
+fn told(text: &str) -> Machine {
+    let mut machine = Machine::new(Settings::default());
+    machine.step([Input::Attach(LINE)], 0);
+    tell(&mut machine, text);
+    machine
+}
+
+fn tell(machine: &mut Machine, text: &str) -> Vec<String> {
+    let outputs = machine.step([Input::Bytes(LINE, text.as_bytes().to_vec())], 0);
+    outputs.iter().map(|o| String::from_utf8_lossy(&o.bytes).into_owned()).collect()
+}
+
+fn strokes(machine: &mut Machine) -> Vec<Stroke> {
+    machine.next_frame();
+    machine.latest_update().strokes.clone()
+}
+
+fn frames(machine: &mut Machine, count: usize) -> Vec<String> {
+    let mut said = Vec::new();
+    for _ in 0..count {
+        let until = time_of_frame(machine.frame() + 1);
+        said.extend(machine.step([], until).iter().map(|o| String::from_utf8_lossy(&o.bytes).into_owned()));
+    }
+    said
+}
+
+fn errors(machine: &Machine) -> Vec<&str> {
+    machine.log().filter(|l| l.starts_with('E')).collect()
+}
+
+const DOT: &str = "D := VECTOR_LIST DOTS 0.5,0,0;";
+
+#[test]
+fn text_makes_a_picture() {
+    let mut machine = told(&format!("{DOT} DISPLAY D;"));
+    assert_eq!(strokes(&mut machine)[0].start, [0.5, 0.0]);
+    assert!(errors(&machine).is_empty());
+}
+
+#[test]
+fn names_may_be_used_before_they_are_defined() {
+    let mut machine = told("DISPLAY FRAME; INCLUDE A IN FRAME; A := INSTANCE OF D;");
+    assert!(strokes(&mut machine).is_empty());
+    tell(&mut machine, DOT);
+    assert_eq!(strokes(&mut machine).len(), 1);
+    assert!(errors(&machine).is_empty());
+}
+
+#[test]
+fn a_deleted_object_vanishes_where_it_is_referred_to_and_comes_back() {
+    let mut machine = told(&format!("{DOT} A := INSTANCE OF D; DISPLAY A;"));
+    tell(&mut machine, "DELETE D;");
+    assert!(strokes(&mut machine).is_empty());
+    tell(&mut machine, DOT);
+    assert_eq!(strokes(&mut machine).len(), 1);
+}
+
+#[test]
+fn a_forgotten_object_stays_where_it_is_referred_to() {
+    let mut machine = told(&format!("{DOT} A := INSTANCE OF D; DISPLAY A; FORGET D;"));
+    assert_eq!(strokes(&mut machine).len(), 1);
+    tell(&mut machine, "D := VECTOR_LIST DOTS 0,0,0 0,0,0;");
+    assert_eq!(strokes(&mut machine).len(), 1, "the new D is another object");
+}
+
+#[test]
+fn a_dial_turns_a_node_at_the_next_frame() {
+    let mut machine = told(
+        "D := VECTOR_LIST DOTS 1,0,0; W := BEGIN_STRUCTURE RZ := ROTATE IN Z 0; INSTANCE OF D; END_STRUCTURE;
+         F := F:DZROTATE; CONNECT DIALS<3>:<1>F; CONNECT F<1>:<1>W.RZ; SEND 0 TO <2>F; SEND 200 TO <3>F; DISPLAY W;",
+    );
+    machine.event(Event::Dial { dial: 3, turns: 0.3 });
+    machine.event(Event::Dial { dial: 3, turns: 0.15 });
+    assert!(!machine.is_idle());
+    let at = strokes(&mut machine)[0].start;
+    assert!((at[0]).abs() < 1e-6 && (at[1] - 1.0).abs() < 1e-6, "90 degrees: {at:?}");
+    assert!(machine.is_idle());
+}
+
+#[test]
+fn the_matrix_of_a_view_comes_back_as_five_lines() {
+    let mut machine = told(
+        "W := BEGIN_STRUCTURE ROTATE IN Z 90; TRANSLATE BY 1,2,3; M := XFORM MATRIX; END_STRUCTURE; DISPLAY W;
+         X := F:XFORMDATA; L := F:LIST; P := F:PRINT; CONNECT X<1>:<1>L; CONNECT L<1>:<1>P;
+         CONNECT P<1>:<1>HOST_MESSAGE; SEND 'W.M' TO <2>X; SEND TRUE TO <1>X;",
+    );
+    let said = frames(&mut machine, 2);
+    assert_eq!(said.len(), 5, "{said:?}");
+    assert!(said[0].starts_with("MATRIX_4X4"));
+    let row = |text: &str| -> Vec<f64> {
+        text[1..].trim_end().trim_end_matches(';').split([' ', ',']).filter_map(|w| w.parse().ok()).collect()
+    };
+    assert_eq!(row(&said[1]), [0.0, 1.0, 0.0, 0.0]);
+    assert_eq!(row(&said[2]), [-1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(row(&said[4]), [-2.0, 1.0, 3.0, 1.0]);
+}
+
+#[test]
+fn an_xform_node_that_is_not_displayed_is_an_error() {
+    let mut machine = told("X := F:XFORMDATA; SEND 'NOWHERE' TO <2>X; SEND TRUE TO <1>X;");
+    frames(&mut machine, 2);
+    assert_eq!(errors(&machine), ["E 2 *** Name not found: NOWHERE"]);
+    assert!(machine.is_idle());
+}
+
+#[test]
+fn messages_go_to_every_host() {
+    let mut machine = told("");
+    machine.step([Input::Attach(LineId(2))], 0);
+    let outputs = machine.step([Input::Bytes(LINE, b"SEND 'HELLO' TO <1>HOST_MESSAGE;".to_vec())], 0);
+    let lines: Vec<(LineId, &[u8])> = outputs.iter().map(|o| (o.line, o.bytes.as_slice())).collect();
+    assert_eq!(lines, [(LINE, &b"HELLO\r\n"[..]), (LineId(2), &b"HELLO\r\n"[..])]);
+    assert_eq!(machine.take_message().as_deref(), Some(&b"HELLO"[..]));
+}
+
+#[test]
+fn a_reference_inside_a_structure_means_what_is_named_there_first() {
+    let mut machine = told(
+        "CUD := VECTOR_LIST DOTS 0,0,0 0,0,0;
+         S := BEGIN_STRUCTURE INSTANCE OF CUD; CUD := VECTOR_LIST DOTS 0.5,0.5,0; END_STRUCTURE; DISPLAY S;",
+    );
+    let drawn = strokes(&mut machine);
+    assert_eq!(drawn.len(), 2, "S.CUD by reference and in place");
+    assert!(drawn.iter().all(|s| s.start == [0.5, 0.5]));
+}
+
+#[test]
+fn send_inside_an_open_structure_acts_at_once_on_a_full_path() {
+    let mut machine = told("A := BEGIN_STRUCTURE T := TRANSLATE BY 0,0,0; VECTOR_LIST DOTS 0,0,0; END_STRUCTURE; DISPLAY A;");
+    tell(&mut machine, "B := BEGIN_STRUCTURE ROTATE IN X 10; SEND V3D(0.25,0,0) TO <1>A.T;");
+    assert_eq!(strokes(&mut machine)[0].start, [0.25, 0.0]);
+    tell(&mut machine, "END_STRUCTURE;");
+    assert!(errors(&machine).is_empty(), "{:?}", errors(&machine));
+}
+
+#[test]
+fn an_open_structure_shows_nothing_until_its_end() {
+    let mut machine = told("DISPLAY A; A := BEGIN_STRUCTURE VECTOR_LIST DOTS 0,0,0;");
+    assert!(strokes(&mut machine).is_empty());
+    tell(&mut machine, "END_STRUCTURE;");
+    assert_eq!(strokes(&mut machine).len(), 1);
+}
+
+#[test]
+fn a_redefined_structure_loses_its_old_members() {
+    let mut machine = told("A := BEGIN_STRUCTURE T := TRANSLATE BY 0,0,0; END_STRUCTURE;");
+    tell(&mut machine, "A := BEGIN_STRUCTURE R := ROTATE IN X 0; END_STRUCTURE; SEND V3D(1,0,0) TO <1>A.T;");
+    assert_eq!(errors(&machine), ["E 2 *** Name not found: A.T"]);
+}
+
+#[test]
+fn a_line_that_closes_inside_a_structure_leaves_nothing_half_done() {
+    let mut machine = told("A := BEGIN_STRUCTURE VECTOR_LIST DOTS 0,0,0;");
+    machine.step([Input::Detach(LINE)], 0);
+    assert_eq!(machine.describe("A"), None);
+    assert_eq!(errors(&machine).len(), 1);
+}
+
+#[test]
+fn wildcards_and_initialize_spare_the_system() {
+    let mut machine = told("T1 := F:ADDC; T2 := F:NOP; CONNECT DIALS<1>:<1>T1; DELETE T*; SEND 'X' TO <1>DLABEL1;");
+    assert_eq!(machine.describe("TABLETIN").as_deref(), Some("TABLETIN := F:TABLETIN"));
+    assert_eq!(machine.describe("T1").as_deref(), Some("T1 is not defined"));
+    assert_eq!(machine.panel().label(Label::Dial(1)), b"X");
+    tell(&mut machine, "INITIALIZE;");
+    assert_eq!(machine.describe("T1"), None);
+    assert!(machine.describe("TURNONDISPLAY").is_some());
+    tell(&mut machine, "DIALS := F:ADDC; DELETE FKEYS;");
+    assert_eq!(errors(&machine).len(), 2, "{:?}", errors(&machine));
+}
+
+#[test]
+fn the_harmless_things_that_clients_do_are_harmless() {
+    let mut machine = told("A := F:ACCUMULATE; B := F:NOP; FRAME := INSTANCE OF A;");
+    for text in [
+        "DISCONNECT A<1>:<2>B;",
+        "DISCONNECT A:ALL;",
+        "CONNECT A<1>:<1>B; CONNECT A<1>:<1>B;",
+        "REMOVE T001 FROM FRAME;",
+        "REMOVE NOWHERE;",
+        "B := F:NOP; B := F:NOP;",
+        "SEND TRUE TO <1>CLEAR_LABELS; SEND FIX(0) TO <1>OFFBUTTONLIGHTS; SEND FIX(0) TO <1>TURNONDISPLAY;",
+        "IF := WINDOW X = -1:1 Y = -1:1; IN := ROTATE IN X 1; IS := SCALE BY 2;",
+    ] {
+        tell(&mut machine, text);
+        assert!(errors(&machine).is_empty(), "{text}: {:?}", errors(&machine));
+    }
+}
+
+#[test]
+fn errors_reach_the_host_that_asks_for_them() {
+    let mut machine = told("CONNECT ERROR<1>:<1>HOST_MESSAGE;");
+    let said = tell(&mut machine, "NONSENSE 1 2; SEND 1 TO <1>NOWHERE;");
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said[0].starts_with("E 1 ***") && said[0].contains("NONSENSE"), "{said:?}");
+    assert!(said[1].starts_with("E 2 *** Name not found: NOWHERE"));
+}
+
+#[test]
+fn a_network_that_never_rests_stops_neither_frames_nor_lines() {
+    let mut machine = told("A := F:NOP; B := F:NOP; CONNECT A<1>:<1>B; CONNECT B<1>:<1>A; SEND 1 TO <1>A;");
+    frames(&mut machine, 3);
+    assert!(!machine.is_idle());
+    let firings = machine.counters().firings;
+    assert!((FIRINGS_PER_FRAME..=5 * FIRINGS_PER_FRAME).contains(&firings), "{firings}");
+    tell(&mut machine, "DELETE A, B; SEND 'STILL HERE' TO <1>HOST_MESSAGE;");
+    frames(&mut machine, 2);
+    assert_eq!(machine.take_message().as_deref(), Some(&b"STILL HERE"[..]));
+}
+
+#[test]
+fn an_error_that_causes_itself_does_not_hang_the_machine() {
+    let mut machine = told("S := F:DIV; CONNECT ERROR<1>:<1>S; CONNECT ERROR<1>:<2>S;");
+    tell(&mut machine, "NONSENSE;");
+    frames(&mut machine, 3);
+    assert!(machine.log().count() <= 1000);
+}
+
+#[test]
+fn dials_beyond_the_patience_of_a_network_are_counted() {
+    let mut machine = told("A := F:ADD; CONNECT DIALS<1>:<1>A;");
+    for _ in 0..20_000 {
+        machine.event(Event::Dial { dial: 1, turns: 0.1 });
+        machine.next_frame();
+    }
+    let warnings = machine.log().filter(|l| l.starts_with('W')).count();
+    assert!(warnings >= 1, "{:?}", machine.log().last());
+}
+
+#[test]
+fn a_press_of_the_puck_sends_place_and_code_once() {
+    let mut machine = told(
+        "P := F:PRINT; CONNECT TABLETIN<3>:<1>P; CONNECT P<1>:<1>HOST_MESSAGE;
+         Q := F:PRINT; CONNECT TABLETIN<6>:<1>Q; CONNECT Q<1>:<1>HOST_MESSAGE;",
+    );
+    machine.event(Event::Tablet(TabletEvent::Move([0.25, -0.125])));
+    machine.event(Event::Tablet(TabletEvent::Press(1)));
+    machine.event(Event::Tablet(TabletEvent::Release));
+    let mut said = Vec::new();
+    while let Some(message) = machine.take_message() {
+        said.push(String::from_utf8_lossy(&message).into_owned());
+    }
+    assert_eq!(said.len(), 3, "{said:?}");
+    assert_eq!(said.iter().filter(|m| m.starts_with('V')).count(), 1);
+    assert_eq!(said[0], "1");
+    assert_eq!(said[2], "0");
+}
+
+#[test]
+fn two_machines_do_the_same() {
+    let script = format!("{DOT} A := BEGIN_STRUCTURE ROTATE IN Z 17; INSTANCE OF D; END_STRUCTURE; DISPLAY A;");
+    let (mut one, mut two) = (told(&script), told(""));
+    for byte in script.bytes() {
+        two.step([Input::Bytes(LINE, vec![byte])], 0);
+    }
+    assert_eq!(strokes(&mut one), strokes(&mut two));
+    let beam = Beam { size: 64, ..Beam::default() };
+    assert_eq!(one.vector_picture(&beam).to_png(), two.vector_picture(&beam).to_png());
+}

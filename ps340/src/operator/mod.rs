@@ -1,0 +1,22 @@
+//! What a person at the machine does, as a text protocol: one order a line, one reply a line.
+//!
+//! A reply begins with `ok` or `error`. Line ends inside a reply are written `\n`.
+
+mod order;
+mod perform;
+
+pub use order::{ORDERS, Order, OrderError, OrderRow, Screen, parse};
+pub use perform::{Outcome, Wait, perform};
+
+/// The reply line for a result: `ok`, `ok TEXT` or `error TEXT`, without the line end.
+pub fn reply(result: &Result<String, String>) -> String {
+    let (word, text) = match result {
+        Ok(text) => ("ok", text),
+        Err(text) => ("error", text),
+    };
+    let escaped = text.replace('\\', "\\\\").replace('\r', "\\r").replace('\n', "\\n");
+    if escaped.is_empty() { word.to_string() } else { format!("{word} {escaped}") }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,268 @@
+//! The orders of the operator: their table and their text form.
+
+/// One row of the table of orders, from which `help` is made.
+#[derive(Clone, Copy, Debug)]
+pub struct OrderRow {
+    /// The first word.
+    pub word: &'static str,
+    /// What follows it.
+    pub arguments: &'static str,
+    /// What it does.
+    pub summary: &'static str,
+    read: fn(&mut Words<'_>) -> Result<Order, OrderError>,
+}
+
+/// Which of the two screens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Screen {
+    /// The calligraphic display.
+    Vector,
+    /// The raster display.
+    Raster,
+}
+
+/// Something that a person does at the machine, or looks at.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Order {
+    /// Turns a dial (1..=8) by a number of turns, clockwise positive.
+    Dial {
+        /// 1..=8.
+        dial: u8,
+        /// 1.0 is a full turn.
+        turns: f64,
+    },
+    /// Presses a function key: 1..=12, with SHIFT 13..=24, with CONTROL 25..=36.
+    Key(u8),
+    /// Presses a lighted button, 1..=32.
+    Button(u8),
+    /// Moves the puck, -1..=1.
+    PuckMove([f64; 2]),
+    /// Presses puck buttons: 1, 2, 4, 8 or sums.
+    PuckPress(u8),
+    /// Lets all puck buttons go.
+    PuckRelease,
+    /// Takes the puck off the tablet.
+    PuckAway,
+    /// Types text on the keyboard.
+    Type(String),
+    /// Waits for so many frames.
+    Frames(u64),
+    /// Waits until nothing is left to do, for so many frames at most.
+    Idle(u64),
+    /// Waits for a message to the host, for so many frames at most.
+    Message(u64),
+    /// Writes a picture of a screen.
+    Picture {
+        /// Which.
+        screen: Screen,
+        /// PNG or EXR, by extension.
+        file: String,
+        /// Width and height of the vector screen in pixels.
+        size: Option<u32>,
+    },
+    /// Describes an object.
+    Show(String),
+    /// Counters of the machine.
+    Counters,
+    /// Labels of dials and keys, lights, message line.
+    Panel,
+    /// The latest numbered messages of the machine.
+    Log,
+    /// Lists the orders.
+    Help,
+    /// Ends the machine.
+    Quit,
+}
+
+/// Why a line is no order.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum OrderError {
+    /// The first word is unknown.
+    #[error("unknown order '{0}'; 'help' lists them")]
+    Unknown(String),
+    /// Something is missing.
+    #[error("{0} is missing")]
+    Missing(&'static str),
+    /// Something cannot be read, or is out of range.
+    #[error("'{found}' is not {expected}")]
+    Bad {
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: &'static str,
+    },
+    /// There is more on the line.
+    #[error("'{0}' is too much")]
+    TooMuch(String),
+}
+
+/// Frames that `idle` and `message` wait for if the order does not say: ten seconds.
+const PATIENCE: u64 = 600;
+
+/// Every order.
+pub const ORDERS: &[OrderRow] = &[
+    OrderRow { word: "dial", arguments: "1..8 TURNS", summary: "turn a dial", read: dial },
+    OrderRow { word: "key", arguments: "1..12 [shift|control]", summary: "press a function key", read: key },
+    OrderRow { word: "button", arguments: "1..32", summary: "press a lighted button", read: button },
+    OrderRow {
+        word: "puck",
+        arguments: "move X Y | press [1|2|4|8] | release | away",
+        summary: "use the tablet, -1..1",
+        read: puck,
+    },
+    OrderRow { word: "type", arguments: "TEXT", summary: "type on the keyboard (\\r is RETURN)", read: type_text },
+    OrderRow { word: "frames", arguments: "N", summary: "wait for N frames (60 a second)", read: frames },
+    OrderRow {
+        word: "idle",
+        arguments: "[N]",
+        summary: "wait until nothing is left to do, N frames at most",
+        read: |w| Ok(Order::Idle(w.optional("a number of frames")?.unwrap_or(PATIENCE))),
+    },
+    OrderRow {
+        word: "message",
+        arguments: "[N]",
+        summary: "wait for the next message to the host, N frames at most",
+        read: |w| Ok(Order::Message(w.optional("a number of frames")?.unwrap_or(PATIENCE))),
+    },
+    OrderRow {
+        word: "picture",
+        arguments: "vector|raster FILE [SIZE]",
+        summary: "write a screen as PNG or EXR",
+        read: picture,
+    },
+    OrderRow {
+        word: "show",
+        arguments: "NAME",
+        summary: "describe an object",
+        read: |w| Ok(Order::Show(w.required("a name")?.to_ascii_uppercase())),
+    },
+    OrderRow { word: "counters", arguments: "", summary: "counters of the machine", read: |_| Ok(Order::Counters) },
+    OrderRow {
+        word: "panel",
+        arguments: "",
+        summary: "labels of dials and keys, lights, message line",
+        read: |_| Ok(Order::Panel),
+    },
+    OrderRow { word: "log", arguments: "", summary: "the latest messages of the machine", read: |_| Ok(Order::Log) },
+    OrderRow { word: "help", arguments: "", summary: "this list", read: |_| Ok(Order::Help) },
+    OrderRow { word: "quit", arguments: "", summary: "end the machine", read: |_| Ok(Order::Quit) },
+];
+
+/// Reads one line.
+///
+/// # Errors
+/// [`OrderError`] names the word that is wrong.
+pub fn parse(line: &str) -> Result<Order, OrderError> {
+    let mut words = Words { rest: line.trim() };
+    let word = words.required("an order")?;
+    let row = ORDERS.iter().find(|r| r.word.eq_ignore_ascii_case(word));
+    let order = (row.ok_or_else(|| OrderError::Unknown(word.into()))?.read)(&mut words)?;
+    if words.rest.is_empty() { Ok(order) } else { Err(OrderError::TooMuch(words.rest.into())) }
+}
+
+/// What is left of the line.
+struct Words<'a> {
+    rest: &'a str,
+}
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Option<&'a str> {
+        let (word, rest) = self.rest.split_once(char::is_whitespace).unwrap_or((self.rest, ""));
+        self.rest = rest.trim_start();
+        (!word.is_empty()).then_some(word)
+    }
+
+    fn required(&mut self, what: &'static str) -> Result<&'a str, OrderError> {
+        self.next().ok_or(OrderError::Missing(what))
+    }
+
+    fn optional<T: std::str::FromStr>(&mut self, expected: &'static str) -> Result<Option<T>, OrderError> {
+        let word = self.next();
+        word.map(|w| w.parse().map_err(|_| OrderError::Bad { found: w.into(), expected })).transpose()
+    }
+
+    fn integer(&mut self, low: u8, high: u8, expected: &'static str) -> Result<u8, OrderError> {
+        let word = self.required(expected)?;
+        let read = word.parse().ok().filter(|n| (low..=high).contains(n));
+        read.ok_or_else(|| OrderError::Bad { found: word.into(), expected })
+    }
+
+    fn real(&mut self, low: f64, high: f64, expected: &'static str) -> Result<f64, OrderError> {
+        let word = self.required(expected)?;
+        let read = word.parse().ok().filter(|x| (low..=high).contains(x));
+        read.ok_or_else(|| OrderError::Bad { found: word.into(), expected })
+    }
+}
+
+fn dial(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let dial = words.integer(1, 8, "a dial, 1 to 8")?;
+    Ok(Order::Dial { dial, turns: words.real(-1e6, 1e6, "a number of turns")? })
+}
+
+fn key(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let key = words.integer(1, 12, "a function key, 1 to 12")?;
+    match words.next() {
+        None => Ok(Order::Key(key)),
+        Some("shift") => Ok(Order::Key(key + 12)),
+        Some("control") => Ok(Order::Key(key + 24)),
+        Some(other) => Err(OrderError::Bad { found: other.into(), expected: "'shift' or 'control'" }),
+    }
+}
+
+fn button(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    Ok(Order::Button(words.integer(1, 32, "a button, 1 to 32")?))
+}
+
+fn puck(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let expected = "'move', 'press', 'release' or 'away'";
+    match words.required(expected)? {
+        "move" => {
+            let mut coordinate = || words.real(-1.0, 1.0, "a coordinate, -1 to 1");
+            Ok(Order::PuckMove([coordinate()?, coordinate()?]))
+        }
+        "press" => {
+            let code = words.optional("a sum of the button codes 1, 2, 4 and 8")?.unwrap_or(1);
+            if (1..=15).contains(&code) {
+                Ok(Order::PuckPress(code))
+            } else {
+                Err(OrderError::Bad { found: code.to_string(), expected: "a sum of the button codes 1, 2, 4 and 8" })
+            }
+        }
+        "release" => Ok(Order::PuckRelease),
+        "away" => Ok(Order::PuckAway),
+        other => Err(OrderError::Bad { found: other.into(), expected }),
+    }
+}
+
+fn type_text(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let text = std::mem::take(&mut words.rest);
+    if text.is_empty() {
+        return Err(OrderError::Missing("the text"));
+    }
+    Ok(Order::Type(text.replace("\\r", "\r").replace("\\n", "\n")))
+}
+
+fn frames(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    Ok(Order::Frames(words.optional("a number of frames")?.ok_or(OrderError::Missing("a number of frames"))?))
+}
+
+fn picture(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let screen = match words.required("'vector' or 'raster'")? {
+        "vector" => Screen::Vector,
+        "raster" => Screen::Raster,
+        other => return Err(OrderError::Bad { found: other.into(), expected: "'vector' or 'raster'" }),
+    };
+    let rest = std::mem::take(&mut words.rest);
+    // The size is the last word if it is a number; file names may hold blanks.
+    let (file, size) = match rest.rsplit_once(char::is_whitespace) {
+        Some((file, last)) if screen == Screen::Vector && last.bytes().all(|b| b.is_ascii_digit()) => {
+            let size = last.parse().ok().filter(|s| (16..=8192).contains(s));
+            (file.trim_end(), Some(size.ok_or(OrderError::Bad { found: last.into(), expected: "a size, 16 to 8192" })?))
+        }
+        _ => (rest, None),
+    };
+    if file.is_empty() {
+        return Err(OrderError::Missing("a file name"));
+    }
+    Ok(Order::Picture { screen, file: file.into(), size })
+}

@@ -1,0 +1,90 @@
+//! Carrying out an order on a machine.
+
+use super::{ORDERS, Order, Screen};
+use crate::{
+    calligraphic::Beam,
+    machine::{Event, Machine, TabletEvent},
+};
+use std::path::Path;
+
+/// What came of an order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// Done, with a text, or failed, with the reason.
+    Done(Result<String, String>),
+    /// The reply comes later: ask the wait after each step.
+    Waiting(Wait),
+    /// The machine is to end.
+    Quit,
+}
+
+/// Something that an order waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wait {
+    /// That a frame is reached.
+    Frame(u64),
+    /// That nothing is left to do, or the frame is reached.
+    Idle(u64),
+    /// That a message to the host is there, or the frame is reached.
+    Message(u64),
+}
+
+impl Wait {
+    /// The reply, once there is one.
+    pub fn poll(self, machine: &mut Machine) -> Option<Result<String, String>> {
+        let frame = machine.frame();
+        match self {
+            Wait::Frame(end) => (frame >= end).then(|| Ok(format!("frame {frame}"))),
+            Wait::Idle(_) if machine.is_idle() => Some(Ok(format!("idle at frame {frame}"))),
+            Wait::Idle(end) => (frame >= end).then(|| Err("still busy".into())),
+            Wait::Message(end) => match machine.take_message() {
+                Some(message) => Some(Ok(String::from_utf8_lossy(&message).into_owned())),
+                None => (frame >= end).then(|| Err("no message to the host".into())),
+            },
+        }
+    }
+}
+
+/// Carries out an order.
+pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
+    let frame = machine.frame();
+    let event = match order {
+        Order::Dial { dial, turns } => Event::Dial { dial: *dial, turns: *turns },
+        Order::Key(key) => Event::Key(*key),
+        Order::Button(button) => Event::Button(*button),
+        Order::PuckMove(at) => Event::Tablet(TabletEvent::Move(*at)),
+        Order::PuckPress(code) => Event::Tablet(TabletEvent::Press(*code)),
+        Order::PuckRelease => Event::Tablet(TabletEvent::Release),
+        Order::PuckAway => Event::Tablet(TabletEvent::Away),
+        Order::Type(text) => Event::Type(text.clone().into_bytes()),
+        Order::Frames(n) => return Outcome::Waiting(Wait::Frame(frame.saturating_add(*n))),
+        Order::Idle(n) => return Outcome::Waiting(Wait::Idle(frame.saturating_add(*n))),
+        Order::Message(n) => return Outcome::Waiting(Wait::Message(frame.saturating_add(*n))),
+        Order::Picture { screen, file, size } => return Outcome::Done(picture(machine, *screen, file, *size)),
+        Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
+        Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
+        Order::Panel => return Outcome::Done(Ok(machine.panel().to_string())),
+        Order::Log => return Outcome::Done(Ok(machine.log().collect::<Vec<_>>().join("\n"))),
+        Order::Help => return Outcome::Done(Ok(help())),
+        Order::Quit => return Outcome::Quit,
+    };
+    machine.event(event);
+    Outcome::Done(Ok(String::new()))
+}
+
+fn help() -> String {
+    let lines = ORDERS.iter().map(|r| format!("{:<50} {}", format!("{} {}", r.word, r.arguments), r.summary));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn picture(machine: &mut Machine, screen: Screen, file: &str, size: Option<u32>) -> Result<String, String> {
+    let picture = match screen {
+        Screen::Vector => {
+            let default = Beam::default();
+            machine.vector_picture(&Beam { size: size.unwrap_or(default.size), ..default })
+        }
+        Screen::Raster => machine.raster_picture(),
+    };
+    picture.write(Path::new(file)).map_err(|e| e.to_string())?;
+    Ok(format!("{file} {}x{}", picture.width, picture.height))
+}

@@ -1,0 +1,244 @@
+//! The thread of the machine: brings lines, operators, clock and machine together.
+
+use crate::{
+    line::{Address, Events, LineEvent, LineId, Listener, Writer, serve_hosts, serve_operators, serve_stdio},
+    machine::{Input, Machine, Micros, Settings, time_of_frame},
+    operator::{Outcome, Wait, parse, perform, reply},
+};
+use std::{
+    collections::HashMap,
+    io,
+    time::{Duration, Instant},
+};
+use tokio::sync::{mpsc, oneshot};
+
+/// Events that wait for the machine; with [`LineEvent::Bytes`] of a quarter megabyte this bounds memory.
+const WAITING_EVENTS: usize = 16;
+/// How far the machine may lag behind the wall clock before it gives time up instead of catching up.
+const MAX_LAG: Micros = 250_000;
+
+/// Where the time of the machine comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Clock {
+    /// Sixty frames in each second of the wall clock.
+    Real,
+    /// Frames pass only while an operator waits for them, as fast as they can.
+    Virtual,
+}
+
+/// Who gives orders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// Nobody.
+    None,
+    /// Standard input; the machine ends with it.
+    Stdio,
+    /// Whoever connects.
+    Socket(Address),
+}
+
+/// What the process is to do.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where hosts attach.
+    pub listen: Vec<Address>,
+    /// Who gives orders.
+    pub operator: Operator,
+    /// Where time comes from.
+    pub clock: Clock,
+    /// Of the machine.
+    pub settings: Settings,
+}
+
+/// Why the process ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// By the order `quit`, or with the operator on standard input.
+    Quit,
+    /// By a signal.
+    Interrupted,
+}
+
+/// Runs the machine until its end.
+///
+/// `ready` is told each address in use, as a line of text, before the first event is taken.
+///
+/// # Errors
+/// If it cannot listen: the address and the reason.
+pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
+    let (events, inbox) = mpsc::channel(WAITING_EVENTS);
+    let io_runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let bind = |address: &Address| {
+        let bound = io_runtime.block_on(Listener::bind(address));
+        bound.map_err(|e| io::Error::new(e.kind(), format!("cannot listen on {address}: {e}")))
+    };
+    for address in &options.listen {
+        let listener = bind(address)?;
+        ready(&format!("ready line {}", listener.address()?));
+        io_runtime.spawn(serve_hosts(listener, events.clone()));
+    }
+    match &options.operator {
+        Operator::None => {}
+        Operator::Stdio => {
+            let events = events.clone();
+            std::thread::spawn(move || serve_stdio(&events));
+        }
+        Operator::Socket(address) => {
+            let listener = bind(address)?;
+            ready(&format!("ready operator {}", listener.address()?));
+            io_runtime.spawn(serve_operators(listener, events.clone()));
+        }
+    }
+    let (stop, stopped) = oneshot::channel::<()>();
+    let lines = std::thread::spawn(move || {
+        io_runtime.block_on(async {
+            tokio::spawn(watch_signals(events));
+            let _ = stopped.await;
+            // Replies and bytes that are on their way may still leave.
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        });
+        io_runtime.shutdown_background();
+    });
+    ready("ready");
+    let end = Shell::new(options, inbox)?.run();
+    let _ = stop.send(());
+    let _ = lines.join();
+    Ok(end)
+}
+
+async fn watch_signals(events: Events) {
+    use tokio::signal::unix::{SignalKind, signal};
+    let Ok(mut terminate) = signal(SignalKind::terminate()) else { return };
+    tokio::select! {
+        _ = tokio::signal::ctrl_c() => {}
+        _ = terminate.recv() => {}
+    }
+    let _ = events.send(LineEvent::Interrupted).await;
+}
+
+struct Shell {
+    machine: Machine,
+    inbox: mpsc::Receiver<LineEvent>,
+    timer: tokio::runtime::Runtime,
+    clock: Clock,
+    /// Wall-clock time of machine time 0.
+    epoch: Instant,
+    writers: HashMap<LineId, (String, Writer)>,
+    waits: Vec<(Wait, oneshot::Sender<String>)>,
+}
+
+impl Shell {
+    fn new(options: &Options, inbox: mpsc::Receiver<LineEvent>) -> io::Result<Shell> {
+        Ok(Shell {
+            machine: Machine::new(options.settings),
+            inbox,
+            timer: tokio::runtime::Builder::new_current_thread().enable_time().build()?,
+            clock: options.clock,
+            epoch: Instant::now(),
+            writers: HashMap::new(),
+            waits: Vec::new(),
+        })
+    }
+
+    fn run(mut self) -> End {
+        loop {
+            let mut event = self.next_event();
+            while let Some(next) = event {
+                if let Some(end) = self.take(next) {
+                    return end;
+                }
+                event = self.inbox.try_recv().ok();
+            }
+            let until = match self.clock {
+                Clock::Real => self.now(),
+                Clock::Virtual if self.waits.is_empty() => 0,
+                Clock::Virtual => time_of_frame(self.machine.frame() + 1),
+            };
+            self.poll_waits();
+            self.step(None, until);
+            self.poll_waits();
+        }
+    }
+
+    /// The next event, or none when the next frame is due.
+    fn next_event(&mut self) -> Option<LineEvent> {
+        match self.clock {
+            Clock::Virtual if !self.waits.is_empty() => self.inbox.try_recv().ok(),
+            Clock::Virtual => self.timer.block_on(self.inbox.recv()).or(Some(LineEvent::Interrupted)),
+            Clock::Real => {
+                let due = Duration::from_micros(time_of_frame(self.machine.frame() + 1));
+                let deadline = tokio::time::Instant::from_std(self.epoch + due);
+                let inbox = &mut self.inbox;
+                self.timer.block_on(async { tokio::time::timeout_at(deadline, inbox.recv()).await.ok().flatten() })
+            }
+        }
+    }
+
+    /// Machine time by the wall clock. A machine that lags far behind loses time.
+    fn now(&mut self) -> Micros {
+        let elapsed = Micros::try_from(self.epoch.elapsed().as_micros()).unwrap_or(Micros::MAX);
+        let latest = time_of_frame(self.machine.frame()) + MAX_LAG;
+        if elapsed > latest {
+            self.epoch += Duration::from_micros(elapsed - latest);
+        }
+        elapsed.min(latest)
+    }
+
+    fn take(&mut self, event: LineEvent) -> Option<End> {
+        match event {
+            LineEvent::Attached { line, peer, writer } => {
+                tracing::info!("host line {peer} attached");
+                self.writers.insert(line, (peer, writer));
+                self.step(Some(Input::Attach(line)), 0);
+            }
+            LineEvent::Bytes(line, bytes) => self.step(Some(Input::Bytes(line, bytes)), 0),
+            LineEvent::Closed { line, error } => {
+                self.step(Some(Input::Detach(line)), 0);
+                if let Some((peer, _)) = self.writers.remove(&line) {
+                    match error {
+                        Some(error) => tracing::warn!("host line {peer} closed: {error}"),
+                        None => tracing::info!("host line {peer} closed"),
+                    }
+                }
+            }
+            LineEvent::Operator(order) => {
+                let outcome = match parse(&order.text) {
+                    Ok(parsed) => perform(&parsed, &mut self.machine),
+                    Err(error) => Outcome::Done(Err(error.to_string())),
+                };
+                // What an order made the machine say leaves before its reply.
+                self.step(None, 0);
+                match outcome {
+                    Outcome::Done(result) => drop(order.reply.send(reply(&result))),
+                    Outcome::Waiting(wait) => self.waits.push((wait, order.reply)),
+                    Outcome::Quit => {
+                        let _ = order.reply.send(reply(&Ok("quit".into())));
+                        return Some(End::Quit);
+                    }
+                }
+            }
+            LineEvent::OperatorGone => return Some(End::Quit),
+            LineEvent::Interrupted => return Some(End::Interrupted),
+        }
+        None
+    }
+
+    fn step(&mut self, input: Option<Input>, until: Micros) {
+        for output in self.machine.step(input, until) {
+            if let Some((peer, writer)) = self.writers.get(&output.line)
+                && !writer.send(output.bytes)
+            {
+                tracing::warn!("host line {peer} does not read; a message to it is lost");
+            }
+        }
+    }
+
+    fn poll_waits(&mut self) {
+        for (wait, reply_to) in std::mem::take(&mut self.waits) {
+            match wait.poll(&mut self.machine) {
+                Some(result) => drop(reply_to.send(reply(&result))),
+                None => self.waits.push((wait, reply_to)),
+            }
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Why a node does not take a message.
+
+use protocol::{Kind, command::Input};
+
+/// A message that a node did not take; the node is as before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NodeFault {
+    /// The input takes other kinds.
+    #[error("Bad message type at {input}")]
+    Kind {
+        /// Which input.
+        input: Input,
+        /// What came.
+        kind: Kind,
+    },
+    /// The node has no such input.
+    #[error("No such input {input}")]
+    NoSuchInput {
+        /// Which input.
+        input: Input,
+    },
+    /// An index past the end, a number that is not finite or too large, a string that is too long.
+    #[error("Value out of range at {input}")]
+    Range {
+        /// Which input.
+        input: Input,
+    },
+}
+
+impl NodeFault {
+    /// The number of the message: those of the same faults of functions.
+    pub fn number(&self) -> u16 {
+        match self {
+            NodeFault::Kind { .. } => 5,
+            NodeFault::Range { .. } => 6,
+            NodeFault::NoSuchInput { .. } => 9,
+        }
+    }
+
+    /// The text after the number.
+    ///
+    /// - `name`: the name of the node.
+    pub fn text(&self, name: &str) -> String {
+        match self {
+            NodeFault::Kind { input, kind } => format!("Bad message type at {input}{name}: {kind}"),
+            NodeFault::NoSuchInput { input } => format!("No such input {input} of {name}"),
+            NodeFault::Range { input } => format!("Value out of range at {input}{name}"),
+        }
+    }
+}

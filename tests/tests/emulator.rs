@@ -1,0 +1,157 @@
+//! The emulator as its own process, driven as `nc` and an operator would.
+
+use std::{fs, io::Write, net::TcpStream, time::Duration};
+use tests::{Host, Machine};
+
+const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
+
+const CUBE: &str = "
+INITIALIZE;
+CUBE := VECTOR_LIST ITEMIZED N = 16
+   P -1,-1,-1  L  1,-1,-1  L  1, 1,-1  L -1, 1,-1  L -1,-1,-1
+   L -1,-1, 1  L  1,-1, 1  L  1, 1, 1  L -1, 1, 1  L -1,-1, 1
+   P  1,-1,-1  L  1,-1, 1   P  1, 1,-1  L  1, 1, 1   P -1, 1,-1  L -1, 1, 1 ;
+WORLD := BEGIN_STRUCTURE
+   PER := FIELD_OF_VIEW 30 FRONT = 6 BACK = 14;
+          LOOK AT 0,0,0 FROM 0,0,-10;
+   RX  := ROTATE IN X 0;
+   MAT := XFORM MATRIX;
+          INSTANCE OF CUBE;
+END_STRUCTURE;
+DRX := F:DXROTATE; CONNECT DIALS<1>:<1>DRX; CONNECT DRX<1>:<1>WORLD.RX;
+SEND 0 TO <2>DRX; SEND 200 TO <3>DRX;
+PR := F:PRINT; CONNECT DIALS<1>:<1>PR; CONNECT PR<1>:<1>HOST_MESSAGE;
+DISPLAY WORLD;
+";
+
+#[test]
+fn typed_text_makes_a_cube_a_network_turns_it_and_the_message_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let mut machine = Machine::start(PS340, &[]);
+    let mut host = machine.attach();
+    host.send(CUBE);
+    host.synchronize();
+    machine.order("idle");
+    machine.order(&format!("picture vector {} 256", file("before.png")));
+    machine.order("dial 1 0.1");
+    assert_eq!(host.message().parse::<f64>().unwrap(), 0.1);
+    machine.order("idle");
+    machine.order(&format!("picture vector {} 256", file("after.png")));
+    let (before, after) = (image::open(file("before.png")).unwrap(), image::open(file("after.png")).unwrap());
+    let lit = |image: &image::DynamicImage| image.to_luma8().pixels().filter(|p| p.0[0] > 64).count();
+    assert!(lit(&before) > 500 && lit(&after) > 500, "{} and {} pixels glow", lit(&before), lit(&after));
+    assert_ne!(before, after);
+    // The closed form: a rotation by 20 degrees about X.
+    let shown = machine.order("show WORLD.RX");
+    let numbers: Vec<f64> = shown.split([' ', ',']).filter_map(|w| w.parse().ok()).collect();
+    let (s, c) = 20_f64.to_radians().sin_cos();
+    for (found, expected) in numbers.iter().zip([1.0, 0.0, 0.0, 0.0, c, s, 0.0, -s, c]) {
+        assert!((found - expected).abs() < 1e-12, "{shown}");
+    }
+    assert_eq!(numbers.len(), 9);
+    assert!(machine.order("log").is_empty(), "{}", machine.order("log"));
+}
+
+#[test]
+fn a_host_that_dies_leaves_the_machine_and_its_picture() {
+    let mut machine = Machine::start(PS340, &[]);
+    let mut host = machine.attach();
+    host.send(CUBE);
+    host.synchronize();
+    host.send("HALF := BEGIN_STRUCTURE ROTATE IN X");
+    drop(host);
+    let mut other = machine.attach();
+    other.synchronize();
+    assert!(machine.runs());
+    assert!(machine.order("show WORLD").contains("BEGIN_STRUCTURE"));
+    assert!(machine.reply("show HALF").starts_with("error"));
+    machine.order("quit");
+    assert_eq!(machine.end(), Some(0));
+    let errors = machine.errors();
+    assert!(errors.contains("attached") && errors.contains("closed"), "{errors}");
+}
+
+#[test]
+fn the_machine_ends_with_its_operator() {
+    let mut machine = Machine::start(PS340, &[]);
+    let mut host = machine.attach();
+    host.synchronize();
+    machine.close_operator();
+    assert_eq!(machine.end(), Some(0));
+}
+
+#[test]
+fn two_hosts_share_one_machine() {
+    let machine = Machine::start(PS340, &[]);
+    let (mut one, mut two) = (machine.attach(), machine.attach());
+    one.synchronize();
+    two.synchronize();
+    one.send("N := F:NOP; CONNECT N<1>:<1>HOST_MESSAGE;");
+    one.synchronize();
+    two.send("SEND 'FROM TWO' TO <1>N;");
+    while one.message() != "FROM TWO" {}
+    while two.message() != "FROM TWO" {}
+}
+
+#[test]
+fn a_unix_socket_is_a_line_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("line");
+    let address = format!("unix:{}", path.display());
+    let mut machine = Machine::start(PS340, &["--listen", &address]);
+    let mut stream = std::os::unix::net::UnixStream::connect(&path).unwrap();
+    stream.write_all(b"N := F:NOP;SEND 'OVER UNIX' TO <1>HOST_MESSAGE;").unwrap();
+    assert_eq!(machine.order("message"), "OVER UNIX");
+    machine.order("quit");
+    machine.end();
+    assert!(!path.exists(), "the socket's file is removed");
+}
+
+#[test]
+fn an_address_in_use_is_a_clear_error() {
+    let machine = Machine::start(PS340, &[]);
+    let address = format!("tcp:{}", machine.line);
+    let folder = tempfile::tempdir().unwrap();
+    let ended = tests::run(PS340, &["--listen", &address], &[], folder.path(), Duration::from_secs(30));
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.errors.contains(&address), "{}", ended.errors);
+}
+
+#[test]
+fn a_virtual_clock_passes_only_while_someone_waits() {
+    let mut machine = Machine::start(PS340, &["--clock", "virtual"]);
+    let frame = |machine: &mut Machine| machine.order("counters").split(' ').next().map(str::to_string);
+    assert_eq!(frame(&mut machine).as_deref(), Some("frame=0"));
+    machine.order("frames 1000000");
+    assert_eq!(frame(&mut machine).as_deref(), Some("frame=1000000"));
+}
+
+#[test]
+fn noise_on_the_line_is_survived() {
+    let machine = Machine::start(PS340, &[]);
+    let mut noisy = TcpStream::connect(&machine.line).unwrap();
+    let noise: Vec<u8> = (0..200_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    noisy.write_all(&noise).unwrap();
+    drop(noisy);
+    let mut host = Host::attach(&machine.line);
+    host.synchronize();
+}
+
+#[test]
+fn pictures_are_the_same_with_one_thread_and_with_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut pictures = Vec::new();
+    for threads in ["1", "2"] {
+        let mut machine = Machine::start(PS340, &["--threads", threads]);
+        let mut host = machine.attach();
+        host.send(CUBE);
+        host.synchronize();
+        for extension in ["png", "exr"] {
+            let file = folder.path().join(format!("{threads}.{extension}"));
+            machine.order(&format!("picture vector {} 300", file.display()));
+            pictures.push(fs::read(file).unwrap());
+        }
+    }
+    assert!(pictures[0] == pictures[2] && pictures[1] == pictures[3]);
+}
