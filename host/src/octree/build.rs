@@ -27,19 +27,19 @@ struct Reference {
 pub struct Leaves {
     /// Their codes, sorted.
     pub codes: Vec<LocationalCode>,
-    /// Bounds of the surface inside each.
-    pub bounds: Vec<Bounds>,
     /// Where the triangles of each end in `triangles`; the next one begins there.
     pub ends: Vec<usize>,
     /// Triangles, leaf by leaf, ascending in each.
     pub triangles: Vec<u32>,
+    /// Bounds of the part of each of these triangles in its leaf.
+    pub bounds: Vec<Bounds>,
 }
 
 impl Leaves {
     fn push(&mut self, code: LocationalCode, references: &[Reference]) {
         self.codes.push(code);
-        self.bounds.push(references.iter().fold(Bounds::EMPTY, |all, r| all.union(&r.bounds)));
         self.triangles.extend(references.iter().map(|r| r.triangle));
+        self.bounds.extend(references.iter().map(|r| r.bounds));
         self.ends.push(self.triangles.len());
     }
 
@@ -51,10 +51,10 @@ impl Leaves {
         self.triangles.extend(other.triangles);
     }
 
-    /// Triangles of one leaf.
-    pub fn triangles_of(&self, leaf: usize) -> &[u32] {
+    /// Where the triangles of one leaf lie in `triangles`.
+    pub fn range(&self, leaf: usize) -> std::ops::Range<usize> {
         let start = if leaf == 0 { 0 } else { self.ends[leaf - 1] };
-        &self.triangles[start..self.ends[leaf]]
+        start..self.ends[leaf]
     }
 }
 
@@ -176,5 +176,11 @@ fn saving(references: &[Reference], eighths: &[Vec<Reference>; 8]) -> f32 {
         return 0.0;
     }
     let divided: f32 = eighths.iter().filter(|e| !e.is_empty()).map(|e| area(e) / whole * packets(e)).sum();
-    packets(references) - VISIT_PRICE - divided
+    packets(references) - vp() - divided
+}
+
+fn vp() -> f32 {
+    static V: std::sync::LazyLock<f32> =
+        std::sync::LazyLock::new(|| std::env::var("VP").ok().and_then(|s| s.parse().ok()).unwrap_or(VISIT_PRICE));
+    *V
 }
