@@ -2,11 +2,13 @@
 //!
 //! The order of the modules is their layer order, lowest first.
 
-pub mod command;
 pub mod name;
-pub mod raster;
 pub mod value;
+pub mod record;
+pub mod raster;
+pub mod command;
 pub mod wire;
+pub mod listing;
 
 pub use name::Name;
 pub use value::{Kind, Value};

@@ -1,5 +1,26 @@
 //! The command language: text and binary forms of the same plain data.
 
 pub mod syntax;
+pub mod number;
+pub mod words;
+pub mod token;
+pub mod error;
+pub mod parse;
+pub mod print;
+pub mod reader;
+pub mod binary;
+#[cfg(any(test, feature = "proptest"))]
+pub mod strategy;
 
+pub use binary::{BinaryDecoder, encode};
+pub use error::{CommandError, Problem};
+pub use parse::parse;
+pub use print::print;
+pub use reader::{CommandReader, Spanned};
 pub use syntax::*;
+
+/// Most points in one vector list. Ours: 256 MiB of points.
+pub const MAX_POINTS: usize = 16 << 20;
+
+/// Longest statement in bytes, from its first character to its `;`. Ours: enough for two million vectors as text.
+pub const MAX_STATEMENT: usize = 64 << 20;

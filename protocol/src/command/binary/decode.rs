@@ -1,0 +1,391 @@
+//! Binary records to commands.
+
+use super::{FLAG_BLOCK, FLAG_ESTIMATE, Opcode, PART_POINTS};
+use crate::{
+    Kind, Name, Value,
+    command::{
+        MAX_POINTS,
+        syntax::{
+            Arc, Axis, Boundaries, Characters, Command, Destination, Initialize, Input, NamePattern, Object, Operate,
+            VectorClass, VectorList,
+        },
+    },
+    name::is_name_character,
+    record::{BinaryError, BinaryProblem, Reader, Witness},
+};
+use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
+
+/// Room that is made when a list begins, whatever length it announces, in vectors.
+const FIRST_ROOM: usize = 1 << 16;
+
+/// Vectors that the witness is told of in each part, one by one.
+const TOLD_POINTS: usize = 4;
+
+/// Makes commands out of the bodies of binary packets.
+///
+/// It remembers a vector list that was begun in one packet and goes on in the next.
+#[derive(Clone, Debug, Default)]
+pub struct BinaryDecoder {
+    open: Option<OpenList>,
+}
+
+#[derive(Clone, Debug)]
+struct OpenList {
+    name: Option<Name>,
+    announced: usize,
+    list: VectorList,
+}
+
+impl BinaryDecoder {
+    /// The commands in the body of a packet. An error ends the packet unless the next record can still be found.
+    ///
+    /// What the iterator did not reach when it is dropped is lost.
+    pub fn push<'a>(&'a mut self, body: &'a [u8]) -> Commands<'a> {
+        Commands { decoder: self, body, at: 0 }
+    }
+
+    /// Whether a vector list was begun and its end is still to come.
+    pub fn is_unfinished(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// Forgets an unfinished vector list.
+    pub fn reset(&mut self) {
+        self.open = None;
+    }
+
+    /// Reads one record of `body` from `at` on and moves `at` behind it; none if it completes no command. After an error
+    /// `at` is the end of the body, or where the next record can be read.
+    ///
+    /// # Errors
+    /// [`BinaryError`] with the offset in `body`.
+    pub fn record<W: Witness>(
+        &mut self,
+        body: &[u8],
+        at: &mut usize,
+        witness: &mut W,
+    ) -> Result<Option<Command>, BinaryError> {
+        let mut reader = Reader::new(body, *at, witness);
+        *at = body.len();
+        let code = reader.take(1, "opcode")?[0];
+        let Some(opcode) = Opcode::from_code(code) else {
+            return Err(reader.error(1, "opcode", BinaryProblem::Unknown(code.into())));
+        };
+        reader.tell(1, "opcode", format_args!("{}", opcode.word()));
+        match opcode {
+            Opcode::VectorsBegin => {
+                let begun = begin_list(&mut reader)?;
+                *at = reader.at();
+                match self.open.replace(begun) {
+                    Some(_) => Err(BinaryError { offset: *at, field: "opcode", problem: BinaryProblem::StillOpen }),
+                    None => Ok(None),
+                }
+            }
+            Opcode::VectorsPart => match &mut self.open {
+                Some(open) => {
+                    let result = part(open, &mut reader);
+                    if result.is_err() {
+                        self.open = None;
+                    }
+                    result?;
+                    *at = reader.at();
+                    Ok(None)
+                }
+                // Without the list its class is not known, and so neither is the length of the part.
+                None => Err(reader.error(1, "opcode", BinaryProblem::NotOpen)),
+            },
+            Opcode::VectorsEnd => {
+                *at = reader.at();
+                let open = self.open.take().ok_or_else(|| reader.error(1, "opcode", BinaryProblem::NotOpen))?;
+                let (announced, received) = (open.announced, open.list.points.len());
+                if announced != received {
+                    return Err(reader.error(1, "opcode", BinaryProblem::Count { announced, received }));
+                }
+                Ok(Some(Command::Define { name: open.name, object: Object::VectorList(open.list) }))
+            }
+            // A list that is still open is given up; the record itself is good and is read again.
+            _ if self.open.take().is_some() => {
+                *at = reader.at() - 1;
+                Err(reader.error(1, "opcode", BinaryProblem::StillOpen))
+            }
+            opcode => {
+                let command = single(opcode, &mut reader)?;
+                *at = reader.at();
+                Ok(Some(command))
+            }
+        }
+    }
+}
+
+/// The commands in the body of one packet.
+#[derive(Debug)]
+pub struct Commands<'a> {
+    decoder: &'a mut BinaryDecoder,
+    body: &'a [u8],
+    at: usize,
+}
+
+impl Iterator for Commands<'_> {
+    type Item = Result<Command, BinaryError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while self.at < self.body.len() {
+            let result = self.decoder.record(self.body, &mut self.at, &mut ());
+            if let Some(item) = result.transpose() {
+                return Some(item);
+            }
+        }
+        None
+    }
+}
+
+fn begin_list<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<OpenList, BinaryError> {
+    let unknown = |code: u8| BinaryProblem::Unknown(code.into());
+    let name = reader.optional_name("name")?;
+    let flags = reader.u8("flags")?;
+    if flags & !(FLAG_BLOCK | FLAG_ESTIMATE) != 0 {
+        return Err(reader.error(1, "flags", unknown(flags)));
+    }
+    let code = reader.u8("class")?;
+    let class = VectorClass::from_code(code).ok_or_else(|| reader.error(1, "class", unknown(code)))?;
+    let dimension = reader.u8("dimension")?;
+    if !(2..=3).contains(&dimension) {
+        return Err(reader.error(1, "dimension", unknown(dimension)));
+    }
+    let estimate = reader.u32("estimate")?;
+    let announced = reader.u32("count")? as usize;
+    if announced > MAX_POINTS {
+        let problem = BinaryProblem::TooMany { found: announced, limit: MAX_POINTS };
+        return Err(reader.error(4, "count", problem));
+    }
+    let list = VectorList {
+        block_normalized: flags & FLAG_BLOCK != 0,
+        class,
+        dimension,
+        estimate: (flags & FLAG_ESTIMATE != 0).then_some(estimate),
+        points: Vec::with_capacity(announced.min(FIRST_ROOM)),
+        lines: Vec::new(),
+    };
+    Ok(OpenList { name, announced, list })
+}
+
+/// Appends a part to an open list.
+fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Result<(), BinaryError> {
+    let count = usize::from(reader.u16("count")?);
+    let list = &mut open.list;
+    let limit = PART_POINTS.min(open.announced - list.points.len());
+    if count > limit {
+        return Err(reader.error(2, "count", BinaryProblem::TooMany { found: count, limit }));
+    }
+    let flags: &[u8] = if list.class == VectorClass::Itemized {
+        let flags = reader.take(count.div_ceil(8), "line flags")?;
+        reader.tell(flags.len(), "line flags", format_args!("bit 0 of the first byte for the first vector"));
+        flags
+    } else {
+        &[]
+    };
+    let bytes = reader.take(count * POINT, "vectors")?;
+    let first = list.points.len();
+    list.points.extend(bytes.chunks_exact(POINT).map(|chunk| {
+        let component = |i: usize| f32::from_le_bytes([chunk[i], chunk[i + 1], chunk[i + 2], chunk[i + 3]]);
+        [component(0), component(4), component(8), component(12)]
+    }));
+    let points = &mut list.points[first..];
+    if list.dimension == 2 {
+        points.iter_mut().for_each(|point| point[2] = 0.0);
+    }
+    if !all_finite(points) {
+        let at = points.iter().position(|point| !point.iter().all(|c| c.is_finite())).unwrap_or(0);
+        return Err(reader.error((count - at) * POINT, "vectors", BinaryProblem::NotFinite));
+    }
+    let told = count.min(TOLD_POINTS);
+    let place = reader.at() - bytes.len();
+    for (index, [x, y, z, i]) in points[..told].iter().enumerate() {
+        reader.tell_at(place + index * POINT, POINT, "vector", format_args!("{x}, {y}, {z}, intensity {i}"));
+    }
+    if count > told {
+        let rest = (count - told) * POINT;
+        reader.tell(rest, "vectors", format_args!("{} more", count - told));
+    }
+    let lines = flags.iter().flat_map(|flags| (0..8).map(move |bit| flags >> bit & 1 != 0));
+    list.lines.extend(lines.take(if list.class == VectorClass::Itemized { count } else { 0 }));
+    Ok(())
+}
+
+/// Bytes of a vector: four single-precision reals.
+const POINT: usize = 16;
+
+/// Whether no component is infinite or not a number; without a branch, so that it runs on whole vectors.
+fn all_finite(points: &[[f32; 4]]) -> bool {
+    const EXPONENT: u32 = 0x7f80_0000;
+    points.as_flattened().iter().fold(true, |all, component| all & (component.to_bits() & EXPONENT != EXPONENT))
+}
+
+/// A command that is one record.
+fn single<W: Witness>(opcode: Opcode, reader: &mut Reader<'_, '_, W>) -> Result<Command, BinaryError> {
+    Ok(match opcode {
+        Opcode::EndStructure => Command::EndStructure,
+        Opcode::Display => Command::Display(reader.name("name")?),
+        Opcode::Remove => Command::Remove(reader.name("name")?),
+        Opcode::Include => Command::Include { name: reader.name("name")?, into: reader.name("into")? },
+        Opcode::RemoveFrom => Command::RemoveFrom { name: reader.name("name")?, from: reader.name("from")? },
+        Opcode::Forget => Command::Forget(reader.name("name")?),
+        Opcode::Delete => {
+            let count = reader.u16("count")?;
+            let patterns = (0..count).map(|_| pattern(reader)).collect::<Result<_, _>>()?;
+            Command::Delete(patterns)
+        }
+        Opcode::Initialize => Command::Initialize(match reader.u8("what")? {
+            0 => Initialize::All,
+            1 => Initialize::Connections,
+            2 => Initialize::Displays,
+            3 => Initialize::Names,
+            other => return Err(reader.error(1, "what", BinaryProblem::Unknown(other.into()))),
+        }),
+        Opcode::Connect => {
+            let source = reader.name("source")?;
+            let output = reader.u16("output")?;
+            if output == 0 {
+                return Err(reader.error(2, "output", BinaryProblem::Unknown(0)));
+            }
+            Command::Connect(Arc { source, output, destination: destination(reader)? })
+        }
+        Opcode::Disconnect => {
+            let source = reader.name("source")?;
+            let output = Some(reader.u16("output, 0 for all")?).filter(|output| *output != 0);
+            let destination = if reader.boolean("destination given")? { Some(destination(reader)?) } else { None };
+            Command::Disconnect { source, output, destination }
+        }
+        Opcode::Send => {
+            let destination = destination(reader)?;
+            Command::Send { value: value(reader)?, destination }
+        }
+        opcode => {
+            let name = reader.optional_name("name")?;
+            Command::Define { name, object: object(opcode, reader)? }
+        }
+    })
+}
+
+fn pattern<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<NamePattern, BinaryError> {
+    if !reader.boolean("prefix")? {
+        return Ok(NamePattern::Name(reader.name("name")?));
+    }
+    let prefix = reader.string("prefix")?;
+    match prefix.iter().find(|b| !is_name_character(**b)) {
+        Some(bad) => Err(reader.error(prefix.len(), "prefix", BinaryProblem::Unknown((*bad).into()))),
+        None => Ok(NamePattern::Prefix(String::from_utf8_lossy(prefix).to_ascii_uppercase())),
+    }
+}
+
+fn destination<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Destination, BinaryError> {
+    let code = reader.i64("input")?;
+    let input = Input::from_code(code).ok_or_else(|| reader.error(8, "input", BinaryProblem::Unknown(code)))?;
+    Ok(Destination { input, name: reader.name("name")? })
+}
+
+fn matrix4x3<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<DMat4, BinaryError> {
+    let rows: [f64; 12] = reader.reals("row by row")?;
+    let row = |i: usize, w: f64| DVec4::new(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2], w);
+    Ok(DMat4::from_cols(row(0, 0.0), row(1, 0.0), row(2, 0.0), row(3, 1.0)))
+}
+
+fn value<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Value, BinaryError> {
+    let code = reader.take(1, "kind")?[0];
+    let Some(&kind) = Kind::ALL.get(usize::from(code)) else {
+        return Err(reader.error(1, "kind", BinaryProblem::Unknown(code.into())));
+    };
+    reader.tell(1, "kind", format_args!("{kind}"));
+    Ok(match kind {
+        Kind::Boolean => Value::Boolean(reader.boolean("value")?),
+        Kind::Integer => Value::Integer(reader.i32("value")?),
+        Kind::Real => Value::Real(reader.f64("value")?),
+        Kind::String => Value::string(reader.string("value")?),
+        Kind::Vector2 => Value::Vector2(DVec2::from_array(reader.reals("component")?)),
+        Kind::Vector3 => Value::Vector3(DVec3::from_array(reader.reals("component")?)),
+        Kind::Vector4 => Value::Vector4(DVec4::from_array(reader.reals("component")?)),
+        Kind::Matrix2 => Value::Matrix2(Box::new(DMat2::from_cols_array(&reader.reals("row by row")?))),
+        Kind::Matrix3 => Value::Matrix3(Box::new(DMat3::from_cols_array(&reader.reals("row by row")?))),
+        Kind::Matrix4x3 => Value::Matrix4x3(Box::new(matrix4x3(reader)?)),
+        Kind::Matrix4 => Value::Matrix4(Box::new(DMat4::from_cols_array(&reader.reals("row by row")?))),
+        Kind::Transform => Value::Transform(Box::new(DMat4::from_cols_array(&reader.reals("row by row")?))),
+    })
+}
+
+/// The fields after the name of a definition.
+fn object<W: Witness>(opcode: Opcode, reader: &mut Reader<'_, '_, W>) -> Result<Object, BinaryError> {
+    Ok(match opcode {
+        Opcode::Nil => Object::Nil,
+        Opcode::BeginStructure => Object::BeginStructure,
+        Opcode::Instance => {
+            let count = reader.u16("count")?;
+            Object::Instance((0..count).map(|_| reader.name("descendant")).collect::<Result<_, _>>()?)
+        }
+        Opcode::Characters => Object::Characters(Characters {
+            position: DVec3::from_array(reader.reals("position")?),
+            step: DVec2::from_array(reader.reals("step")?),
+            text: reader.string("text")?.into(),
+        }),
+        Opcode::Function => {
+            let function = reader.name("type")?;
+            let given = reader.boolean("size given")?;
+            let size = reader.u16("size")?;
+            Object::Function { function, size: given.then_some(size) }
+        }
+        opcode => {
+            let applied_to = reader.optional_name("applied to")?;
+            Object::Operate { operate: operate(opcode, reader)?, applied_to }
+        }
+    })
+}
+
+fn operate<W: Witness>(opcode: Opcode, reader: &mut Reader<'_, '_, W>) -> Result<Operate, BinaryError> {
+    Ok(match opcode {
+        Opcode::Rotate => {
+            let axis = match reader.u8("axis")? {
+                0 => Axis::X,
+                1 => Axis::Y,
+                2 => Axis::Z,
+                other => return Err(reader.error(1, "axis", BinaryProblem::Unknown(other.into()))),
+            };
+            Operate::Rotate { axis, angle: reader.f64("angle")? }
+        }
+        Opcode::Scale => Operate::Scale(DVec3::from_array(reader.reals("factor")?)),
+        Opcode::Translate => Operate::Translate(DVec3::from_array(reader.reals("component")?)),
+        Opcode::Matrix2 => Operate::Matrix2(DMat2::from_cols_array(&reader.reals("row by row")?)),
+        Opcode::Matrix3 => Operate::Matrix3(DMat3::from_cols_array(&reader.reals("row by row")?)),
+        Opcode::Matrix4x3 => Operate::Matrix4x3(matrix4x3(reader)?),
+        Opcode::Matrix4 => Operate::Matrix4(DMat4::from_cols_array(&reader.reals("row by row")?)),
+        Opcode::Look => Operate::Look {
+            at: DVec3::from_array(reader.reals("at")?),
+            from: DVec3::from_array(reader.reals("from")?),
+            up: DVec3::from_array(reader.reals("up")?),
+        },
+        Opcode::Window => {
+            let (x, y) = (reader.reals("x")?, reader.reals("y")?);
+            Operate::Window { x, y, boundaries: boundaries(reader)? }
+        }
+        Opcode::FieldOfView => {
+            let angle = reader.f64("angle")?;
+            Operate::FieldOfView { angle, boundaries: boundaries(reader)? }
+        }
+        Opcode::Viewport => {
+            let (horizontal, vertical) = (reader.reals("horizontal")?, reader.reals("vertical")?);
+            let given = reader.boolean("intensity given")?;
+            let intensity = if given { Some(reader.reals("intensity")?) } else { None };
+            Operate::Viewport { horizontal, vertical, intensity }
+        }
+        Opcode::SetColor => Operate::SetColor { hue: reader.f64("hue")?, saturation: reader.f64("saturation")? },
+        Opcode::SetIntensity => Operate::SetIntensity { on: reader.boolean("on")?, range: reader.reals("range")? },
+        Opcode::SetDepthClipping => Operate::SetDepthClipping(reader.boolean("on")?),
+        Opcode::XformMatrix => Operate::XformMatrix,
+        other => return Err(reader.error(1, "opcode", BinaryProblem::Unknown(other.code().into()))),
+    })
+}
+
+fn boundaries<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Option<Boundaries>, BinaryError> {
+    if !reader.boolean("boundaries given")? {
+        return Ok(None);
+    }
+    Ok(Some(Boundaries { front: reader.f64("front")?, back: reader.f64("back")? }))
+}

@@ -1,0 +1,140 @@
+//! What is wrong with a command text, and where.
+
+use super::{MAX_POINTS, MAX_STATEMENT};
+use crate::{name::NameError, value::MAX_STRING};
+use std::{fmt, ops::Range};
+
+/// Longest piece of the offending text that an error quotes, in bytes.
+const QUOTED: usize = 40;
+
+/// What can be wrong with a command text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Problem {
+    /// Something else was expected here.
+    #[error("unexpected")]
+    Unexpected,
+    /// A byte that begins nothing.
+    #[error("this character has no meaning")]
+    BadCharacter,
+    /// A number such as `1.2.3` or a sign without digits.
+    #[error("this is not a number")]
+    BadNumber,
+    /// A number that is too large or too small for its place.
+    #[error("the number is out of range")]
+    OutOfRange,
+    /// A text without its second quote.
+    #[error("the text has no closing quote")]
+    OpenString,
+    /// A comment without its brace.
+    #[error("the comment has no closing brace")]
+    OpenComment,
+    /// A text that is too long.
+    #[error("the text is longer than {MAX_STRING} characters")]
+    LongString,
+    /// A name that is none.
+    #[error(transparent)]
+    Name(#[from] NameError),
+    /// Numbers without commas or marks do not say where the first vector ends.
+    #[error("put commas between the components, so that it is clear where the first vector ends")]
+    UnclearVector,
+    /// Too many vectors.
+    #[error("a list holds at most {MAX_POINTS} vectors")]
+    TooManyPoints,
+    /// A statement without an end in sight.
+    #[error("the statement is longer than {MAX_STATEMENT} bytes")]
+    LongStatement,
+}
+
+/// A fault before its place and text are looked up; small, so that it travels cheaply through the parser.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Fault {
+    pub(super) span: Range<usize>,
+    pub(super) problem: Problem,
+    pub(super) expected: &'static [&'static str],
+}
+
+/// An error in a command text.
+///
+/// It displays as `line:column: problem, expected ..., found ...`; line and column count from 1 at the first character
+/// of the statement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CommandError {
+    /// The offending bytes, as offsets into the statement.
+    pub span: Range<usize>,
+    /// Line within the statement, from 1.
+    pub line: usize,
+    /// Column in bytes, from 1.
+    pub column: usize,
+    /// What could have stood there; may be empty.
+    pub expected: &'static [&'static str],
+    /// The offending text, at most 40 bytes of it; empty at the end of the statement.
+    pub found: String,
+    /// What is wrong.
+    pub problem: Problem,
+}
+
+impl CommandError {
+    /// Looks up the place of a fault in the statement `text`.
+    pub(super) fn new(text: &[u8], fault: Fault) -> CommandError {
+        let start = fault.span.start.min(text.len());
+        let end = fault.span.end.clamp(start, text.len());
+        let before = &text[..start];
+        let line_start = before.iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
+        let quoted = &text[start..end.min(start + QUOTED)];
+        CommandError {
+            span: start..end,
+            line: 1 + before.iter().filter(|&&b| b == b'\n').count(),
+            column: 1 + start - line_start,
+            expected: fault.expected,
+            found: quoted.escape_ascii().to_string(),
+            problem: fault.problem,
+        }
+    }
+
+    /// The message without the place.
+    pub fn message(&self) -> String {
+        let mut message = String::new();
+        if self.problem != Problem::Unexpected {
+            message = format!("{}, ", self.problem);
+        }
+        match self.expected {
+            [] => {}
+            [one] => message += &format!("expected {one}, "),
+            [first @ .., last] => message += &format!("expected {} or {last}, ", first.join(", ")),
+        }
+        if self.found.is_empty() {
+            message += "found the end";
+        } else {
+            message += &format!("found `{}`", self.found);
+        }
+        message
+    }
+}
+
+impl fmt::Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.line, self.column, self.message())
+    }
+}
+
+impl std::error::Error for CommandError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_message_names_place_expectation_and_text() {
+        let text = b"A := ROTATE\n  IN Q 3";
+        let fault = Fault { span: 17..18, problem: Problem::Unexpected, expected: &["X", "Y", "Z"] };
+        let error = CommandError::new(text, fault);
+        assert_eq!(error.to_string(), "2:6: expected X, Y or Z, found `Q`");
+    }
+
+    #[test]
+    fn a_fault_behind_the_text_is_at_its_end() {
+        let error = CommandError::new(b"AB", Fault { span: 90..91, problem: Problem::BadNumber, expected: &[] });
+        assert_eq!(error.span, 2..2);
+        assert_eq!(error.to_string(), "1:3: this is not a number, found the end");
+    }
+}

@@ -1,0 +1,81 @@
+//! The forms of a value in SEND.
+
+use super::Parser;
+use crate::{
+    Value,
+    command::{
+        error::{Fault, Problem},
+        token::{TokenKind, unquoted},
+        words::{self, Word},
+    },
+    value::MAX_STRING,
+};
+use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
+
+impl Parser<'_> {
+    pub(super) fn value(&mut self) -> Result<Value, Fault> {
+        const EXPECTED: &[&str] =
+            &["a number", "a text", "TRUE", "FALSE", "FIX(i)", "CHAR(n)", "V3D(x,y,z)", "the like"];
+        match self.token.kind {
+            TokenKind::Number(_) => return Ok(Value::Real(self.real()?)),
+            TokenKind::String => return Ok(Value::String(self.string()?)),
+            _ => {}
+        }
+        let word = self.accept_one_of(words::VALUES).ok_or_else(|| self.fail(EXPECTED))?;
+        match word {
+            Word::True => return Ok(Value::Boolean(true)),
+            Word::False => return Ok(Value::Boolean(false)),
+            _ => {}
+        }
+        self.expect(TokenKind::Open, &["`(`"])?;
+        let value = match word {
+            Word::Fix => Value::Integer(self.integer(i32::MIN.into()..i64::from(i32::MAX) + 1)? as i32),
+            Word::Char => Value::string([self.integer(0..256)? as u8]),
+            Word::Vector2Value => Value::Vector2(DVec2::from_array(self.reals()?)),
+            Word::Vector3Value => Value::Vector3(DVec3::from_array(self.reals()?)),
+            Word::Vector4Value => Value::Vector4(DVec4::from_array(self.reals()?)),
+            Word::Matrix2Value => Value::Matrix2(Box::new(self.matrix2()?)),
+            Word::Matrix3Value => Value::Matrix3(Box::new(self.matrix3()?)),
+            Word::Matrix4x3Value => Value::Matrix4x3(Box::new(self.matrix4x3()?)),
+            Word::Matrix4Value => Value::Matrix4(Box::new(self.matrix4()?)),
+            _ => Value::Transform(Box::new(self.matrix4()?)),
+        };
+        self.expect(TokenKind::Close, &["`)`"])?;
+        Ok(value)
+    }
+
+    /// A text in quotes.
+    pub(super) fn string(&mut self) -> Result<Box<[u8]>, Fault> {
+        if self.token.kind != TokenKind::String {
+            return Err(self.fail(&["a text in quotes"]));
+        }
+        let token = self.token;
+        let text = unquoted(self.text(token));
+        if text.len() > MAX_STRING {
+            return Err(Fault { span: token.span(), problem: Problem::LongString, expected: &[] });
+        }
+        self.advance();
+        Ok(text)
+    }
+
+    // The numbers come row by row, and a row of the machine is a column of glam.
+
+    pub(super) fn matrix2(&mut self) -> Result<DMat2, Fault> {
+        Ok(DMat2::from_cols_array(&self.reals()?))
+    }
+
+    pub(super) fn matrix3(&mut self) -> Result<DMat3, Fault> {
+        Ok(DMat3::from_cols_array(&self.reals()?))
+    }
+
+    /// Four rows of three, completed with 0, 0, 0, 1.
+    pub(super) fn matrix4x3(&mut self) -> Result<DMat4, Fault> {
+        let rows: [f64; 12] = self.reals()?;
+        let row = |i: usize, w: f64| DVec4::new(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2], w);
+        Ok(DMat4::from_cols(row(0, 0.0), row(1, 0.0), row(2, 0.0), row(3, 1.0)))
+    }
+
+    pub(super) fn matrix4(&mut self) -> Result<DMat4, Fault> {
+        Ok(DMat4::from_cols_array(&self.reals()?))
+    }
+}

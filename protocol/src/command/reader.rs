@@ -1,0 +1,323 @@
+//! The interpreter's side of a text line: commands out of a stream that may be cut at any byte.
+
+use super::{
+    MAX_STATEMENT,
+    error::{CommandError, Fault, Problem},
+    parse::next_command,
+    syntax::Command,
+    token::blanks,
+};
+use std::ops::Range;
+
+/// Room that the buffer keeps after a long statement, in bytes.
+const KEPT_ROOM: usize = 1 << 20;
+
+/// A command and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spanned<T> {
+    /// The command.
+    pub command: T,
+    /// Its bytes within the statement, without the `;`.
+    pub span: Range<usize>,
+}
+
+/// Where in the language a byte of the stream stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Code,
+    Text,
+    Comment,
+    /// Behind a statement that was too long; all up to the next `;` is dropped.
+    Dropped,
+}
+
+/// Makes commands out of a stream of text.
+///
+/// [`push`](Self::push) takes the bytes as they come, and the iterator gives the commands of all statements that are
+/// complete; it gives none when the next `;` is still to come, and goes on after more was pushed. After an error it
+/// resumes behind the next `;`.
+///
+/// ```
+/// use protocol::command::CommandReader;
+/// let mut reader = CommandReader::default();
+/// reader.push(b"DISPLAY A; DISP 3; REM");
+/// assert!(reader.next().unwrap().is_ok());
+/// assert!(reader.next().unwrap().is_err());
+/// assert!(reader.next().is_none() && reader.is_unfinished());
+/// reader.push(b"OVE A;");
+/// assert!(reader.next().unwrap().is_ok());
+/// ```
+#[derive(Clone, Debug)]
+pub struct CommandReader {
+    buffer: Vec<u8>,
+    /// Where the current statement begins.
+    start: usize,
+    /// How far its end was looked for.
+    scanned: usize,
+    place: Place,
+    /// Where it ends (its `;`), once that was found, and how far it was parsed.
+    complete: Option<usize>,
+    parsed: usize,
+    last: Range<usize>,
+}
+
+impl Default for CommandReader {
+    fn default() -> Self {
+        CommandReader {
+            buffer: Vec::new(),
+            start: 0,
+            scanned: 0,
+            place: Place::Code,
+            complete: None,
+            parsed: 0,
+            last: 0..0,
+        }
+    }
+}
+
+impl CommandReader {
+    /// Takes more of the stream. Take the commands out before pushing more, or the bytes pile up.
+    pub fn push(&mut self, bytes: &[u8]) {
+        if self.start == self.buffer.len() || self.start > self.buffer.len() / 2 {
+            self.buffer.drain(..self.start);
+            self.scanned -= self.start;
+            self.complete = self.complete.map(|end| end - self.start);
+            self.start = 0;
+            self.last = 0..0;
+            if self.buffer.len() < KEPT_ROOM && self.buffer.capacity() > 2 * KEPT_ROOM {
+                self.buffer.shrink_to(KEPT_ROOM);
+            }
+        }
+        self.buffer.extend_from_slice(bytes);
+    }
+
+    /// Whether a statement has begun and its `;` is still to come.
+    pub fn is_unfinished(&self) -> bool {
+        let rest = &self.buffer[self.start..];
+        self.place == Place::Dropped || blanks(rest, 0).map_or(true, |at| at < rest.len())
+    }
+
+    /// Forgets an unfinished statement and all that was not taken out.
+    pub fn reset(&mut self) {
+        *self = CommandReader::default();
+    }
+
+    /// The statement that the last command or error belongs to, without its `;`; spans are offsets into it. Empty after
+    /// the next push.
+    pub fn statement(&self) -> &[u8] {
+        self.buffer.get(self.last.clone()).unwrap_or(&[])
+    }
+
+    /// Looks for the `;` of the current statement. False if it is not there yet.
+    fn find_end(&mut self) -> bool {
+        if self.scanned == self.start && self.place == Place::Code {
+            let blank = self.buffer[self.start..].iter().take_while(|b| **b <= b' ').count();
+            self.start += blank;
+            self.scanned = self.start;
+        }
+        loop {
+            let rest = &self.buffer[self.scanned..];
+            let found = match self.place {
+                Place::Code => find(rest, [b';', b'\'', b'{']),
+                Place::Text => find(rest, [b'\''; 3]),
+                Place::Comment => find(rest, [b'}'; 3]),
+                Place::Dropped => find(rest, [b';'; 3]),
+            };
+            let Some(offset) = found else {
+                self.scanned = self.buffer.len();
+                if self.place == Place::Dropped {
+                    self.start = self.scanned;
+                }
+                return false;
+            };
+            let at = self.scanned + offset;
+            self.scanned = at + 1;
+            self.place = match (self.place, self.buffer[at]) {
+                (Place::Code, b'\'') => Place::Text,
+                (Place::Code, b'{') => Place::Comment,
+                (Place::Code, _) => {
+                    self.complete = Some(at);
+                    self.parsed = 0;
+                    return true;
+                }
+                (Place::Dropped, _) => {
+                    self.start = self.scanned;
+                    Place::Code
+                }
+                _ => Place::Code,
+            };
+        }
+    }
+
+    /// Gives up a statement whose end is too far away.
+    fn drop_long_statement(&mut self) -> CommandError {
+        let fault = Fault { span: MAX_STATEMENT..MAX_STATEMENT + 1, problem: Problem::LongStatement, expected: &[] };
+        let error = CommandError::new(&self.buffer[self.start..], fault);
+        self.last = 0..0;
+        self.start += MAX_STATEMENT;
+        self.scanned = self.start;
+        self.place = Place::Dropped;
+        self.complete = None;
+        error
+    }
+}
+
+impl Iterator for CommandReader {
+    type Item = Result<Spanned<Command>, CommandError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if self.complete.is_none() {
+                let ended = self.find_end();
+                if self.scanned - self.start > MAX_STATEMENT {
+                    return Some(Err(self.drop_long_statement()));
+                }
+                if !ended {
+                    return None;
+                }
+            }
+            let end = self.complete?;
+            let text = &self.buffer[self.start..end];
+            let step = next_command(text, self.parsed);
+            self.last = self.start..end;
+            let result = match step {
+                Some(Ok(found)) => {
+                    self.parsed = found.next;
+                    return Some(Ok(Spanned { command: found.command, span: found.span }));
+                }
+                Some(Err(fault)) => Some(Err(CommandError::new(text, fault))),
+                None => None,
+            };
+            self.start = end + 1;
+            self.complete = None;
+            if result.is_some() {
+                return result;
+            }
+        }
+    }
+}
+
+/// The offset of the first of three bytes.
+///
+/// Blocks without any of them are passed over in one vector comparison each.
+fn find(bytes: &[u8], wanted: [u8; 3]) -> Option<usize> {
+    const BLOCK: usize = 32;
+    let is_wanted = |b: u8| (b == wanted[0]) | (b == wanted[1]) | (b == wanted[2]);
+    let clear = bytes.chunks_exact(BLOCK).take_while(|block| !block.iter().fold(false, |any, &b| any | is_wanted(b)));
+    let skipped = clear.count() * BLOCK;
+    bytes[skipped..].iter().position(|&b| is_wanted(b)).map(|offset| skipped + offset)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{print, strategy::commands};
+    use proptest::prelude::*;
+
+    fn read(pieces: &[&[u8]]) -> Vec<Result<Spanned<Command>, CommandError>> {
+        let mut reader = CommandReader::default();
+        let mut all = Vec::new();
+        for piece in pieces {
+            reader.push(piece);
+            all.extend(&mut reader);
+        }
+        all
+    }
+
+    #[test]
+    fn reading_resumes_behind_the_next_semicolon() {
+        let all = read(&[b"DISPLAY A; { ; } DISPLAY 'x;y' B; REMOVE A; ;; FORGET A;"]);
+        assert_eq!(all.len(), 4);
+        assert_eq!(all.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, false, true, true]);
+        let error = all[1].as_ref().unwrap_err();
+        assert_eq!(error.to_string(), "1:15: expected a name, found `\\'x;y\\'`");
+    }
+
+    #[test]
+    fn a_structure_gives_its_begin_and_its_first_member_from_one_statement() {
+        let all = read(&[b"A := BEGIN_STRUCTURE B := BEGIN_S R:=ROT X 3; END_S; WINDOW Q; END_STRUCTURE;"]);
+        let kinds: Vec<bool> = all.iter().map(Result::is_ok).collect();
+        assert_eq!(kinds, [true, true, true, true, false, true]);
+        assert_eq!(all[1].as_ref().unwrap().span, 21..33);
+    }
+
+    #[test]
+    fn a_statement_without_end_is_dropped_at_the_limit() {
+        let mut reader = CommandReader::default();
+        let block = vec![b'A'; 1 << 20];
+        let mut errors = 0;
+        for _ in 0..MAX_STATEMENT / block.len() + 3 {
+            reader.push(&block);
+            errors += reader.by_ref().map(|item| assert_eq!(item.unwrap_err().problem, Problem::LongStatement)).count();
+        }
+        assert_eq!(errors, 1);
+        assert!(reader.is_unfinished() && reader.buffer.len() < 3 << 20);
+        reader.push(b"; DISPLAY A;");
+        assert!(reader.next().unwrap().is_ok());
+        assert!(reader.next().is_none() && !reader.is_unfinished());
+    }
+
+    #[test]
+    fn unfinished_means_a_token_without_semicolon() {
+        let mut reader = CommandReader::default();
+        for (text, unfinished) in
+            [(" \n", false), ("{ a comment }", false), ("DISP A", true), (";", false), ("{", true)]
+        {
+            reader.push(text.as_bytes());
+            assert_eq!(reader.by_ref().filter(Result::is_err).count(), 0);
+            assert_eq!(reader.is_unfinished(), unfinished, "{text}");
+        }
+        reader.reset();
+        assert!(!reader.is_unfinished());
+    }
+
+    #[test]
+    fn blocks_and_remainders_are_searched() {
+        for at in 0..100 {
+            let mut bytes = vec![b'x'; 100];
+            bytes[at] = b';';
+            assert_eq!(find(&bytes, *b";'{"), Some(at));
+        }
+        assert_eq!(find(&[b'x'; 99], *b";'{"), None);
+    }
+
+    proptest! {
+        #[test]
+        fn any_split_gives_the_same_commands(
+            commands in prop::collection::vec(commands(), 1..8), cuts in prop::collection::vec(any::<prop::sample::Index>(), 0..9)
+        ) {
+            let mut text = Vec::new();
+            for command in &commands {
+                print(command, &mut text);
+                text.push(b'\n');
+            }
+            text.extend_from_slice(b"FORGET 3;");
+            let mut cuts: Vec<usize> = cuts.iter().map(|cut| cut.index(text.len())).chain([0, text.len()]).collect();
+            cuts.sort_unstable();
+            let pieces: Vec<&[u8]> = cuts.windows(2).map(|cut| &text[cut[0]..cut[1]]).collect();
+            let all = read(&pieces);
+            prop_assert_eq!(&all, &read(&[&text]));
+            let good: Vec<Command> = all.into_iter().filter_map(Result::ok).map(|spanned| spanned.command).collect();
+            // A structure that is begun just before the bad statement shares its fate only in its members.
+            prop_assert_eq!(good, commands);
+        }
+
+        #[test]
+        fn any_bytes_give_commands_or_errors_with_spans_inside(
+            text in prop::collection::vec(prop_oneof![any::<u8>(), prop::sample::select(b"A1:=;'{}<>(),.-*PL ".to_vec())], 0..300)
+        ) {
+            let mut reader = CommandReader::default();
+            reader.push(&text);
+            while let Some(item) = reader.next() {
+                let span = match item {
+                    Ok(spanned) => spanned.span,
+                    Err(error) => {
+                        prop_assert!(error.line >= 1 && error.column >= 1);
+                        error.span
+                    }
+                };
+                prop_assert!(span.start <= span.end && span.end <= reader.statement().len());
+            }
+        }
+    }
+}
