@@ -2,4 +2,21 @@
 //!
 //! The order of the modules is their layer order, lowest first.
 
+pub mod hue;
+pub mod matrices;
+pub mod port;
+pub mod functions;
+pub mod network;
+pub mod structure;
+pub mod objects;
+pub mod memory;
 pub mod traversal;
+pub mod picture;
+pub mod calligraphic;
+pub mod raster;
+pub mod interpreter;
+pub mod line;
+pub mod machine;
+pub mod operator;
+pub mod shell;
+pub mod process;

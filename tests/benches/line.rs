@@ -73,10 +73,7 @@ fn main() {
         let mut text = Vec::new();
         print(&command, &mut text);
         let mut binary = Vec::new();
-        let mut packets = protocol::command::binary::PacketWriter::default();
-        let route = protocol::wire::Route::Binary;
-        packets.command(&command, |body| protocol::wire::write_long_packet(route, body, &mut binary));
-        packets.finish(|body| protocol::wire::write_long_packet(route, body, &mut binary));
+        protocol::wire::write_commands([&command], &mut binary).expect("the list has a binary form");
         for (form, bytes) in [("text", &text), ("binary", &binary)] {
             let raw = (0..5).map(|_| through_socket(bytes, drop)).fold(f64::INFINITY, f64::min);
             let taken = machine_time(bytes, count);

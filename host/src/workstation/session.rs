@@ -5,9 +5,10 @@ use glam::DMat4;
 use protocol::{
     Value,
     address::Address,
-    command::{Command, binary},
+    command::Command,
     raster::RasterCommand,
-    wire::{MAX_LONG_PAYLOAD, MessageReader, Route, message_form_packet, write_long_packet},
+    record::EncodeError,
+    wire::{MessageError, MessageForm, MessageReader, PREFERRED_PAYLOAD, Route, write_commands, write_packet, write_raster},
 };
 use std::{
     collections::VecDeque,
@@ -69,9 +70,11 @@ impl Session {
             }
             Address::Unix(path) => Box::new(UnixStream::connect(path).map_err(failed)?),
         };
-        let mut out = Vec::new();
-        message_form_packet(protocol::wire::MessageForm::Packets, &mut out);
-        Ok(Session { line, out, reader: MessageReader::default(), messages: VecDeque::new(), marks: 0 })
+        let mut session =
+            Session { line, out: Vec::new(), reader: MessageReader::default(), messages: VecDeque::new(), marks: 0 };
+        MessageForm::Packets.write_request(&mut session.out);
+        session.reader.expect(MessageForm::Packets);
+        Ok(session)
     }
 
     /// Sends commands in binary form.
@@ -79,13 +82,7 @@ impl Session {
     /// # Errors
     /// [`WorkstationError::Closed`].
     pub fn commands(&mut self, commands: &[Command]) -> Result<(), WorkstationError> {
-        let mut packets = binary::PacketWriter::default();
-        for command in commands {
-            packets.command(command, |body| {
-                write_long_packet(Route::Binary, body, &mut self.out);
-            });
-        }
-        packets.finish(|body| write_long_packet(Route::Binary, body, &mut self.out));
+        write_commands(commands, &mut self.out).map_err(unsendable)?;
         if self.out.len() > BUFFER_BYTES { self.flush() } else { Ok(()) }
     }
 
@@ -94,8 +91,8 @@ impl Session {
     /// # Errors
     /// [`WorkstationError::Closed`].
     pub fn text(&mut self, text: &str) -> Result<(), WorkstationError> {
-        for piece in text.as_bytes().chunks(MAX_LONG_PAYLOAD) {
-            write_long_packet(Route::Text, piece, &mut self.out);
+        for piece in text.as_bytes().chunks(PREFERRED_PAYLOAD) {
+            write_packet(Route::Text, piece, &mut self.out).map_err(unsendable)?;
         }
         Ok(())
     }
@@ -105,15 +102,8 @@ impl Session {
     /// # Errors
     /// [`WorkstationError::Closed`].
     pub fn raster(&mut self, commands: &[RasterCommand]) -> Result<(), WorkstationError> {
-        for command in commands {
-            let mut body = Vec::new();
-            protocol::raster::encode(command, &mut body);
-            write_long_packet(Route::Raster, &body, &mut self.out);
-            if self.out.len() > BUFFER_BYTES {
-                self.flush()?;
-            }
-        }
-        Ok(())
+        write_raster(commands, &mut self.out).map_err(unsendable)?;
+        if self.out.len() > BUFFER_BYTES { self.flush() } else { Ok(()) }
     }
 
     /// Brings everything on its way to the workstation.
@@ -143,7 +133,13 @@ impl Session {
             self.line.set_read_timeout(left).map_err(closed)?;
             match self.line.read(&mut buffer) {
                 Ok(0) => return Err(WorkstationError::Closed { reason: String::new() }),
-                Ok(n) => self.messages.extend(self.reader.push(&buffer[..n])),
+                Ok(n) => {
+                    self.reader.push(&buffer[..n]);
+                    for message in self.reader.by_ref() {
+                        let lost = |e: MessageError| WorkstationError::Closed { reason: e.to_string() };
+                        self.messages.push_back(message.map_err(lost)?);
+                    }
+                }
                 Err(e) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {}
                 Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
                 Err(e) => return Err(closed(e)),
@@ -211,6 +207,10 @@ impl Session {
         self.commands(&network::commands(diagonal))?;
         self.synchronize()
     }
+}
+
+fn unsendable(error: EncodeError) -> WorkstationError {
+    WorkstationError::Scene(error.to_string())
 }
 
 fn closed(error: io::Error) -> WorkstationError {

@@ -3,7 +3,8 @@
 use crate::{memory::Refusal, port::Fault, structure::NodeFault, traversal::Trouble};
 use protocol::{
     Name,
-    command::{BinaryError, CommandError},
+    command::CommandError,
+    record::BinaryError,
 };
 
 /// Which of the three instances ERROR, WARNING and INFORMATION passes a message on.

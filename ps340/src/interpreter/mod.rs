@@ -231,6 +231,3 @@ impl From<Refusal> for Message {
         Message::Refused(refusal)
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -13,7 +13,7 @@ pub use panel::Panel;
 
 use crate::{
     calligraphic::Beam,
-    functions::devices,
+    functions::devices::initial,
     interpreter::{Class, Message},
     memory::MassMemory,
     line::LineId,
@@ -24,7 +24,7 @@ use crate::{
 };
 use devices::Devices;
 use host_line::HostLine;
-use protocol::{Name, Value};
+use protocol::{Name, Value, wire::MessageWriter};
 use std::collections::{BTreeMap, VecDeque};
 
 /// Frames a second: the nominal refresh rate. [M]
@@ -32,6 +32,9 @@ pub const FRAMES_PER_SECOND: u64 = 60;
 /// Function firings between two frames; what is left waits for the next frame, so that a network that never
 /// rests stops neither the display nor the lines. [C]
 pub const FIRINGS_PER_FRAME: u64 = 200_000;
+/// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames; the rest are logged and
+/// counted only, so that a message that causes messages ends.
+pub const REPORTS_PER_FRAME: u64 = 1000;
 /// Messages of the machine that [`Machine::log`] keeps.
 const LOG_LINES: usize = 1000;
 /// Messages to the host that wait for the operator.
@@ -75,11 +78,14 @@ pub struct Machine {
     settings: Settings,
     memory: MassMemory,
     lines: BTreeMap<LineId, HostLine>,
+    /// How messages go to each host.
+    writers: BTreeMap<LineId, MessageWriter>,
     devices: Devices,
     panel: Panel,
     frame_buffer: FrameBuffer,
     frame: u64,
     firings_left: u64,
+    reports_left: u64,
     network_idle: bool,
     update: Update,
     /// Version of the structure that `update` shows; none before the first.
@@ -97,7 +103,7 @@ impl Machine {
     /// A machine as after its start: the initial function instances exist, nothing is displayed.
     pub fn new(settings: Settings) -> Machine {
         let mut memory = MassMemory::default();
-        for initial in devices::initial() {
+        for initial in initial() {
             let made = memory.define_initial(&initial);
             debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
         }
@@ -106,11 +112,13 @@ impl Machine {
             settings,
             memory,
             lines: BTreeMap::new(),
+            writers: BTreeMap::new(),
             devices: Devices::default(),
             panel: Panel::default(),
             frame_buffer: FrameBuffer::default(),
             frame: 0,
             firings_left: FIRINGS_PER_FRAME,
+            reports_left: REPORTS_PER_FRAME,
             network_idle: true,
             update: Update::default(),
             updated: None,
@@ -129,7 +137,8 @@ impl Machine {
         for input in inputs {
             match input {
                 Input::Attach(line) => {
-                    self.lines.insert(line, HostLine::new(self.settings.plain_text));
+                    self.lines.insert(line, HostLine::new(line, self.settings.plain_text));
+                    self.writers.insert(line, MessageWriter::default());
                 }
                 Input::Bytes(line, bytes) => self.receive(line, &bytes),
                 Input::Detach(line) => self.detach(line),
@@ -154,6 +163,10 @@ impl Machine {
     pub fn next_frame(&mut self) {
         self.frame += 1;
         self.firings_left = FIRINGS_PER_FRAME;
+        if self.reports_left == 0 {
+            tracing::warn!("more than {REPORTS_PER_FRAME} messages in one frame: the rest did not reach ERROR and WARNING");
+        }
+        self.reports_left = REPORTS_PER_FRAME;
         let emissions = self.devices.frame();
         self.emit(emissions);
         let centiseconds = self.frame * 100 / FRAMES_PER_SECOND;
@@ -243,7 +256,8 @@ impl Machine {
     }
 
     fn detach(&mut self, line: LineId) {
-        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.interpreter.abandon()) {
+        self.writers.remove(&line);
+        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon()) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
     }
@@ -267,7 +281,7 @@ impl Machine {
     }
 
     fn carry_effects(&mut self) {
-        while !self.memory.effects.is_empty() {
+        while !self.memory.effects.is_empty() || !self.messages.is_empty() {
             for effect in std::mem::take(&mut self.memory.effects) {
                 self.carry(effect);
             }
@@ -306,8 +320,11 @@ impl Machine {
             self.to_host.pop_front();
         }
         self.to_host.push_back(message.to_vec());
-        for (line, host) in &self.lines {
-            self.outputs.push(Output { line: *line, bytes: host.encode_message(message) });
+        for (line, writer) in &self.writers {
+            let mut bytes = Vec::new();
+            if writer.write(message, &mut bytes).is_ok() {
+                self.outputs.push(Output { line: *line, bytes });
+            }
         }
     }
 
@@ -325,7 +342,10 @@ impl Machine {
         }
         tracing::info!("{text}");
         self.log.push_back(text.clone());
-        self.emit(vec![(instance, 1, Value::string(&text))]);
+        if self.reports_left > 0 {
+            self.reports_left -= 1;
+            self.emit(vec![(instance, 1, Value::string(&text))]);
+        }
     }
 
     fn update_picture(&mut self) {

@@ -86,5 +86,5 @@ fn picture(machine: &mut Machine, screen: Screen, file: &str, size: Option<u32>)
         Screen::Raster => machine.raster_picture(),
     };
     picture.write(Path::new(file)).map_err(|e| e.to_string())?;
-    Ok(format!("{file} {}x{}", picture.width, picture.height))
+    Ok(format!("{file} {}x{}", picture.width(), picture.height()))
 }

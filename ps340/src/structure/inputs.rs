@@ -120,20 +120,21 @@ fn text(characters: &mut Characters, input: Input, value: Value) -> Result<(), N
         return Err(NodeFault::Range { input });
     }
     let mut text = std::mem::take(&mut characters.text).into_vec();
+    let end = text.len();
     let result = match (input, value) {
         (Input::Position, Value::Vector3(v)) => Ok(characters.position = v),
         (Input::Position, Value::Vector2(v)) => Ok(characters.position = v.extend(0.0)),
         (Input::Step, Value::Vector2(v)) => Ok(characters.step = v),
         (Input::Clear, _) => Ok(text.clear()),
         (Input::Delete, Value::Integer(n)) => {
-            Ok(text.truncate(text.len().saturating_sub(usize::try_from(n).unwrap_or(0))))
+            Ok(text.truncate(end.saturating_sub(usize::try_from(n).unwrap_or(0))))
         }
         (Input::Substitute, Value::String(new)) => {
             splice(&mut text, 0, &new, input).map(|()| text.truncate(new.len()))
         }
-        (Input::Append, Value::String(new)) => splice(&mut text, text.len(), &new, input),
-        (Input::Last, Value::String(new)) => splice(&mut text, text.len().saturating_sub(1), &new, input),
-        (Input::Number(n), Value::String(new)) => match (n as usize).checked_sub(1).filter(|i| *i <= text.len()) {
+        (Input::Append, Value::String(new)) => splice(&mut text, end, &new, input),
+        (Input::Last, Value::String(new)) => splice(&mut text, end.saturating_sub(1), &new, input),
+        (Input::Number(n), Value::String(new)) => match (n as usize).checked_sub(1).filter(|i| *i <= end) {
             Some(at) => splice(&mut text, at, &new, input),
             None => Err(NodeFault::Range { input }),
         },
