@@ -2,4 +2,8 @@
 //!
 //! The order of the modules is their layer order, lowest first.
 
+pub mod matrices;
+pub mod port;
+pub mod functions;
+pub mod network;
 pub mod traversal;
