@@ -1,0 +1,55 @@
+//! The functions of the machine: one row each, by families.
+//!
+//! A row says everything that is known about a function: its inputs and outputs, where the knowledge comes from,
+//! what it does, and examples that a test runs. The network, messages and pages of help are made from the rows.
+
+mod row;
+
+pub mod accumulation;
+pub mod algebra;
+pub mod arithmetic;
+pub mod clocks;
+pub mod comparison;
+pub mod devices;
+pub mod logic;
+pub mod printing;
+pub mod routing;
+pub mod selection;
+pub mod strings;
+pub mod transformation;
+pub mod vectors;
+pub mod viewing;
+
+pub use row::{Confidence, Example, Family, FunctionRow, MAX_SIZE, Rule, Shape, SizeError, Source};
+
+use std::{collections::HashMap, sync::LazyLock};
+
+/// The families of functions that a command can instance, in the order of the manuals.
+pub static FAMILIES: [(&str, &[FunctionRow]); 12] = [
+    ("arithmetic", arithmetic::ROWS),
+    ("logic", logic::ROWS),
+    ("comparison", comparison::ROWS),
+    ("vectors", vectors::ROWS),
+    ("transformation", transformation::ROWS),
+    ("viewing", viewing::ROWS),
+    ("routing", routing::ROWS),
+    ("accumulation", accumulation::ROWS),
+    ("clocks", clocks::ROWS),
+    ("strings", strings::ROWS),
+    ("printing", printing::ROWS),
+    ("selection", selection::ROWS),
+];
+
+/// The rows of all functions that a command can instance.
+pub fn all() -> impl Iterator<Item = &'static FunctionRow> {
+    FAMILIES.iter().flat_map(|(_, rows)| rows.iter())
+}
+
+/// The row of a function.
+///
+/// - `name`: the type without `F:`, upper case.
+pub fn find(name: &str) -> Option<&'static FunctionRow> {
+    static BY_NAME: LazyLock<HashMap<&'static str, &'static FunctionRow>> =
+        LazyLock::new(|| all().map(|row| (row.name, row)).collect());
+    BY_NAME.get(name).copied()
+}

@@ -1,0 +1,58 @@
+//! Values as constants of a table: defaults of inputs, messages of examples.
+
+use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
+use protocol::Value;
+
+/// A value that can stand in a constant table. Matrices are given by the machine's rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Literal {
+    /// A Boolean.
+    B(bool),
+    /// An integer.
+    I(i32),
+    /// A real.
+    R(f64),
+    /// A string.
+    S(&'static str),
+    /// A 2D vector.
+    V2([f64; 2]),
+    /// A 3D vector.
+    V3([f64; 3]),
+    /// A 4D vector.
+    V4([f64; 4]),
+    /// A 2x2 matrix.
+    M2([[f64; 2]; 2]),
+    /// A 3x3 matrix.
+    M3([[f64; 3]; 3]),
+    /// A 4x3 matrix: the last row the translation.
+    M43([[f64; 3]; 4]),
+    /// A 4x4 matrix.
+    M4([[f64; 4]; 4]),
+    /// Transformed data.
+    T([[f64; 4]; 4]),
+}
+
+impl Literal {
+    /// The value as a message.
+    pub fn value(&self) -> Value {
+        match *self {
+            Literal::B(b) => Value::Boolean(b),
+            Literal::I(i) => Value::Integer(i),
+            Literal::R(r) => Value::Real(r),
+            Literal::S(s) => Value::string(s),
+            Literal::V2(v) => Value::Vector2(DVec2::from(v)),
+            Literal::V3(v) => Value::Vector3(DVec3::from(v)),
+            Literal::V4(v) => Value::Vector4(DVec4::from(v)),
+            Literal::M2(rows) => Value::Matrix2(Box::new(DMat2::from_cols_array_2d(&rows))),
+            Literal::M3(rows) => Value::Matrix3(Box::new(DMat3::from_cols_array_2d(&rows))),
+            Literal::M43([a, b, c, t]) => Value::Matrix4x3(Box::new(DMat4::from_cols(
+                DVec3::from(a).extend(0.0),
+                DVec3::from(b).extend(0.0),
+                DVec3::from(c).extend(0.0),
+                DVec3::from(t).extend(1.0),
+            ))),
+            Literal::M4(rows) => Value::Matrix4(Box::new(DMat4::from_cols_array_2d(&rows))),
+            Literal::T(rows) => Value::Transform(Box::new(DMat4::from_cols_array_2d(&rows))),
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Function firings a second: chains, fan-out and fan-in, vector arithmetic. Each answer is checked before its time counts.
+//!
+//! Pure Data runs the same chains beside it where it is installed. `cargo bench -p tests --bench functions`
+
+use protocol::{Value, command::Input};
+use ps340::{
+    functions::find,
+    network::Network,
+    port::{Effect, Literal, ObjectId},
+};
+use std::{
+    process::{Command, Stdio},
+    time::{Duration, Instant},
+};
+
+/// Each case runs so often; the best time counts, since other work disturbs.
+const REPEATS: usize = 7;
+/// About so many firings in each run of a case.
+const FIRINGS: u64 = 4_000_000;
+/// Messages that are under way at the same time.
+const UNDER_WAY: u64 = 64;
+/// The object at the end of each network: none, so that its messages come out as effects.
+const END: ObjectId = ObjectId(0);
+
+fn main() {
+    // `cargo test --benches` passes `--test`: one short round proves the answers.
+    let (repeats, firings) = if std::env::args().any(|a| a == "--test") { (1, 200_000) } else { (REPEATS, FIRINGS) };
+    println!("{:<44} {:>16}", "function network", "firings/s");
+    let mut chains = Vec::new();
+    for length in [10, 1_000, 100_000] {
+        for under_way in [1, UNDER_WAY] {
+            let rate = best(repeats, || chain(length, under_way, (firings / u64::from(length)).max(under_way)));
+            println!("{:<44} {rate:>16.0}", format!("chain of {length} ADDC, {under_way} under way"));
+            chains.push(rate);
+        }
+    }
+    let rate = best(repeats, || fan(1_000, firings / 2_001));
+    println!("{:<44} {rate:>16.0}", "fan-out to 1000 ADDC, fan-in to one");
+    let rate = best(repeats, || vectors(1_000, firings / 2_000));
+    println!("{:<44} {rate:>16.0}", "1000 pairs of MULC and ACCUMULATE, 3D vectors");
+    let slowest = chains.iter().copied().fold(f64::INFINITY, f64::min);
+    println!("slowest chain: {:.1} million firings/s (target 10)", slowest / 1e6);
+    for length in [10, 900] {
+        let name = format!("Pure Data, chain of {length} [+ 1]");
+        match pure_data(length, (firings * 10 / u64::from(length)).max(1)) {
+            Ok(rate) => println!("{name:<44} {rate:>16.0}"),
+            Err(why) => println!("{name:<44} {why:>16}"),
+        }
+    }
+}
+
+/// The best rate of several runs, in firings a second.
+fn best(repeats: usize, mut run: impl FnMut() -> (u64, Duration)) -> f64 {
+    (0..repeats).map(|_| run()).map(|(firings, time)| firings as f64 / time.as_secs_f64()).fold(0.0, f64::max)
+}
+
+fn define(network: &mut Network, id: u32, function: &str, constants: &[(u32, Literal)]) {
+    let row = find(function).expect("the table has the function");
+    network.define(ObjectId(id), row, None).expect("the function has no size");
+    for (input, value) in constants {
+        network.send(ObjectId(id), Input::Number(*input), value.value(), &mut Vec::new());
+    }
+}
+
+fn connect(network: &mut Network, from: u32, to: u32) {
+    network.connect(ObjectId(from), 1, ObjectId(to), Input::Number(1)).expect("both exist");
+}
+
+/// Messages run through a chain that adds 1 at each function.
+fn chain(length: u32, under_way: u64, messages: u64) -> (u64, Duration) {
+    let mut network = Network::new();
+    for id in 1..=length {
+        define(&mut network, id, "ADDC", &[(2, Literal::R(1.0))]);
+    }
+    for id in 1..=length {
+        connect(&mut network, id, if id == length { END.0 } else { id + 1 });
+    }
+    let mut effects = Vec::with_capacity(under_way as usize);
+    let start = Instant::now();
+    let mut firings = 0;
+    for batch in 0..messages / under_way {
+        effects.clear();
+        for i in 0..under_way {
+            network.send(ObjectId(1), Input::Number(1), Value::Real((batch * under_way + i) as f64), &mut effects);
+        }
+        firings += network.run(u64::MAX, &mut effects).firings;
+        assert_eq!(effects.len() as u64, under_way);
+        for (i, effect) in (0..).zip(&effects) {
+            let expected = (batch * under_way + i) as f64 + f64::from(length);
+            assert!(matches!(effect, Effect::Deliver { object: END, value: Value::Real(r), .. } if *r == expected));
+        }
+    }
+    let time = start.elapsed();
+    assert_eq!(firings, messages / under_way * under_way * u64::from(length));
+    (firings, time)
+}
+
+/// One message goes to many functions, whose results meet in an accumulator.
+fn fan(width: u32, rounds: u64) -> (u64, Duration) {
+    let mut network = Network::new();
+    let (source, sum) = (width + 1, width + 2);
+    define(&mut network, source, "NOP", &[]);
+    define(&mut network, sum, "ACCUMULATE", &[(2, Literal::I(0))]);
+    connect(&mut network, sum, END.0);
+    for id in 1..=width {
+        define(&mut network, id, "ADDC", &[(2, Literal::I(1))]);
+        connect(&mut network, source, id);
+        connect(&mut network, id, sum);
+    }
+    let mut effects = Vec::new();
+    let start = Instant::now();
+    let mut firings = 0;
+    for round in 1..=rounds {
+        effects.clear();
+        network.send(ObjectId(source), Input::Number(1), Value::Integer(1), &mut effects);
+        firings += network.run(u64::MAX, &mut effects).firings;
+        let total = Value::Integer((round * u64::from(width) * 2) as i32);
+        assert!(matches!(effects.last(), Some(Effect::Deliver { value, .. }) if *value == total));
+    }
+    (firings, start.elapsed())
+}
+
+/// Many dials: a vector is scaled, and accumulated.
+fn vectors(pairs: u32, rounds: u64) -> (u64, Duration) {
+    let mut network = Network::new();
+    for pair in 0..pairs {
+        let (scale, sum) = (2 * pair + 1, 2 * pair + 2);
+        define(&mut network, scale, "MULC", &[(2, Literal::R(0.5))]);
+        define(&mut network, sum, "ACCUMULATE", &[(2, Literal::V3([0.0; 3]))]);
+        connect(&mut network, scale, sum);
+        connect(&mut network, sum, END.0);
+    }
+    let mut effects = Vec::new();
+    let start = Instant::now();
+    let mut firings = 0;
+    for round in 1..=rounds {
+        effects.clear();
+        for pair in 0..pairs {
+            let turn = Literal::V3([1.0, 2.0, -4.0]).value();
+            network.send(ObjectId(2 * pair + 1), Input::Number(1), turn, &mut effects);
+        }
+        firings += network.run(u64::MAX, &mut effects).firings;
+        let r = round as f64;
+        let total = Literal::V3([0.5 * r, r, -2.0 * r]).value();
+        assert!(effects.iter().all(|e| matches!(e, Effect::Deliver { value, .. } if *value == total)));
+        assert_eq!(effects.len(), pairs as usize);
+    }
+    (firings, start.elapsed())
+}
+
+/// The rate of the same chain in Pure Data, in messages a second.
+fn pure_data(length: u32, messages: u64) -> Result<f64, String> {
+    let patch = tempfile::Builder::new().suffix(".pd").tempfile().map_err(|e| e.to_string())?;
+    std::fs::write(patch.path(), chain_patch(length, messages)).map_err(|e| e.to_string())?;
+    let child =
+        Command::new("pd").args(["-nogui", "-batch", "-stderr"]).arg(patch.path()).stdin(Stdio::null()).output();
+    let output = child.map_err(|_| "not installed".to_owned())?;
+    let text = String::from_utf8_lossy(&output.stderr);
+    let number = |label: &str| -> Result<f64, String> {
+        let line = text.lines().find_map(|line| line.strip_prefix(label)).ok_or("no answer")?;
+        line.trim_matches([':', ' ']).parse().map_err(|_| "no answer".to_owned())
+    };
+    if number("answer")? != f64::from(length) {
+        return Err("wrong answer".into());
+    }
+    Ok(messages as f64 * f64::from(length) / (number("milliseconds")? / 1e3))
+}
+
+/// A patch that sends zeros through a chain of `[+ 1]` and prints the last answer and the time.
+fn chain_patch(length: u32, messages: u64) -> String {
+    let mut patch = String::from("#N canvas 0 0 450 300 10;\n");
+    let objects = [
+        "obj 0 0 loadbang".to_owned(),
+        "obj 0 0 t b b b b".to_owned(),
+        "obj 0 0 realtime".to_owned(),
+        format!("msg 0 0 {messages}"),
+        "obj 0 0 until".to_owned(),
+        "msg 0 0 0".to_owned(),
+        "obj 0 0 f".to_owned(),
+        "obj 0 0 print answer".to_owned(),
+        "obj 0 0 print milliseconds".to_owned(),
+        "msg 0 0 \\; pd quit".to_owned(),
+    ];
+    let first = objects.len() as u32;
+    for object in objects {
+        patch += &format!("#X {object};\n");
+    }
+    for _ in 0..length {
+        patch += "#X obj 0 0 + 1;\n";
+    }
+    // Outlets of [t b b b b] fire from right to left: start the time, run, print, quit.
+    let fixed = [(0, 0, 1, 0), (1, 3, 2, 0), (1, 2, 3, 0), (3, 0, 4, 0), (4, 0, 5, 0), (5, 0, first, 0), (1, 1, 2, 1)];
+    let ends = [(2, 0, 8, 0), (first + length - 1, 0, 6, 1), (1, 0, 6, 0), (6, 0, 7, 0), (1, 0, 9, 0)];
+    let links = (first..first + length - 1).map(|object| (object, 0, object + 1, 0));
+    for (from, outlet, to, inlet) in fixed.into_iter().chain(ends).chain(links) {
+        patch += &format!("#X connect {from} {outlet} {to} {inlet};\n");
+    }
+    patch
+}
