@@ -12,6 +12,6 @@ pub use deframe::{Counters, Frame, FrameDecoder, NoiseReason};
 pub use message::{MAX_MESSAGE, MessageError, MessageForm, MessageReader, MessageWriter};
 pub use packet::{
     COUNT_BIAS, COUNT_RADIX, COUNT_START, LONG_HEADER, LONG_START, LONG_TRAILER, MAX_COUNT_DATA, MAX_PAYLOAD,
-    PacketForm, Route, header_check, write_count_packet, write_packet,
+    PacketForm, Route, count_header, header_check, long_header, write_count_packet, write_packet,
 };
 pub use send::{PREFERRED_PAYLOAD, SendError, send_commands, send_raster, write_commands, write_raster};

@@ -104,7 +104,7 @@ pub fn write_packet(route: Route, payload: &[u8], out: &mut Vec<u8>) -> Result<(
 }
 
 /// The header of a long packet with `length` payload bytes, at most [`MAX_PAYLOAD`].
-pub(super) fn long_header(route: Route, length: usize) -> [u8; LONG_HEADER] {
+pub fn long_header(route: Route, length: usize) -> [u8; LONG_HEADER] {
     let mut header = [0; LONG_HEADER];
     header[0] = LONG_START;
     header[1] = route.code();
@@ -120,11 +120,16 @@ pub(super) fn long_header(route: Route, length: usize) -> [u8; LONG_HEADER] {
 /// Data longer than [`MAX_COUNT_DATA`].
 pub fn write_count_packet(route: Route, data: &[u8], out: &mut Vec<u8>) -> Result<(), EncodeError> {
     within("the data of a count packet", data.len(), MAX_COUNT_DATA)?;
-    let count = data.len() + 1; // the route byte counts
-    let characters = [count / COUNT_RADIX, count % COUNT_RADIX].map(|digit| COUNT_BIAS + digit as u8);
-    out.extend_from_slice(&[COUNT_START, characters[0], characters[1], route.code()]);
+    out.extend_from_slice(&count_header(route, data.len()));
     out.extend_from_slice(data);
     Ok(())
+}
+
+/// The header of a count packet with `length` data bytes, at most [`MAX_COUNT_DATA`].
+pub fn count_header(route: Route, length: usize) -> [u8; 4] {
+    let count = length + 1; // the route byte counts
+    let characters = [count / COUNT_RADIX, count % COUNT_RADIX].map(|digit| COUNT_BIAS + digit as u8);
+    [COUNT_START, characters[0], characters[1], route.code()]
 }
 
 /// The check of the first six bytes of a long packet: CRC-16 with polynomial 0x1021 and start value 0xFFFF, bits from the
