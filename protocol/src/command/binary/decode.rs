@@ -214,8 +214,12 @@ fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Resu
         let rest = (count - told) * POINT;
         reader.tell(rest, "vectors", format_args!("{} more", count - told));
     }
-    let lines = flags.iter().flat_map(|flags| (0..8).map(move |bit| flags >> bit & 1 != 0));
-    list.lines.extend(lines.take(if list.class == VectorClass::Itemized { count } else { 0 }));
+    if list.class == VectorClass::Itemized {
+        list.lines.resize(first + count, false);
+        for (lines, flags) in list.lines[first..].chunks_mut(8).zip(flags) {
+            lines.iter_mut().enumerate().for_each(|(bit, line)| *line = flags >> bit & 1 != 0);
+        }
+    }
     Ok(())
 }
 
