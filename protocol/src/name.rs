@@ -48,8 +48,14 @@ impl Name {
         if let Some(&bad) = bytes.iter().find(|&&b| !is_name_character(b)) {
             return Err(NameError::BadCharacter(bad));
         }
-        let upper: String = bytes.iter().map(|b| char::from(b.to_ascii_uppercase())).collect();
-        Ok(Name(upper.into()))
+        let mut upper = [0; MAX_NAME];
+        let upper = &mut upper[..bytes.len()];
+        upper.copy_from_slice(bytes);
+        upper.make_ascii_uppercase();
+        match std::str::from_utf8(upper) {
+            Ok(upper) => Ok(Name(upper.into())),
+            Err(_) => Err(NameError::BadCharacter(bytes[0])), // not reached: all bytes are ASCII
+        }
     }
 
     /// The characters, in upper case.

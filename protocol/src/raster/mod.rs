@@ -1,4 +1,8 @@
-//! What a host can do to the raster screen: the operations of a raster packet as plain data.
+//! What a host can do to the raster screen: the operations of a raster packet as plain data, and their bytes.
+
+mod binary;
+
+pub use binary::{MAX_LOOKUP_ENTRIES, MAX_RUNS, RasterOpcode, decode, encode, record};
 
 /// Width of the raster screen, in pixels. [M], size class [S].
 pub const RASTER_WIDTH: u32 = 640;

@@ -18,6 +18,10 @@ use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 /// Room that is made when a list begins, whatever length it announces, in vectors.
 const FIRST_ROOM: usize = 1 << 16;
 
+/// How many times what was received more room may be made for what was announced. Large, because moving a long list is
+/// dear.
+const GROWTH: usize = 7;
+
 /// Vectors that the witness is told of in each part, one by one.
 const TOLD_POINTS: usize = 4;
 
@@ -186,9 +190,12 @@ fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Resu
     };
     let bytes = reader.take(count * POINT, "vectors")?;
     let first = list.points.len();
-    list.points.extend(bytes.chunks_exact(POINT).map(|chunk| {
-        let component = |i: usize| f32::from_le_bytes([chunk[i], chunk[i + 1], chunk[i + 2], chunk[i + 3]]);
-        [component(0), component(4), component(8), component(12)]
+    if list.points.capacity() < first + count {
+        list.points.reserve_exact(count.max((first * GROWTH).min(open.announced - first)));
+    }
+    list.points.extend(bytes.as_chunks::<POINT>().0.iter().map(|chunk| {
+        let components: [[u8; 4]; 4] = bytemuck::cast(*chunk);
+        components.map(f32::from_le_bytes)
     }));
     let points = &mut list.points[first..];
     if list.dimension == 2 {
@@ -207,8 +214,12 @@ fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Resu
         let rest = (count - told) * POINT;
         reader.tell(rest, "vectors", format_args!("{} more", count - told));
     }
-    let lines = flags.iter().flat_map(|flags| (0..8).map(move |bit| flags >> bit & 1 != 0));
-    list.lines.extend(lines.take(if list.class == VectorClass::Itemized { count } else { 0 }));
+    if list.class == VectorClass::Itemized {
+        list.lines.resize(first + count, false);
+        for (lines, flags) in list.lines[first..].chunks_mut(8).zip(flags) {
+            lines.iter_mut().enumerate().for_each(|(bit, line)| *line = flags >> bit & 1 != 0);
+        }
+    }
     Ok(())
 }
 
@@ -218,7 +229,8 @@ const POINT: usize = 16;
 /// Whether no component is infinite or not a number; without a branch, so that it runs on whole vectors.
 fn all_finite(points: &[[f32; 4]]) -> bool {
     const EXPONENT: u32 = 0x7f80_0000;
-    points.as_flattened().iter().fold(true, |all, component| all & (component.to_bits() & EXPONENT != EXPONENT))
+    let bad = |component: &f32| u32::from(component.to_bits() & EXPONENT == EXPONENT);
+    points.as_flattened().iter().fold(0, |any, component| any | bad(component)) == 0
 }
 
 /// A command that is one record.

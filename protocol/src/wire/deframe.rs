@@ -1,0 +1,276 @@
+//! Frames out of a stream of bytes: text, packets, and noise.
+
+use super::packet::{
+    COUNT_BIAS, COUNT_RADIX, COUNT_START, LONG_HEADER, LONG_START, LONG_TRAILER, MAX_PAYLOAD, PacketForm, Route,
+    header_check,
+};
+use std::ops::Range;
+
+/// Bytes that the buffer makes room for at least, and that [`FrameDecoder::feed`] takes at a time.
+const ROOM: usize = 256 << 10;
+
+/// A piece of the stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame<'a> {
+    /// Bytes outside packets. Where a run of text is cut depends on how the bytes came.
+    Text(&'a [u8]),
+    /// A packet, complete and checked.
+    Packet {
+        /// How it was written.
+        form: PacketForm,
+        /// Who is to read it.
+        route: Route,
+        /// Its data.
+        payload: &'a [u8],
+    },
+    /// Bytes that are dropped.
+    Noise {
+        /// The bytes.
+        bytes: &'a [u8],
+        /// Why.
+        reason: NoiseReason,
+    },
+}
+
+impl Frame<'_> {
+    /// How many bytes of the stream the frame takes.
+    pub fn stream_length(&self) -> usize {
+        match self {
+            Frame::Text(bytes) | Frame::Noise { bytes, .. } => bytes.len(),
+            Frame::Packet { form, payload, .. } => payload.len() + form.overhead().0 + form.overhead().1,
+        }
+    }
+}
+
+/// Why bytes are dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoiseReason {
+    /// A count start byte without two count characters.
+    #[error("no count follows the start byte of a count packet")]
+    BadCount,
+    /// A long start byte whose header does not agree with its check, or is too long.
+    #[error("the header of a long packet does not agree with its check")]
+    BadHeader,
+    /// A long packet whose payload does not agree with its check; all of it is dropped.
+    #[error("the payload of a long packet does not agree with its check")]
+    BadPayload,
+    /// The stream ended inside a packet.
+    #[error("the stream ends inside a packet")]
+    Truncated,
+}
+
+/// How much of what was received.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Good packets.
+    pub packets: u64,
+    /// Bytes in good packets, all counted.
+    pub packet_bytes: u64,
+    /// Bytes of text.
+    pub text_bytes: u64,
+    /// Long packets that were dropped for their payload.
+    pub dropped_packets: u64,
+    /// Bytes dropped, those of dropped packets among them.
+    pub noise_bytes: u64,
+}
+
+/// Cuts a stream of bytes into frames, however it arrives.
+///
+/// Reading into the decoder's own buffer spares a copy: [`space`](Self::space), [`advance`](Self::advance), then
+/// [`next_frame`](Self::next_frame) until it gives none. [`feed`](Self::feed) does the same for bytes that lie elsewhere.
+///
+/// A packet with a bad header is one byte of noise, and the search goes on at the next byte; a count packet has no check,
+/// so noise that looks like one swallows up to 4 KiB. Each byte is looked at a constant number of times.
+#[derive(Clone, Debug)]
+pub struct FrameDecoder {
+    buffer: Vec<u8>,
+    start: usize,
+    end: usize,
+    /// Bytes from `start` on that the packet there needs in all, if that is known.
+    needed: usize,
+    count_packets: bool,
+    counters: Counters,
+}
+
+/// What stands at the start of the buffer.
+enum Step {
+    Text(usize),
+    Packet(PacketForm, Route, Range<usize>, usize),
+    Noise(usize, NoiseReason),
+    /// A packet of which bytes are missing; how many it has if that is known, or else 0.
+    Wait(usize),
+}
+
+impl Default for FrameDecoder {
+    fn default() -> Self {
+        FrameDecoder {
+            buffer: Vec::new(),
+            start: 0,
+            end: 0,
+            needed: 0,
+            count_packets: true,
+            counters: Counters::default(),
+        }
+    }
+}
+
+impl FrameDecoder {
+    /// A decoder that takes count start bytes for text.
+    pub fn long_packets_only() -> Self {
+        FrameDecoder { count_packets: false, ..FrameDecoder::default() }
+    }
+
+    /// Room for more bytes of the stream, at least 256 KiB. Take all frames out first, or the buffer grows.
+    pub fn space(&mut self) -> &mut [u8] {
+        if self.start == self.end {
+            self.start = 0;
+            self.end = 0;
+        }
+        let waiting = self.end - self.start;
+        let room = ROOM.max(self.needed.saturating_sub(waiting));
+        if self.buffer.len() - self.end < room {
+            self.buffer.copy_within(self.start..self.end, 0);
+            self.start = 0;
+            self.end = waiting;
+            if self.buffer.len() < waiting + room {
+                self.buffer.resize(waiting + room.max(2 * ROOM), 0);
+            }
+        }
+        &mut self.buffer[self.end..]
+    }
+
+    /// Says that the first `count` bytes of [`space`](Self::space) were filled; more than there are count as all.
+    pub fn advance(&mut self, count: usize) {
+        self.end = (self.end + count).min(self.buffer.len());
+    }
+
+    /// The next frame; none until more bytes come.
+    pub fn next_frame(&mut self) -> Option<Frame<'_>> {
+        if self.start == self.end {
+            return None;
+        }
+        let step = look(&self.buffer[self.start..self.end], self.count_packets);
+        self.take(step)
+    }
+
+    /// Removes what a step found and makes the frame of it.
+    fn take(&mut self, step: Step) -> Option<Frame<'_>> {
+        let at = self.start;
+        self.needed = 0;
+        Some(match step {
+            Step::Wait(needed) => {
+                self.needed = needed;
+                return None;
+            }
+            Step::Text(length) => {
+                self.start += length;
+                self.counters.text_bytes += length as u64;
+                Frame::Text(&self.buffer[at..at + length])
+            }
+            Step::Noise(length, reason) => {
+                self.start += length;
+                self.counters.noise_bytes += length as u64;
+                self.counters.dropped_packets += u64::from(reason == NoiseReason::BadPayload);
+                Frame::Noise { bytes: &self.buffer[at..at + length], reason }
+            }
+            Step::Packet(form, route, payload, length) => {
+                self.start += length;
+                self.counters.packets += 1;
+                self.counters.packet_bytes += length as u64;
+                Frame::Packet { form, route, payload: &self.buffer[at + payload.start..at + payload.end] }
+            }
+        })
+    }
+
+    /// Takes bytes that lie elsewhere and gives all frames that they complete to `each`.
+    pub fn feed(&mut self, mut bytes: &[u8], mut each: impl FnMut(Frame<'_>)) {
+        while !bytes.is_empty() {
+            let space = self.space();
+            let (now, later) = bytes.split_at(bytes.len().min(space.len()));
+            space[..now.len()].copy_from_slice(now);
+            self.advance(now.len());
+            while let Some(frame) = self.next_frame() {
+                each(frame);
+            }
+            bytes = later;
+        }
+    }
+
+    /// Whether a packet has begun and its end is still to come.
+    pub fn is_unfinished(&self) -> bool {
+        self.start < self.end
+    }
+
+    /// Ends the stream: what is left of an unfinished packet, as noise.
+    pub fn finish(&mut self) -> Option<Frame<'_>> {
+        let left = self.end - self.start;
+        if left == 0 {
+            return None;
+        }
+        self.take(Step::Noise(left, NoiseReason::Truncated))
+    }
+
+    /// What was received so far.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+}
+
+/// What stands at the start of `bytes`, which are not empty.
+fn look(bytes: &[u8], count_packets: bool) -> Step {
+    match bytes[0] {
+        LONG_START => look_long(bytes),
+        COUNT_START if count_packets => look_count(bytes),
+        _ => Step::Text(find_start(bytes, if count_packets { COUNT_START } else { LONG_START })),
+    }
+}
+
+fn look_long(bytes: &[u8]) -> Step {
+    let Some((header, rest)) = bytes.split_first_chunk::<LONG_HEADER>() else {
+        return Step::Wait(0);
+    };
+    let length = u32::from_le_bytes([header[2], header[3], header[4], header[5]]) as usize;
+    let check = u16::from_le_bytes([header[6], header[7]]);
+    if length > MAX_PAYLOAD || header_check(&header[..6]) != check {
+        return Step::Noise(1, NoiseReason::BadHeader);
+    }
+    let total = LONG_HEADER + length + LONG_TRAILER;
+    if bytes.len() < total {
+        return Step::Wait(total);
+    }
+    let (payload, trailer) = rest[..length + LONG_TRAILER].split_at(length);
+    if crc32fast::hash(payload).to_le_bytes() != trailer {
+        return Step::Noise(total, NoiseReason::BadPayload);
+    }
+    Step::Packet(PacketForm::Long, Route::from(header[1]), LONG_HEADER..LONG_HEADER + length, total)
+}
+
+fn look_count(bytes: &[u8]) -> Step {
+    let digit = |at: usize| bytes.get(at).map(|b| usize::from(b.wrapping_sub(COUNT_BIAS)));
+    let is_digit = |digit: Option<usize>| digit.is_none_or(|digit| digit < COUNT_RADIX);
+    let (high, low) = (digit(1), digit(2));
+    if !is_digit(high) || !is_digit(low) || (high, low) == (Some(0), Some(0)) {
+        return Step::Noise(1, NoiseReason::BadCount);
+    }
+    let (Some(high), Some(low)) = (high, low) else {
+        return Step::Wait(0);
+    };
+    let total = 3 + high * COUNT_RADIX + low;
+    if bytes.len() < total {
+        return Step::Wait(total);
+    }
+    Step::Packet(PacketForm::Count, Route::from(bytes[3]), 4..total, total)
+}
+
+/// The number of bytes before the first start byte; `other` is the one beside the long one.
+fn find_start(bytes: &[u8], other: u8) -> usize {
+    const BLOCK: usize = 32;
+    let is_start = |b: u8| (b == LONG_START) | (b == other);
+    let clear = bytes.chunks_exact(BLOCK).take_while(|block| !block.iter().fold(false, |any, &b| any | is_start(b)));
+    let skipped = clear.count() * BLOCK;
+    let rest = &bytes[skipped..];
+    skipped + rest.iter().position(|&b| is_start(b)).unwrap_or(rest.len())
+}
+
+#[cfg(test)]
+mod tests;
