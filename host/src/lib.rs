@@ -2,5 +2,18 @@
 //!
 //! The order of the modules is their layer order, lowest first.
 
-pub mod mesh;
 pub mod numeric;
+
+pub mod picture;
+
+pub mod mesh;
+
+pub mod octree;
+
+pub mod illumination;
+
+pub mod scene;
+
+pub mod plan;
+
+pub mod render;

@@ -19,3 +19,7 @@ pub struct Mesh {
     /// The surface that each triangle approximates, an index into the surfaces of the object.
     pub surfaces: Vec<u32>,
 }
+/// shim
+#[derive(Debug, thiserror::Error)]
+pub enum MeshError { /// shim
+ #[error("shim")] Shim }
