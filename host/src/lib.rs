@@ -1,6 +1,6 @@
 //! PERIS, the host: models an environment, keeps it in a linear octree, renders it, and shows it on a PS 340.
 //!
-//! The order of the modules is their layer order, lowest first.
+//! The order of the modules is their layer order, lowest first; the empty lines keep it from being sorted.
 
 pub mod numeric;
 

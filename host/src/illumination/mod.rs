@@ -88,12 +88,15 @@ impl Light {
             Light::Point { at, intensity } => {
                 let offset = at - point;
                 let distance = offset.length();
-                (distance > 0.0 && distance.is_finite())
-                    .then(|| Beam { towards: offset / distance, distance, irradiance: intensity / distance / distance })
+                (distance > 0.0 && distance.is_finite()).then(|| Beam {
+                    towards: offset / distance,
+                    distance,
+                    irradiance: intensity / distance / distance,
+                })
             }
-            Light::Directional { direction, irradiance } => direction
-                .try_normalize()
-                .map(|unit| Beam { towards: -unit, distance: f64::INFINITY, irradiance }),
+            Light::Directional { direction, irradiance } => {
+                direction.try_normalize().map(|unit| Beam { towards: -unit, distance: f64::INFINITY, irradiance })
+            }
         }
     }
 

@@ -21,5 +21,8 @@ pub struct Mesh {
 }
 /// shim
 #[derive(Debug, thiserror::Error)]
-pub enum MeshError { /// shim
- #[error("shim")] Shim }
+pub enum MeshError {
+    /// shim
+    #[error("shim")]
+    Shim,
+}

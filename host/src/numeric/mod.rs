@@ -1,3 +1,5 @@
 //! Numbers: rays, exact predicates, seeded sampling.
 
+pub mod predicates;
 pub mod ray;
+pub mod triangle;

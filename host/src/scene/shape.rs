@@ -70,18 +70,38 @@ impl Shape {
             Shape::Box { size } => Ok(shim_box(*size)),
             Shape::Ground { size } => {
                 let h = size / 2.0;
-                Ok(Mesh { vertices: vec![DVec3::new(-h, 0.0, -h), DVec3::new(-h, 0.0, h), DVec3::new(h, 0.0, h), DVec3::new(h, 0.0, -h)], triangles: vec![[0,1,2],[0,2,3]], ..Mesh::default() })
+                Ok(Mesh {
+                    vertices: vec![
+                        DVec3::new(-h, 0.0, -h),
+                        DVec3::new(-h, 0.0, h),
+                        DVec3::new(h, 0.0, h),
+                        DVec3::new(h, 0.0, -h),
+                    ],
+                    triangles: vec![[0, 1, 2], [0, 2, 3]],
+                    ..Mesh::default()
+                })
             }
-            Shape::Mesh { path } => { let _ = path; Err(MeshError::Shim) },
+            Shape::Mesh { path } => {
+                let _ = path;
+                Err(MeshError::Shim)
+            }
         }
     }
 }
 pub(super) const TEAPOT_DIAGONAL: f64 = 8.0;
 fn shim_box(size: DVec3) -> Mesh {
     let h = size / 2.0;
-    let v: Vec<DVec3> = (0..8).map(|i| DVec3::new(if i&1==0 {-h.x} else {h.x}, if i&2==0 {-h.y} else {h.y}, if i&4==0 {-h.z} else {h.z})).collect();
-    let q = [[0,2,3,1],[4,5,7,6],[0,1,5,4],[2,6,7,3],[0,4,6,2],[1,3,7,5]];
-    let triangles = q.iter().flat_map(|&[a,b,c,d]| [[a,b,c],[a,c,d]]).collect();
+    let v: Vec<DVec3> = (0..8)
+        .map(|i| {
+            DVec3::new(
+                if i & 1 == 0 { -h.x } else { h.x },
+                if i & 2 == 0 { -h.y } else { h.y },
+                if i & 4 == 0 { -h.z } else { h.z },
+            )
+        })
+        .collect();
+    let q = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = q.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     Mesh { vertices: v, triangles, ..Mesh::default() }
 }
 fn shim_sphere(r: f64, chord: f64) -> Mesh {
@@ -90,16 +110,24 @@ fn shim_sphere(r: f64, chord: f64) -> Mesh {
     let n = ((PI / step).ceil() as u32).max(4);
     let m = 2 * n;
     let mut mesh = Mesh::default();
-    for i in 0..=n { for j in 0..m {
-        let (t, p) = (PI * f64::from(i) / f64::from(n), 2.0 * PI * f64::from(j) / f64::from(m));
-        mesh.vertices.push(DVec3::new(t.sin()*p.sin(), t.cos(), t.sin()*p.cos()) * r);
-    }}
-    for i in 0..n { for j in 0..m {
-        let at = |i: u32, j: u32| i * m + j % m;
-        let (a,b,c,d) = (at(i,j), at(i+1,j), at(i+1,j+1), at(i,j+1));
-        if i + 1 < n { mesh.triangles.push([a,b,c]); }
-        if i > 0 { mesh.triangles.push([a,c,d]); }
-    }}
+    for i in 0..=n {
+        for j in 0..m {
+            let (t, p) = (PI * f64::from(i) / f64::from(n), 2.0 * PI * f64::from(j) / f64::from(m));
+            mesh.vertices.push(DVec3::new(t.sin() * p.sin(), t.cos(), t.sin() * p.cos()) * r);
+        }
+    }
+    for i in 0..n {
+        for j in 0..m {
+            let at = |i: u32, j: u32| i * m + j % m;
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            if i + 1 < n {
+                mesh.triangles.push([a, b, c]);
+            }
+            if i > 0 {
+                mesh.triangles.push([a, c, d]);
+            }
+        }
+    }
     mesh.corner_normals = mesh.triangles.iter().map(|t| t.map(|i| mesh.vertices[i as usize] / r)).collect();
     mesh
 }

@@ -109,8 +109,11 @@ fn line(rows: &[DVec4; 4], x: f64, y: f64, radius: f64, depth_clipping: bool) ->
         clip(&mut range, depth);
         clip(&mut range, [w[0] - depth[0], w[1] - depth[1]]);
     }
-    (range[0] < range[1] && origin.is_finite())
-        .then_some(Sight { ray: Ray { origin, direction }, t_min: range[0], t_max: range[1] })
+    (range[0] < range[1] && origin.is_finite()).then_some(Sight {
+        ray: Ray { origin, direction },
+        t_min: range[0],
+        t_max: range[1],
+    })
 }
 
 /// Cuts a range of t to where `slope t + value >= 0`.

@@ -1,0 +1,263 @@
+//! The linear octree: sorted locational codes over triangles, location, and what a ray hits.
+
+pub mod brute_force;
+mod code;
+mod cube;
+
+use glam::DVec3;
+use serde::Serialize;
+
+pub use crate::numeric::ray::{Hit, Ray};
+use crate::numeric::triangle::{Crossing, MAX_MAGNITUDE, Shear};
+pub use code::{LocationalCode, MAX_DEPTH};
+use cube::Cube;
+
+/// Most triangles that one octree takes.
+pub const MAX_TRIANGLES: usize = 1 << 28;
+
+/// How an octree is built and walked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Resolution N: the modelling cube has 2^N voxels a side. Counts as [`MAX_DEPTH`] above it.
+    pub depth: u32,
+    /// A cell with no more triangles than this is not divided.
+    pub leaf_triangles: usize,
+    /// How rays find their way.
+    pub walk: Walk,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { depth: 16, leaf_triangles: 4, walk: Walk::Index }
+    }
+}
+
+/// How a ray finds the cells on its way. All ways give the same hits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Walk {
+    /// Down an index of wide nodes that is derived from the sorted codes.
+    #[default]
+    Index,
+    /// From cell to cell across the side that the leading direction meets, each found by binary search.
+    LeadingDirection,
+}
+
+/// Why an octree cannot be built.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OctreeError {
+    /// A coordinate is infinite or not a number.
+    #[error("vertex {vertex} is not finite")]
+    NonFiniteVertex {
+        /// Index of the vertex.
+        vertex: usize,
+    },
+    /// A coordinate is beyond [`MAX_MAGNITUDE`].
+    #[error("vertex {vertex} is farther than {MAX_MAGNITUDE:e} from the origin")]
+    VertexTooFar {
+        /// Index of the vertex.
+        vertex: usize,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} names vertex {index}, but there are only {vertices}")]
+    IndexOutOfRange {
+        /// Index of the triangle.
+        triangle: usize,
+        /// The vertex that it names.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// More triangles than [`MAX_TRIANGLES`].
+    #[error("{triangles} triangles are more than the {MAX_TRIANGLES} that one octree takes")]
+    TooManyTriangles {
+        /// Number of triangles.
+        triangles: usize,
+    },
+}
+
+/// Where a point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Location {
+    /// In a voxel that holds boundary surface.
+    Voxel(LocationalCode),
+    /// In a larger cell that holds boundary surface and is not divided.
+    Partial(LocationalCode),
+    /// In a region without surface, which no stored node represents.
+    Empty {
+        /// The largest empty cube of the octree around the point.
+        code: LocationalCode,
+        /// Its level: its side is 2^(N - level) voxels.
+        level: u32,
+    },
+    /// Outside the modelling cube.
+    Outside,
+}
+
+/// Work done for one ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WalkCount {
+    /// Cells visited: nodes and leaves of the index, or cells of the walk.
+    pub cells: u64,
+    /// Triangles tested.
+    pub triangles: u64,
+}
+
+/// What an octree holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Triangles given.
+    pub triangles: usize,
+    /// Terminal nodes stored.
+    pub leaves: usize,
+    /// Terminal nodes larger than a voxel.
+    pub partial_nodes: usize,
+    /// Terminal nodes that are voxels.
+    pub voxel_nodes: usize,
+    /// Triangles named by all terminal nodes together.
+    pub references: usize,
+    /// Terminal nodes of each level, from the modelling cube down.
+    pub depth_histogram: Vec<usize>,
+    /// Side of the modelling cube, world units.
+    pub side: f64,
+    /// Memory of the codes, the index and the triangles, bytes.
+    pub bytes: usize,
+    /// `bytes` over `triangles`.
+    pub bytes_per_triangle: f64,
+}
+
+/// A linear octree over triangles. It does not change; threads share it freely.
+#[derive(Clone, Debug)]
+pub struct Octree {
+    cube: Cube,
+    depth: u32,
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    codes: Vec<LocationalCode>,
+}
+
+impl Octree {
+    /// Builds the octree.
+    ///
+    /// - `vertices`: positions, world units.
+    /// - `triangles`: corners, indices into `vertices`; degenerate ones are welcome and are never hit.
+    ///
+    /// # Errors
+    /// A vertex that is not finite or too far out, an index out of range, more than [`MAX_TRIANGLES`]. No triangles
+    /// at all is fine.
+    pub fn build(vertices: &[DVec3], triangles: &[[u32; 3]], settings: &Settings) -> Result<Self, OctreeError> {
+        check(vertices, triangles)?;
+        let (low, high) =
+            vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+        let cube = if vertices.is_empty() { Cube::around(DVec3::ZERO, DVec3::ZERO) } else { Cube::around(low, high) };
+        let codes = if triangles.is_empty() { Vec::new() } else { vec![LocationalCode::ROOT] };
+        Ok(Self {
+            cube,
+            depth: settings.depth.min(MAX_DEPTH),
+            vertices: vertices.to_vec(),
+            triangles: triangles.to_vec(),
+            codes,
+        })
+    }
+
+    /// Finds the nearest hit with `t_min < t < t_max`, both exclusive.
+    ///
+    /// Either side of a triangle is hit. Edges and corners belong to their triangles, so a closed mesh lets no ray
+    /// through; of several hits with the same `t` the triangle with the lowest index counts. A triangle seen exactly
+    /// edge-on is not hit. A ray whose direction is zero, or that is not finite, hits nothing.
+    pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
+        self.closest_counted(ray, t_min, t_max).0
+    }
+
+    /// [`Octree::closest`], with the work that it took.
+    pub fn closest_counted(&self, ray: &Ray, t_min: f64, t_max: f64) -> (Option<Hit>, WalkCount) {
+        let mut best: Option<Hit> = None;
+        let Some(shear) = Shear::new(ray, self.cube.side.recip()) else {
+            return (None, WalkCount::default());
+        };
+        for (index, corners) in self.triangles.iter().enumerate() {
+            if let Some(Crossing { t, u, v }) = shear.crossing(corners.map(|i| self.vertices[i as usize]))
+                && t > t_min
+                && t < best.map_or(t_max, |hit| hit.t)
+            {
+                best = Some(Hit { t, triangle: index as u32, u, v });
+            }
+        }
+        (best, WalkCount { cells: 1, triangles: self.triangles.len() as u64 })
+    }
+
+    /// Says whether anything is hit with `t_min < t < t_max`.
+    pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
+        self.closest(ray, t_min, t_max).is_some()
+    }
+
+    /// What the octree holds.
+    pub fn statistics(&self) -> Statistics {
+        let mut depth_histogram = vec![0; self.depth as usize + 1];
+        for code in &self.codes {
+            depth_histogram[code.level() as usize] += 1;
+        }
+        let bytes = self.vertices.len() * 24 + self.triangles.len() * 12 + self.codes.len() * 8;
+        let voxel_nodes = depth_histogram.last().copied().unwrap_or(0);
+        Statistics {
+            triangles: self.triangles.len(),
+            leaves: self.codes.len(),
+            partial_nodes: self.codes.len() - voxel_nodes,
+            voxel_nodes,
+            references: self.triangles.len(),
+            depth_histogram,
+            side: self.cube.side,
+            bytes,
+            bytes_per_triangle: bytes as f64 / self.triangles.len().max(1) as f64,
+        }
+    }
+
+    /// The terminal nodes that hold surface, sorted.
+    pub fn codes(&self) -> &[LocationalCode] {
+        &self.codes
+    }
+
+    /// Lowest and highest corner of a cell, world units.
+    pub fn bounds(&self, code: LocationalCode) -> (DVec3, DVec3) {
+        self.cube.bounds(code)
+    }
+
+    /// Finds the cell that holds a point: truncate, interleave, binary search.
+    pub fn locate(&self, point: DVec3) -> Location {
+        match self.cube.voxel(point) {
+            Some(voxel) => self.locate_voxel(LocationalCode::containing(voxel, MAX_DEPTH)),
+            None => Location::Outside,
+        }
+    }
+
+    fn locate_voxel(&self, voxel: LocationalCode) -> Location {
+        let after = self.codes.partition_point(|&code| code <= voxel);
+        let before = after.checked_sub(1).map(|i| self.codes[i]);
+        if let Some(code) = before
+            && code.contains(voxel)
+        {
+            return if code.level() == self.depth { Location::Voxel(code) } else { Location::Partial(code) };
+        }
+        let next = self.codes.get(after).copied();
+        let shared = before.into_iter().chain(next).map(|code| code.common_digits(voxel)).max();
+        let level = shared.map_or(0, |digits| digits + 1);
+        Location::Empty { code: voxel.ancestor(level), level }
+    }
+}
+
+fn check(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), OctreeError> {
+    if let Some(vertex) = vertices.iter().position(|p| !p.is_finite()) {
+        return Err(OctreeError::NonFiniteVertex { vertex });
+    }
+    if let Some(vertex) = vertices.iter().position(|p| p.abs().max_element() > MAX_MAGNITUDE) {
+        return Err(OctreeError::VertexTooFar { vertex });
+    }
+    if triangles.len() > MAX_TRIANGLES {
+        return Err(OctreeError::TooManyTriangles { triangles: triangles.len() });
+    }
+    for (triangle, corners) in triangles.iter().enumerate() {
+        if let Some(&index) = corners.iter().find(|&&i| i as usize >= vertices.len()) {
+            return Err(OctreeError::IndexOutOfRange { triangle, index, vertices: vertices.len() });
+        }
+    }
+    Ok(())
+}
