@@ -17,3 +17,5 @@ pub mod scene;
 pub mod plan;
 
 pub mod render;
+
+pub mod script;
