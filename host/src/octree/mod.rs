@@ -1,16 +1,26 @@
 //! The linear octree: sorted locational codes over triangles, location, and what a ray hits.
 
 pub mod brute_force;
+mod build;
+mod clip;
 mod code;
 mod cube;
+mod frame;
+mod index;
+mod packet;
+mod walk;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::Serialize;
 
 pub use crate::numeric::ray::{Hit, Ray};
-use crate::numeric::triangle::{Crossing, MAX_MAGNITUDE, Shear};
+use crate::numeric::triangle::MAX_MAGNITUDE;
+use build::Division;
 pub use code::{LocationalCode, MAX_DEPTH};
 use cube::Cube;
+use index::Node;
+use packet::{LANES, Packet};
 
 /// Most triangles that one octree takes.
 pub const MAX_TRIANGLES: usize = 1 << 28;
@@ -132,7 +142,13 @@ pub struct Octree {
     depth: u32,
     vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    walk: Walk,
     codes: Vec<LocationalCode>,
+    /// Where the packets of each terminal node begin, and at last where they end.
+    packet_starts: Vec<u32>,
+    packets: Vec<Packet>,
+    nodes: Vec<Node>,
+    references: usize,
 }
 
 impl Octree {
@@ -146,16 +162,36 @@ impl Octree {
     /// at all is fine.
     pub fn build(vertices: &[DVec3], triangles: &[[u32; 3]], settings: &Settings) -> Result<Self, OctreeError> {
         check(vertices, triangles)?;
-        let (low, high) =
-            vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-        let cube = if vertices.is_empty() { Cube::around(DVec3::ZERO, DVec3::ZERO) } else { Cube::around(low, high) };
-        let codes = if triangles.is_empty() { Vec::new() } else { vec![LocationalCode::ROOT] };
+        let cube = enclose(vertices, triangles);
+        let depth = settings.depth.min(MAX_DEPTH);
+        let local: Vec<DVec3> = vertices.iter().map(|&p| cube.local(p)).collect();
+        let division = Division { vertices: &local, triangles, depth, leaf_triangles: settings.leaf_triangles };
+        let leaves = division.leaves();
+        let packets: Vec<Packet> = (0..leaves.codes.len())
+            .into_par_iter()
+            .with_min_len(1024)
+            .flat_map_iter(|leaf| {
+                let corners = |triangle: u32| triangles[triangle as usize].map(|i| local[i as usize]);
+                leaves.triangles_of(leaf).chunks(LANES).map(move |chunk| Packet::new(chunk, corners))
+            })
+            .collect();
+        let mut packet_starts = vec![0];
+        packet_starts.extend((0..leaves.codes.len()).scan(0, |end, leaf| {
+            *end += leaves.triangles_of(leaf).len().div_ceil(LANES) as u32;
+            Some(*end)
+        }));
+        let nodes = index::nodes(&leaves, &packet_starts);
         Ok(Self {
             cube,
-            depth: settings.depth.min(MAX_DEPTH),
+            depth,
             vertices: vertices.to_vec(),
             triangles: triangles.to_vec(),
-            codes,
+            walk: settings.walk,
+            references: leaves.triangles.len(),
+            codes: leaves.codes,
+            packet_starts,
+            packets,
+            nodes,
         })
     }
 
@@ -170,24 +206,12 @@ impl Octree {
 
     /// [`Octree::closest`], with the work that it took.
     pub fn closest_counted(&self, ray: &Ray, t_min: f64, t_max: f64) -> (Option<Hit>, WalkCount) {
-        let mut best: Option<Hit> = None;
-        let Some(shear) = Shear::new(ray, self.cube.side.recip()) else {
-            return (None, WalkCount::default());
-        };
-        for (index, corners) in self.triangles.iter().enumerate() {
-            if let Some(Crossing { t, u, v }) = shear.crossing(corners.map(|i| self.vertices[i as usize]))
-                && t > t_min
-                && t < best.map_or(t_max, |hit| hit.t)
-            {
-                best = Some(Hit { t, triangle: index as u32, u, v });
-            }
-        }
-        (best, WalkCount { cells: 1, triangles: self.triangles.len() as u64 })
+        walk::search(self, ray, t_min, t_max, false)
     }
 
     /// Says whether anything is hit with `t_min < t < t_max`.
     pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-        self.closest(ray, t_min, t_max).is_some()
+        walk::search(self, ray, t_min, t_max, true).0.is_some()
     }
 
     /// What the octree holds.
@@ -196,14 +220,19 @@ impl Octree {
         for code in &self.codes {
             depth_histogram[code.level() as usize] += 1;
         }
-        let bytes = self.vertices.len() * 24 + self.triangles.len() * 12 + self.codes.len() * 8;
+        let bytes = size_of_val(self.vertices.as_slice())
+            + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.codes.as_slice())
+            + size_of_val(self.packet_starts.as_slice())
+            + size_of_val(self.packets.as_slice())
+            + size_of_val(self.nodes.as_slice());
         let voxel_nodes = depth_histogram.last().copied().unwrap_or(0);
         Statistics {
             triangles: self.triangles.len(),
             leaves: self.codes.len(),
             partial_nodes: self.codes.len() - voxel_nodes,
             voxel_nodes,
-            references: self.triangles.len(),
+            references: self.references,
             depth_histogram,
             side: self.cube.side,
             bytes,
@@ -224,24 +253,37 @@ impl Octree {
     /// Finds the cell that holds a point: truncate, interleave, binary search.
     pub fn locate(&self, point: DVec3) -> Location {
         match self.cube.voxel(point) {
-            Some(voxel) => self.locate_voxel(LocationalCode::containing(voxel, MAX_DEPTH)),
+            Some(voxel) => match self.locate_leaf(LocationalCode::containing(voxel, MAX_DEPTH)) {
+                Ok(leaf) if self.codes[leaf].level() == self.depth => Location::Voxel(self.codes[leaf]),
+                Ok(leaf) => Location::Partial(self.codes[leaf]),
+                Err(empty) => empty,
+            },
             None => Location::Outside,
         }
     }
 
-    fn locate_voxel(&self, voxel: LocationalCode) -> Location {
+    /// The terminal node that holds a voxel, or else the empty region around it.
+    ///
+    /// If the longest run of digits that the voxel shares with a stored code has i of them, the cube of its first
+    /// i + 1 digits holds no stored node: that is the empty region. A neighbour in the order shares the longest run.
+    fn locate_leaf(&self, voxel: LocationalCode) -> Result<usize, Location> {
         let after = self.codes.partition_point(|&code| code <= voxel);
-        let before = after.checked_sub(1).map(|i| self.codes[i]);
-        if let Some(code) = before
-            && code.contains(voxel)
-        {
-            return if code.level() == self.depth { Location::Voxel(code) } else { Location::Partial(code) };
+        let before = after.checked_sub(1).filter(|&leaf| self.codes[leaf].contains(voxel));
+        if let Some(leaf) = before {
+            return Ok(leaf);
         }
-        let next = self.codes.get(after).copied();
-        let shared = before.into_iter().chain(next).map(|code| code.common_digits(voxel)).max();
+        let neighbours = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let shared = neighbours.filter_map(|leaf| self.codes.get(leaf)).map(|code| code.common_digits(voxel)).max();
         let level = shared.map_or(0, |digits| digits + 1);
-        Location::Empty { code: voxel.ancestor(level), level }
+        Err(Location::Empty { code: voxel.ancestor(level), level })
     }
+}
+
+/// The modelling cube around what the triangles use.
+fn enclose(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Cube {
+    let used = triangles.iter().flatten().map(|&i| vertices[i as usize]);
+    let (low, high) = used.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    if low.is_finite() { Cube::around(low, high) } else { Cube::around(DVec3::ZERO, DVec3::ZERO) }
 }
 
 fn check(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), OctreeError> {
