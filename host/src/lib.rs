@@ -18,4 +18,8 @@ pub mod plan;
 
 pub mod render;
 
+pub mod study;
+
 pub mod script;
+
+pub mod cli;

@@ -36,29 +36,59 @@ fn report(shape: &Shape, side: usize) {
     let octree = Octree::build(&shape.vertices, &shape.triangles, &Settings::default()).expect("a good mesh");
     let built = start.elapsed();
     let s = octree.statistics();
-    println!("{}: octree {built:.3?} {:.0} B/tri leaves {} refs {:.2} hist {:?}", shape.name, s.bytes_per_triangle, s.leaves, s.references as f64/s.triangles as f64, s.depth_histogram);
-    let leading = Octree::build(&shape.vertices, &shape.triangles, &Settings { walk: Walk::LeadingDirection, ..Settings::default() }).expect("a good mesh");
+    println!(
+        "{}: octree {built:.3?} {:.0} B/tri leaves {} refs {:.2} hist {:?}",
+        shape.name,
+        s.bytes_per_triangle,
+        s.leaves,
+        s.references as f64 / s.triangles as f64,
+        s.depth_histogram
+    );
+    let leading = Octree::build(
+        &shape.vertices,
+        &shape.triangles,
+        &Settings { walk: Walk::LeadingDirection, ..Settings::default() },
+    )
+    .expect("a good mesh");
     let bvh2 = Hierarchy::build(shape, false);
     let cwbvh = Hierarchy::build(shape, true);
-    println!("bvh2 {:.3?} {} B/tri, cwbvh {:.3?} {} B/tri", bvh2.build, bvh2.bytes()/shape.triangles.len(), cwbvh.build, cwbvh.bytes()/shape.triangles.len());
+    println!(
+        "bvh2 {:.3?} {} B/tri, cwbvh {:.3?} {} B/tri",
+        bvh2.build,
+        bvh2.bytes() / shape.triangles.len(),
+        cwbvh.build,
+        cwbvh.bytes() / shape.triangles.len()
+    );
     for set in sets::sets(shape, &octree, side) {
         let singles = Hierarchy::prepare(&set);
         let mut differ = 0;
-        let mut cells = 0; let mut tris = 0; 
+        let mut cells = 0;
+        let mut tris = 0;
         for (ray, single) in set.rays.iter().zip(&singles) {
             let (ours, c) = octree.closest_counted(ray, 0.0, set.t_max);
-            cells += c.cells; tris += c.triangles;
+            cells += c.cells;
+            tris += c.triangles;
             let theirs = bvh2.closest(*single);
             differ += usize::from(ours.map(|h| h.triangle) != theirs.map(|h| h.1));
         }
         let n = set.rays.len();
         let fast = rate(n, || run(&octree, &set, 1));
         let lead = rate(n / 16, || run(&leading, &set, 16));
-        let hier = |h: &Hierarchy| rate(n, || singles.iter().filter(|&&r| if set.any { h.occluded(r) } else { h.closest(r).is_some() }).count());
+        let hier = |h: &Hierarchy| {
+            rate(n, || {
+                singles.iter().filter(|&&r| if set.any { h.occluded(r) } else { h.closest(r).is_some() }).count()
+            })
+        };
         let b2 = hier(&bvh2);
         let cw = hier(&cwbvh);
         let all = rate(n, || set.rays.par_iter().filter(|r| hit(&octree, r, &set)).count());
-        println!("{:8} octree {fast:6.2} leading {lead:6.2} bvh2 {b2:6.2} cwbvh {cw:6.2} all {all:6.2} ratio {:.2} differ {differ} cells {:.1} tris {:.1}", set.name, fast / b2.max(cw), cells as f64/n as f64, tris as f64/n as f64);
+        println!(
+            "{:8} octree {fast:6.2} leading {lead:6.2} bvh2 {b2:6.2} cwbvh {cw:6.2} all {all:6.2} ratio {:.2} differ {differ} cells {:.1} tris {:.1}",
+            set.name,
+            fast / b2.max(cw),
+            cells as f64 / n as f64,
+            tris as f64 / n as f64
+        );
     }
 }
 

@@ -110,6 +110,22 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Largest distance between the exact surfaces and the triangles that stand for them, scene units.
+    ///
+    /// It is measured, not the tolerance that was asked for; 0 without curved surfaces.
+    ///
+    /// # Errors
+    /// [`SceneError`] if a mesh cannot be made.
+    pub fn chord_error(&self) -> Result<f64, SceneError> {
+        let mut largest = 0.0f64;
+        for object in self.objects.iter().filter(|o| o.shape.is_exact_and_curved()) {
+            largest = largest.max(object.chord_error(self.settings.tolerance)?);
+        }
+        Ok(largest)
+    }
+}
+
 impl Object {
     fn check(&self) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: self.name.clone(), problem };

@@ -96,13 +96,7 @@ impl Prepared {
 
     fn add(&mut self, object: &Object, scene_tolerance: Option<f64>) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let stretch = largest_stretch(&object.transform);
-        let given = object.tolerance.or(scene_tolerance);
-        let own = given.map(|t| t / stretch).or_else(|| object.shape.extent().map(|e| e * RELATIVE_TOLERANCE));
-        let mesh = object
-            .shape
-            .mesh(own.unwrap_or(f64::INFINITY))
-            .map_err(|source| SceneError::Mesh { object: object.name.clone(), source })?;
+        let (mesh, tolerance) = object.mesh(scene_tolerance)?;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
         }
@@ -132,7 +126,7 @@ impl Prepared {
             first,
             count: mesh.triangles.len() as u32,
             bounds,
-            tolerance: own.unwrap_or(0.0) * stretch,
+            tolerance,
             normals_from,
         });
         Ok(())
@@ -181,6 +175,11 @@ impl Prepared {
         View::Camera(self.camera)
     }
 
+    /// Everything as one mesh, without materials.
+    pub fn into_mesh(self) -> Mesh {
+        Mesh { vertices: self.vertices, triangles: self.triangles, ..Mesh::default() }
+    }
+
     /// Bytes that the tables take.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.vertices[..])
@@ -207,6 +206,24 @@ fn largest_stretch(m: &DMat4) -> f64 {
         longest
     } else {
         (x.length_squared() + y.length_squared() + z.length_squared()).sqrt()
+    }
+}
+
+impl Object {
+    /// The triangles in own coordinates, and the tolerance in scene units that they were made for (0 for flat shapes).
+    fn mesh(&self, scene_tolerance: Option<f64>) -> Result<(Mesh, f64), SceneError> {
+        let stretch = largest_stretch(&self.transform);
+        let given = self.tolerance.or(scene_tolerance);
+        let own = self.shape.extent().map(|extent| given.map_or(extent * RELATIVE_TOLERANCE, |t| t / stretch));
+        let mesh = self.shape.mesh(own.unwrap_or(f64::INFINITY));
+        let mesh = mesh.map_err(|source| SceneError::Mesh { object: self.name.clone(), source })?;
+        Ok((mesh, own.unwrap_or(0.0) * stretch))
+    }
+
+    /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
+    pub(super) fn chord_error(&self, scene_tolerance: Option<f64>) -> Result<f64, SceneError> {
+        let (mesh, _) = self.mesh(scene_tolerance)?;
+        Ok(self.shape.chord_error(&mesh) * largest_stretch(&self.transform))
     }
 }
 

@@ -59,6 +59,11 @@ impl Shape {
         }
     }
 
+    /// Whether it is tessellated from a curved surface that is known exactly.
+    pub fn is_exact_and_curved(&self) -> bool {
+        matches!(self, Shape::Teapot | Shape::Sphere { .. })
+    }
+
     /// Triangles within `chord` of the shape, in own coordinates.
     ///
     /// # Errors
@@ -86,6 +91,25 @@ impl Shape {
                 Err(MeshError::Shim)
             }
         }
+    }
+}
+impl Shape {
+    pub(super) fn chord_error(&self, mesh: &Mesh) -> f64 {
+        let r = match self {
+            Shape::Sphere { radius } => *radius,
+            _ => 2.0,
+        };
+        mesh.triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| mesh.vertices[i as usize]);
+                r - ((a + b + c) / 3.0)
+                    .length()
+                    .min(((a + b) / 2.0).length())
+                    .min(((b + c) / 2.0).length())
+                    .min(((a + c) / 2.0).length())
+            })
+            .fold(0.0, f64::max)
     }
 }
 pub(super) const TEAPOT_DIAGONAL: f64 = 8.0;
