@@ -1,3 +1,7 @@
 //! The program `peris`.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    host::cli::main()
+}

@@ -1,0 +1,106 @@
+//! How the program ends.
+
+use crate::picture::PictureError;
+use crate::render::RenderError;
+use crate::scene::SceneError;
+use crate::script::ScriptError;
+use crate::study::{PlotError, StudyError};
+use std::process::ExitCode;
+
+/// Exit codes of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Exit {
+    /// All went well.
+    Done = 0,
+    /// The work failed.
+    Failed = 1,
+    /// The command line is wrong.
+    Usage = 2,
+    /// The script or the scene is wrong.
+    Scene = 3,
+    /// The line to the workstation, or the other process, failed.
+    Line = 4,
+    /// Interrupted; what was finished is kept.
+    Interrupted = 130,
+}
+
+impl Exit {
+    /// Every exit code.
+    pub const ALL: [Exit; 6] = [Exit::Done, Exit::Failed, Exit::Usage, Exit::Scene, Exit::Line, Exit::Interrupted];
+
+    /// What it means.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Exit::Done => "all went well",
+            Exit::Failed => "the work failed",
+            Exit::Usage => "the command line is wrong",
+            Exit::Scene => "the script or the scene is wrong",
+            Exit::Line => "the line to the workstation, or the other process, failed",
+            Exit::Interrupted => "interrupted; what was finished is kept",
+        }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> ExitCode {
+        ExitCode::from(exit as u8)
+    }
+}
+
+/// The exit codes, for the end of each help text.
+pub(super) fn table() -> String {
+    let line = |e: &Exit| format!("\n  {:<3}  {}", *e as u8, e.meaning());
+    format!("Exit codes:{}", Exit::ALL.iter().map(line).collect::<String>())
+}
+
+/// Why a command ends early, and with which code.
+#[derive(Debug)]
+pub struct Failure {
+    /// The code.
+    pub exit: Exit,
+    /// What happened.
+    pub error: anyhow::Error,
+}
+
+impl Failure {
+    /// A failure with this code.
+    pub fn new(exit: Exit, error: impl Into<anyhow::Error>) -> Failure {
+        Failure { exit, error: error.into() }
+    }
+}
+
+macro_rules! failures {
+    ($($error:ty => $exit:ident),* $(,)?) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Failure {
+                Failure::new(Exit::$exit, error)
+            }
+        })*
+    };
+}
+
+failures! {
+    anyhow::Error => Failed,
+    clap::Error => Usage,
+    std::io::Error => Failed,
+    serde_json::Error => Failed,
+    crate::mesh::MeshError => Failed,
+    crate::octree::OctreeError => Failed,
+    PictureError => Failed,
+    PlotError => Failed,
+    RenderError => Failed,
+    SceneError => Scene,
+    ScriptError => Scene,
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Failure {
+        let exit = match error {
+            StudyError::Interrupted => Exit::Interrupted,
+            StudyError::Scene(_) | StudyError::Nothing(_) => Exit::Scene,
+            StudyError::Render(_) | StudyError::Picture(_) => Exit::Failed,
+        };
+        Failure::new(exit, error)
+    }
+}

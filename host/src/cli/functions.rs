@@ -1,0 +1,38 @@
+//! `peris functions`: what a scene script may call.
+
+use super::{Exit, Failure, Row};
+use crate::script::{self, FUNCTIONS};
+use clap::{Args, FromArgMatches};
+
+pub(super) const ROW: Row = Row {
+    name: "functions",
+    summary: "Lists the functions of scene scripts, or explains one.",
+    arguments: Arguments::augment_args,
+    run: |matches| run(&Arguments::from_arg_matches(matches)?),
+};
+
+#[derive(Args, Debug)]
+struct Arguments {
+    /// The function to explain; without it, all are listed
+    name: Option<String>,
+    /// The whole reference, as Markdown
+    #[arg(long)]
+    reference: bool,
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.reference {
+        print!("{}", script::reference());
+    } else if let Some(name) = &arguments.name {
+        let function = FUNCTIONS.iter().find(|f| f.name == name);
+        let function =
+            function.ok_or_else(|| Failure::new(Exit::Usage, anyhow::anyhow!("there is no function {name}")))?;
+        println!("{}", function.help());
+    } else {
+        let width = FUNCTIONS.iter().map(|f| f.name.len()).max().unwrap_or(0);
+        for function in FUNCTIONS {
+            println!("{:<width$}  {}", function.name, function.summary);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! The command line: one row for each sub-command, from which help and dispatch are derived.
+
+mod convert;
+mod exit;
+mod functions;
+mod octree;
+mod plan;
+mod progress;
+mod render;
+mod source;
+mod study;
+
+pub use exit::{Exit, Failure};
+pub use progress::{Progress, interrupted, watch_interrupts};
+pub use source::{SCRIPT_HELP, load};
+
+use clap::{ArgMatches, Command};
+use std::process::ExitCode;
+
+/// A sub-command.
+pub struct Row {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does, in a sentence.
+    pub summary: &'static str,
+    /// Adds its arguments.
+    pub arguments: fn(Command) -> Command,
+    /// Runs it.
+    pub run: fn(&ArgMatches) -> Result<(), Failure>,
+}
+
+/// Every sub-command.
+pub const COMMANDS: &[Row] = &[render::ROW, plan::ROW, octree::ROW, study::ROW, convert::ROW, functions::ROW];
+
+/// The command line as clap knows it.
+pub fn command() -> Command {
+    let program = Command::new("peris")
+        .about("Models an environment, renders it, and shows it on a PS 340.")
+        .version(env!("CARGO_PKG_VERSION"))
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .after_help(exit::table());
+    COMMANDS.iter().fold(program, |program, row| {
+        let sub = (row.arguments)(Command::new(row.name)).about(row.summary).after_help(exit::table());
+        program.subcommand(sub)
+    })
+}
+
+/// Runs the program with the arguments of the process.
+pub fn main() -> ExitCode {
+    start_log();
+    let matches = match command().try_get_matches() {
+        Ok(matches) => matches,
+        Err(error) => {
+            // Printing fails only if nobody reads.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Usage.into() } else { Exit::Done.into() };
+        }
+    };
+    let Some((name, arguments)) = matches.subcommand() else { return Exit::Usage.into() };
+    let Some(row) = COMMANDS.iter().find(|row| row.name == name) else { return Exit::Usage.into() };
+    match (row.run)(arguments) {
+        Ok(()) => Exit::Done.into(),
+        Err(failure) => {
+            eprintln!("peris {name}: {:#}", failure.error);
+            failure.exit.into()
+        }
+    }
+}
+
+/// Log lines go to standard error, if the variable PERIS_LOG asks for them (for instance `PERIS_LOG=info`).
+fn start_log() {
+    if let Ok(filter) = tracing_subscriber::EnvFilter::try_from_env("PERIS_LOG") {
+        tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_documents_its_arguments_and_the_exit_codes() {
+        for row in COMMANDS {
+            let mut sub = command().find_subcommand(row.name).expect("present").clone();
+            let help = sub.render_long_help().to_string();
+            assert!(help.contains("130") && help.contains(row.summary), "{help}");
+            for argument in sub.get_arguments() {
+                assert!(argument.get_help().is_some(), "{}: {}", row.name, argument.get_id());
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! `peris study`: error against run time.
+
+use super::source::stem;
+use super::{Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
+use crate::render::Watch;
+use crate::study::{KNOBS, KnobRow};
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+pub(super) const ROW: Row = Row {
+    name: "study",
+    summary: "Sweeps a quality setting: error against run time, as table, CSV and plot.",
+    arguments,
+    run,
+};
+
+#[derive(Args, Debug)]
+struct Arguments {
+    #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
+    script: String,
+    /// Folder for the table (.csv) and the plot (.svg and .png); it is made if need be
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    output: PathBuf,
+    /// Columns of the pictures; the rows follow [default: 160]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    width: Option<u32>,
+    /// Samples in each pixel: of the reference, or of all pictures where something else is studied
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
+    samples: Option<u32>,
+    /// How many settings are tried [default: 7]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=16))]
+    settings: Option<u32>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "COUNT")]
+    threads: Option<NonZeroUsize>,
+    /// Reports as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+fn arguments(command: Command) -> Command {
+    let command = command.subcommand_required(true).arg_required_else_help(true);
+    KNOBS.iter().fold(command, |command, knob| {
+        command.subcommand(
+            Arguments::augment_args(Command::new(knob.name))
+                .about(format!("Sweeps {}.", knob.summary))
+                .after_help(super::exit::table()),
+        )
+    })
+}
+
+fn run(matches: &ArgMatches) -> Result<(), Failure> {
+    let (name, matches) = matches.subcommand().ok_or_else(|| anyhow::anyhow!("no study is named"))?;
+    let knob = KNOBS.iter().find(|k| k.name == name).ok_or_else(|| anyhow::anyhow!("no study {name}"))?;
+    sweep(knob, &Arguments::from_arg_matches(matches)?)
+}
+
+fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
+    let cancelled = watch_interrupts();
+    let scene = load(&arguments.script)?.scene;
+    let mut options = knob.options;
+    options.width = arguments.width.unwrap_or(options.width);
+    options.samples = arguments.samples.unwrap_or(options.samples);
+    options.settings = arguments.settings.unwrap_or(options.settings);
+    options.threads = arguments.threads;
+    std::fs::create_dir_all(&arguments.output)?;
+    let progress = Progress::new("studying", arguments.json);
+    let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
+    let study = (knob.run)(&scene, &options, &watch);
+    progress.finish();
+    let study = study?;
+    let script = stem(&arguments.script);
+    let name = format!("{script}-{}", knob.name);
+    let csv = arguments.output.join(format!("{name}.csv"));
+    std::fs::write(&csv, study.csv())?;
+    let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&arguments.output, &name)?;
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&study)?);
+    } else {
+        print!("{}", study.table());
+        println!("{}, {}, {}", csv.display(), svg.display(), png.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,206 @@
+//! Pictures as files: PNG with eight bits sRGB, OpenEXR with linear 32-bit floats.
+
+use super::{Picture, Pixel};
+use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use std::path::{Path, PathBuf};
+
+/// Most bytes that reading a picture may allocate.
+const MAX_READ_BYTES: u64 = 8 << 30;
+
+/// What can go wrong with a picture.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// An empty side, or too many pixels.
+    #[error("a picture of {width} x {height} pixels is empty or larger than {} pixels", super::MAX_PIXELS)]
+    Size {
+        /// Columns asked for.
+        width: u32,
+        /// Rows asked for.
+        height: u32,
+    },
+    /// Two pictures that were to be compared differ in size.
+    #[error("pictures of different size: {0} x {1} and {2} x {3} pixels")]
+    Mismatch(u32, u32, u32, u32),
+    /// The name ends in something else than the formats known.
+    #[error("{}: a picture's name ends in .png or .exr", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: image::ImageError,
+    },
+    /// The file cannot be opened.
+    #[error("{}: {source}", path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// Encodes linear light as an sRGB byte.
+///
+/// s = 12.92 l for l <= 0.0031308, else 1.055 l^(1/2.4) - 0.055; clipped to 0..=1, rounded to 255 steps.
+/// What is not a number becomes 0.
+///
+/// # Source
+/// IEC 61966-2-1.
+pub fn encode_srgb(linear: f32) -> u8 {
+    let l = f64::from(linear).clamp(0.0, 1.0);
+    let s = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+    (s * 255.0).round() as u8
+}
+
+/// Decodes an sRGB byte to linear light, 0..=1; the inverse of [`encode_srgb`].
+pub fn decode_srgb(byte: u8) -> f32 {
+    let s = f64::from(byte) / 255.0;
+    (if s <= 0.040_45 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }) as f32
+}
+
+fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("png") => Ok(ImageFormat::Png),
+        Some("exr") => Ok(ImageFormat::OpenExr),
+        _ => Err(PictureError::Format { path: path.into() }),
+    }
+}
+
+impl Picture {
+    /// Whether [`Picture::write`] knows the format that the name ends in; asked before a long computation.
+    ///
+    /// # Errors
+    /// [`PictureError::Format`].
+    pub fn check_name(path: &Path) -> Result<(), PictureError> {
+        format_of(path).map(|_| ())
+    }
+
+    /// Writes the picture: `.png` as opaque eight-bit sRGB, `.exr` as linear 32-bit RGB with the coverage as alpha.
+    ///
+    /// # Errors
+    /// [`PictureError::Format`] for another name, [`PictureError::File`] if the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), PictureError> {
+        let failed = |source| PictureError::File { path: path.into(), source };
+        match format_of(path)? {
+            ImageFormat::Png => image::save_buffer_with_format(
+                path,
+                &self.to_srgb8(),
+                self.width,
+                self.height,
+                image::ColorType::Rgb8,
+                ImageFormat::Png,
+            ),
+            _ => image::save_buffer_with_format(
+                path,
+                bytemuck::cast_slice(&self.pixels),
+                self.width,
+                self.height,
+                image::ColorType::Rgba32F,
+                ImageFormat::OpenExr,
+            ),
+        }
+        .map_err(failed)
+    }
+
+    /// Writes the coverage alone as a grey PNG; white is covered.
+    ///
+    /// # Errors
+    /// [`PictureError::File`] if the file cannot be written.
+    pub fn write_coverage(&self, path: &Path) -> Result<(), PictureError> {
+        let bytes = self.coverage8();
+        let kind = image::ColorType::L8;
+        image::save_buffer_with_format(path, &bytes, self.width, self.height, kind, ImageFormat::Png)
+            .map_err(|source| PictureError::File { path: path.into(), source })
+    }
+
+    /// Reads a PNG or EXR file back into linear light. Without an alpha channel, everything counts as covered.
+    ///
+    /// # Errors
+    /// [`PictureError`] for a file that is missing, broken, of another format or too large.
+    pub fn read(path: &Path) -> Result<Picture, PictureError> {
+        let format = format_of(path)?;
+        let opened = ImageReader::open(path).map_err(|source| PictureError::Open { path: path.into(), source })?;
+        let mut reader = opened;
+        reader.set_format(format);
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(MAX_READ_BYTES);
+        reader.limits(limits);
+        let decoded = reader.decode().map_err(|source| PictureError::File { path: path.into(), source })?;
+        let mut picture = Picture::new(decoded.width(), decoded.height())?;
+        let linear = matches!(decoded, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+        if linear {
+            for (pixel, p) in picture.pixels.iter_mut().zip(decoded.to_rgba32f().pixels()) {
+                *pixel = Pixel { radiance: [p[0], p[1], p[2]], coverage: p[3] };
+            }
+        } else {
+            for (pixel, p) in picture.pixels.iter_mut().zip(decoded.to_rgba8().pixels()) {
+                let radiance = [p[0], p[1], p[2]].map(decode_srgb);
+                *pixel = Pixel { radiance, coverage: f32::from(p[3]) / 255.0 };
+            }
+        }
+        Ok(picture)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Picture {
+        let mut picture = Picture::new(5, 3).expect("small");
+        for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
+            let x = i as f32 / 15.0;
+            *pixel = Pixel { radiance: [x, 1.5 * x, 3.0 - x], coverage: x };
+        }
+        picture
+    }
+
+    #[test]
+    fn every_srgb_byte_survives_decoding_and_encoding() {
+        for byte in 0..=255u8 {
+            assert_eq!(encode_srgb(decode_srgb(byte)), byte);
+        }
+    }
+
+    #[test]
+    fn srgb_is_clipped_and_never_fails() {
+        assert_eq!([-1.0, 0.0, 1.0, 7.0, f32::NAN, f32::INFINITY].map(encode_srgb), [0, 0, 255, 255, 0, 255]);
+        assert_eq!(encode_srgb(0.215_860_5), 128, "((128 / 255 + 0.055) / 1.055)^2.4");
+    }
+
+    #[test]
+    fn an_exr_file_reads_back_bit_for_bit() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("a.exr");
+        sample().write(&path).expect("written");
+        assert_eq!(Picture::read(&path).expect("read"), sample());
+    }
+
+    #[test]
+    fn a_png_file_reads_back_within_half_a_step() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("a.png");
+        sample().write(&path).expect("written");
+        let back = Picture::read(&path).expect("read");
+        assert_eq!(back.to_srgb8(), sample().to_srgb8());
+        assert!(back.pixels().iter().all(|p| p.coverage == 1.0));
+    }
+
+    #[test]
+    fn other_names_and_broken_files_are_errors() {
+        let folder = tempfile::tempdir().expect("folder");
+        assert!(matches!(sample().write(&folder.path().join("a.gif")), Err(PictureError::Format { .. })));
+        let path = folder.path().join("broken.png");
+        std::fs::write(&path, b"no picture").expect("written");
+        assert!(matches!(Picture::read(&path), Err(PictureError::File { .. })));
+        assert!(matches!(Picture::read(&folder.path().join("none.png")), Err(PictureError::Open { .. })));
+        assert!(matches!(Picture::new(0, 5), Err(PictureError::Size { .. })));
+        assert!(matches!(Picture::new(u32::MAX, u32::MAX), Err(PictureError::Size { .. })));
+    }
+}

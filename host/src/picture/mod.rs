@@ -1,0 +1,86 @@
+//! Pictures in linear light, with coverage: files, and how far two of them are apart.
+
+mod difference;
+mod file;
+
+pub use difference::{Difference, difference};
+pub use file::{PictureError, decode_srgb, encode_srgb};
+
+/// Most pixels that a picture may have (16384 x 16384).
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// A picture of linear radiance in three bands, with the share of each pixel that an object covers.
+///
+/// Row 0 is the *top* row. The radiance of a pixel already includes the background behind and beside the objects.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    width: u32,
+    height: u32,
+    pixels: Vec<Pixel>,
+}
+
+/// What one pixel holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Pixel {
+    /// Mean radiance over the pixel, W/(m² sr) in the red, green and blue band.
+    pub radiance: [f32; 3],
+    /// Share of the pixel's area in which the view ray meets an object, 0..=1.
+    pub coverage: f32,
+}
+
+impl Picture {
+    /// A black picture that nothing covers.
+    ///
+    /// # Errors
+    /// [`PictureError::Size`] for an empty side or more than [`MAX_PIXELS`].
+    pub fn new(width: u32, height: u32) -> Result<Picture, PictureError> {
+        let count = u64::from(width) * u64::from(height);
+        if count == 0 || count > MAX_PIXELS {
+            return Err(PictureError::Size { width, height });
+        }
+        Ok(Picture { width, height, pixels: vec![Pixel::default(); count as usize] })
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn pixels(&self) -> &[Pixel] {
+        &self.pixels
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn pixels_mut(&mut self) -> &mut [Pixel] {
+        &mut self.pixels
+    }
+
+    /// The pixel in column `x` of row `y`, or none outside the picture.
+    pub fn get(&self, x: u32, y: u32) -> Option<Pixel> {
+        (x < self.width && y < self.height).then(|| self.pixels[(y * self.width + x) as usize])
+    }
+
+    /// The picture as eight bits a band, sRGB, three bytes a pixel, from the top row on.
+    ///
+    /// Radiance 1 becomes 255; what is brighter is clipped.
+    pub fn to_srgb8(&self) -> Vec<u8> {
+        self.pixels.iter().flat_map(|p| p.radiance.map(encode_srgb)).collect()
+    }
+
+    /// The coverage as eight bits a pixel, from the top row on; 255 is full coverage.
+    pub fn coverage8(&self) -> Vec<u8> {
+        self.pixels.iter().map(|p| (p.coverage.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
+    }
+
+    /// Whether every number in it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.pixels.iter().all(|p| p.radiance.iter().all(|c| c.is_finite()) && p.coverage.is_finite())
+    }
+}

@@ -1,0 +1,164 @@
+//! What a scene needs, and why: the only place that decides to leave something out.
+//!
+//! A renderer asks the plan for every stage, object and light. What is left out would have contributed exactly
+//! nothing, so that a forced plan ([`Plan::everything`]) gives the same picture, only later.
+
+mod reach;
+mod stage;
+
+pub use stage::Stage;
+
+use crate::scene::{Prepared, View};
+use serde::Serialize;
+
+/// What is done and what is left out for one scene and one view.
+#[derive(Clone, Debug, Serialize)]
+pub struct Plan {
+    /// Whether everything was forced.
+    pub forced: bool,
+    /// One line for each stage, object and light, in this order.
+    pub entries: Vec<Entry>,
+    #[serde(skip)]
+    stages: [bool; Stage::ALL.len()],
+    #[serde(skip)]
+    objects: Vec<bool>,
+    #[serde(skip)]
+    lights: Vec<bool>,
+}
+
+/// One line of a plan.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Entry {
+    /// What kind of thing it decides on.
+    pub kind: Kind,
+    /// Its name.
+    pub name: String,
+    /// Whether it is kept.
+    pub needed: bool,
+    /// Why.
+    pub reason: String,
+}
+
+/// What an entry decides on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A stage of rendering.
+    Stage,
+    /// An object of the scene.
+    Object,
+    /// A light of the scene.
+    Light,
+}
+
+impl Kind {
+    /// The word in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Kind::Stage => "stage",
+            Kind::Object => "object",
+            Kind::Light => "light",
+        }
+    }
+}
+
+/// A decision with its reason.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Decision {
+    pub(crate) needed: bool,
+    pub(crate) reason: String,
+}
+
+impl Decision {
+    fn new(needed: bool, reason: impl Into<String>) -> Decision {
+        Decision { needed, reason: reason.into() }
+    }
+}
+
+impl Plan {
+    /// The leanest plan that gives the full picture of `prepared` seen through `view`.
+    pub fn new(prepared: &Prepared, view: &View) -> Plan {
+        Plan::decide(prepared, view, false)
+    }
+
+    /// The plan that leaves nothing out.
+    pub fn everything(prepared: &Prepared, view: &View) -> Plan {
+        Plan::decide(prepared, view, true)
+    }
+
+    fn decide(prepared: &Prepared, view: &View, forced: bool) -> Plan {
+        let mut plan = Plan {
+            forced,
+            entries: Vec::new(),
+            stages: [true; Stage::ALL.len()],
+            objects: Vec::new(),
+            lights: Vec::new(),
+        };
+        let lights: Vec<Decision> = prepared.lights.iter().map(light).collect();
+        let facts = stage::Facts::new(prepared, lights.iter().map(|d| d.needed).collect());
+        let objects = reach::objects(prepared, view, &facts);
+        let facts = facts.within(objects.iter().map(|d| d.needed).collect());
+        for stage in Stage::ALL {
+            let decision = plan.add(Kind::Stage, stage.word().to_owned(), stage.decide(&facts));
+            plan.stages[stage as usize] = decision;
+        }
+        for (object, decision) in prepared.objects.iter().zip(objects) {
+            let kept = plan.add(Kind::Object, object.name.clone(), decision);
+            plan.objects.push(kept);
+        }
+        for (index, decision) in lights.into_iter().enumerate() {
+            let kept = plan.add(Kind::Light, format!("light {}", index + 1), decision);
+            plan.lights.push(kept);
+        }
+        plan
+    }
+
+    fn add(&mut self, kind: Kind, name: String, decision: Decision) -> bool {
+        let Decision { needed, reason } = decision;
+        let reason = if self.forced && !needed { format!("forced; {reason}") } else { reason };
+        let needed = needed || self.forced;
+        self.entries.push(Entry { kind, name, needed, reason });
+        needed
+    }
+
+    /// Whether a stage is run.
+    pub fn needs(&self, stage: Stage) -> bool {
+        self.stages[stage as usize]
+    }
+
+    /// Whether an object, an index into [`Prepared::objects`], is kept.
+    pub fn keeps_object(&self, index: usize) -> bool {
+        self.objects.get(index).copied().unwrap_or(true)
+    }
+
+    /// Whether a light, an index into [`Prepared::lights`], is kept.
+    pub fn keeps_light(&self, index: usize) -> bool {
+        self.lights.get(index).copied().unwrap_or(true)
+    }
+
+    /// The plan as a table for people.
+    pub fn table(&self) -> String {
+        let width = self.entries.iter().map(|e| e.name.chars().count()).max().unwrap_or(0).max(4);
+        let mut text = format!("{:<7} {:<width$} {:<8} why\n", "what", "name", "");
+        for e in &self.entries {
+            let verdict = if e.needed { "needed" } else { "left out" };
+            text.push_str(&format!("{:<7} {:<width$} {verdict:<8} {}\n", e.kind.word(), e.name, e.reason));
+        }
+        text
+    }
+}
+
+fn light(light: &crate::illumination::Light) -> Decision {
+    let kind = match light {
+        crate::illumination::Light::Point { .. } => "a point light",
+        crate::illumination::Light::Directional { .. } => "parallel light",
+    };
+    if light.strength().max_element() > 0.0 {
+        Decision::new(true, format!("{kind} with power"))
+    } else {
+        Decision::new(false, format!("{kind} without power"))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,61 @@
+//! Which objects can be seen, mirrored, or throw a shadow on what can be seen.
+
+use super::{Decision, stage::Facts};
+use crate::illumination::Light;
+use crate::scene::{Bounds, Prepared, View};
+use glam::DVec3;
+
+/// Decides for each object whether it can influence the picture.
+pub(super) fn objects(prepared: &Prepared, view: &View, facts: &Facts<'_>) -> Vec<Decision> {
+    let Some(projection) = view.projection() else {
+        return prepared.objects.iter().map(|_| Decision::new(true, "the view is not known")).collect();
+    };
+    let window = View::window(prepared.settings.width, prepared.settings.height);
+    let visible: Vec<bool> =
+        prepared.objects.iter().map(|o| o.count > 0 && !o.bounds.is_outside(&projection.to_clip, window)).collect();
+    let seen = prepared.objects.iter().zip(&visible).filter(|(_, v)| **v);
+    let seen = seen.fold(Bounds::EMPTY, |b, (o, _)| b.union(o.bounds));
+    let mirrors = facts.reflection().needed;
+    let shadows = facts.shadows().needed;
+    let decide = |(object, visible): (&crate::scene::PreparedObject, &bool)| {
+        if object.count == 0 {
+            Decision::new(false, "it has no triangles")
+        } else if *visible {
+            Decision::new(true, format!("in view, {} triangles", object.count))
+        } else if seen.is_empty() {
+            Decision::new(false, "nothing at all is in view")
+        } else if mirrors {
+            Decision::new(true, "out of view, but a mirror may show it")
+        } else if shadows && throws_shadow(prepared, facts, &object.bounds, &seen) {
+            Decision::new(true, "out of view, but its shadow may be seen")
+        } else {
+            Decision::new(false, "out of view, and neither its mirror image nor its shadow can be seen")
+        }
+    };
+    prepared.objects.iter().zip(&visible).map(decide).collect()
+}
+
+/// Whether a box may stand between any bright light and a point of `seen`; errs towards yes.
+fn throws_shadow(prepared: &Prepared, facts: &Facts<'_>, object: &Bounds, seen: &Bounds) -> bool {
+    prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i)).any(|(_, light)| match *light {
+        Light::Point { at, .. } => {
+            let between = seen.union(Bounds { min: at, max: at });
+            between.min.cmple(object.max).all() && object.min.cmple(between.max).all()
+        }
+        Light::Directional { direction, .. } => {
+            let Some(along) = direction.try_normalize() else { return false };
+            let (u, v) = along.any_orthonormal_pair();
+            let overlaps = |axis: DVec3| {
+                let ((a, b), (c, d)) = (range(object, axis), range(seen, axis));
+                a <= d && c <= b
+            };
+            overlaps(u) && overlaps(v) && range(object, along).0 <= range(seen, along).1
+        }
+    })
+}
+
+/// The least and the greatest coordinate of a box along an axis.
+fn range(bounds: &Bounds, axis: DVec3) -> (f64, f64) {
+    let along = bounds.corners().map(|c| c.dot(axis));
+    (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max))
+}

@@ -1,0 +1,143 @@
+//! Renderers: from a prepared scene and a view to a picture.
+
+pub mod ray_tracing;
+
+use crate::octree::OctreeError;
+use crate::picture::{Picture, PictureError};
+use crate::scene::View;
+use serde::Serialize;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A renderer that has taken up a scene and can make pictures of it.
+pub trait Renderer: Sync {
+    /// Its name in tables.
+    fn name(&self) -> &'static str;
+
+    /// Renders one view.
+    ///
+    /// The picture does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a view that sees nothing, or when no memory or thread can be had. Being cancelled is no
+    /// error: the rendering then holds the rows that were finished.
+    fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError>;
+}
+
+/// How a picture is to be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Samples in each pixel, 1 and more; one samples the centre.
+    pub samples: u32,
+    /// Seed of the sample positions.
+    pub seed: u64,
+    /// Threads; every core without a number.
+    pub threads: Option<NonZeroUsize>,
+}
+
+impl Order {
+    /// What the scene's settings ask for, on every core.
+    pub fn of(settings: &crate::scene::Settings) -> Order {
+        let crate::scene::Settings { width, height, samples, seed, .. } = *settings;
+        Order { width, height, samples, seed, threads: None }
+    }
+}
+
+/// Who watches a rendering and may stop it.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Set from outside to stop after the rows that are being rendered.
+    pub cancelled: &'a AtomicBool,
+    /// Called after each row with the rows that are done and all rows; from any thread.
+    pub progress: &'a (dyn Fn(u64, u64) + Sync),
+}
+
+/// Is never set.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+impl Watch<'_> {
+    /// Nobody watches.
+    pub const NOBODY: Watch<'static> = Watch { cancelled: &NEVER, progress: &|_, _| {} };
+
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// A picture with what it took.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The picture; rows that were not finished are black and uncovered.
+    pub picture: Picture,
+    /// Which rows were finished, from the top.
+    pub rows: Vec<bool>,
+    /// How many rays were traced.
+    pub rays: RayCounts,
+    /// Wall-clock time, seconds.
+    pub seconds: f64,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+impl Rendering {
+    /// Whether every row was finished.
+    pub fn is_complete(&self) -> bool {
+        self.rows.iter().all(|r| *r)
+    }
+
+    /// Rays of all kinds per second, in millions.
+    pub fn mega_rays_per_second(&self) -> f64 {
+        self.rays.total() as f64 / self.seconds.max(f64::MIN_POSITIVE) / 1e6
+    }
+}
+
+/// Rays by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RayCounts {
+    /// From the eye.
+    pub primary: u64,
+    /// Towards lights.
+    pub shadow: u64,
+    /// From mirrors.
+    pub reflected: u64,
+}
+
+impl RayCounts {
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.primary + self.shadow + self.reflected
+    }
+}
+
+impl std::ops::Add for RayCounts {
+    type Output = RayCounts;
+
+    fn add(self, other: RayCounts) -> RayCounts {
+        RayCounts {
+            primary: self.primary + other.primary,
+            shadow: self.shadow + other.shadow,
+            reflected: self.reflected + other.reflected,
+        }
+    }
+}
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The octree cannot be built.
+    #[error("octree: {0}")]
+    Octree(#[from] OctreeError),
+    /// The picture cannot be made.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The view flattens space to a line or a point, or is not finite.
+    #[error("the view has no directions for the pixels: its matrix is singular or not finite")]
+    View,
+    /// The threads cannot be started.
+    #[error("threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}

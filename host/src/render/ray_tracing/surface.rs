@@ -1,0 +1,127 @@
+//! The surface element at a hit: position, normals, and where rays may leave from.
+
+use crate::numeric::ray::{Hit, Ray};
+use crate::scene::Prepared;
+use glam::DVec3;
+
+/// Rounding errors in units of the last place of the triangle's largest coordinate that a leaving ray keeps clear of.
+///
+/// A hit point in barycentric coordinates is off its plane by at most 5 of them (three products, two sums, and a
+/// third weight that is itself rounded), and the intersection of the leaving ray with the same plane errs by about as
+/// much again. The rest is safety: one part in 10^14 of the coordinate.
+const CLEARANCE_ULPS: f64 = 32.0;
+
+/// What is known where a ray hits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Element {
+    /// On the triangle, with the rounding errors of its coordinates.
+    pub(super) position: DVec3,
+    /// Unit normal of the triangle, on the side of the viewer.
+    pub(super) face: DVec3,
+    /// Unit normal for shading, on the side of the viewer.
+    pub(super) normal: DVec3,
+    /// Where a ray that leaves on the side of the viewer begins.
+    pub(super) leave: DVec3,
+    /// Where a ray towards a light begins: on the curved surface that the triangle stands for, if it bulges out.
+    pub(super) leave_curved: DVec3,
+}
+
+impl Element {
+    /// The element at `hit`; `curved` asks for interpolated normals. None for a triangle without area.
+    pub(super) fn new(prepared: &Prepared, triangle: u32, ray: &Ray, hit: &Hit, curved: bool) -> Option<Element> {
+        let corners = prepared.corners(triangle);
+        let [a, b, c] = corners;
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+        let position = a * weights[0] + b * weights[1] + c * weights[2];
+        let outside = (b - a).cross(c - a).try_normalize().or_else(|| scaled_normal(corners))?;
+        let side = if outside.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
+        let face = outside * side;
+        let largest = corners.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
+        let clearance = face * (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+        let leave = position + clearance;
+        let flat = Element { position, face, normal: face, leave, leave_curved: leave };
+        let corner_normals = if curved { prepared.corner_normals(triangle) } else { None };
+        let Some(corner_normals) = corner_normals else { return Some(flat) };
+        let normals = corner_normals.map(|n| {
+            let n = n.as_dvec3() * side;
+            if n == DVec3::ZERO { face } else { n }
+        });
+        let sum = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
+        let Some(normal) = sum.try_normalize() else { return Some(flat) };
+        let normal = towards_viewer(normal, -ray.direction);
+        Some(Element { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
+    }
+
+    /// The direction in which a mirror sends a ray on: never below the triangle.
+    ///
+    /// A reflected direction that an interpolated normal sends below the triangle is reflected at its plane in turn;
+    /// where it just grazes the plane, both agree.
+    pub(super) fn mirrored(&self, direction: DVec3) -> DVec3 {
+        let reflected = direction - self.normal * (2.0 * direction.dot(self.normal));
+        let below = reflected.dot(self.face);
+        if below < 0.0 { reflected - self.face * (2.0 * below) } else { reflected }
+    }
+}
+
+/// The normal of a triangle whose sides are too short to be multiplied.
+fn scaled_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+    let longest = (b - a).abs().max_element().max((c - a).abs().max_element());
+    let scale = 1.0 / longest;
+    (longest > 0.0 && scale.is_finite()).then(|| ((b - a) * scale).cross((c - a) * scale).try_normalize()).flatten()
+}
+
+/// Turns a normal that an interpolation has carried past the outline back to the viewer.
+fn towards_viewer(normal: DVec3, view: DVec3) -> DVec3 {
+    let cosine = normal.dot(view);
+    if cosine >= 0.0 { normal } else { normal - view * (2.0 * cosine / view.length_squared()) }
+}
+
+/// The point of a smooth surface through the corners, over a point of the triangle.
+///
+/// P' = P + sum of w_i max(0, (V_i - P)·n_i) n_i: each corner's tangent plane lifts the point by its weight, so that
+/// it lies above a triangle of an outward bulging surface and never below. A ray towards a light then does not
+/// strike the neighbouring triangles of a surface that is convex in truth.
+///
+/// # Source
+/// Hanika 2021, hacking the shadow terminator.
+fn bulge(p: DVec3, corners: [DVec3; 3], normals: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
+    let lift = |i: usize| normals[i] * ((corners[i] - p).dot(normals[i]).max(0.0) * weights[i]);
+    p + lift(0) + lift(1) + lift(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_of_an_inscribed_chord_is_lifted_towards_the_sphere() {
+        let corners = [DVec3::X, DVec3::Y, DVec3::Z];
+        let third = [1.0 / 3.0; 3];
+        let p = DVec3::splat(1.0 / 3.0);
+        let lifted = bulge(p, corners, corners, third);
+        assert!(lifted.length() > p.length() && lifted.length() < 1.0);
+        assert_eq!(bulge(DVec3::X, corners, corners, [1.0, 0.0, 0.0]), DVec3::X, "corners stay");
+        let flat = [DVec3::splat(3f64.sqrt().recip()); 3];
+        assert!((bulge(p, corners, flat, third) - p).length() < 1e-15, "plane faces stay");
+    }
+
+    #[test]
+    fn a_mirrored_ray_never_goes_below_the_triangle() {
+        let face = DVec3::Y;
+        for tilt in [-0.6f64, -0.2, 0.0, 0.2, 0.6] {
+            let normal = DVec3::new(tilt.sin(), tilt.cos(), 0.0);
+            let element = Element { position: DVec3::ZERO, face, normal, leave: face, leave_curved: face };
+            for angle in [0.1f64, 0.5, 1.0, 1.5] {
+                let out = element.mirrored(DVec3::new(angle.cos(), -angle.sin(), 0.0));
+                assert!(out.y >= -1e-15 && (out.length() - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_normal_is_turned_to_the_viewer_and_keeps_its_length() {
+        let view = DVec3::new(0.0, 0.0, 3.0);
+        let turned = towards_viewer(DVec3::new(0.8, 0.0, -0.6), view);
+        assert!((turned - DVec3::new(0.8, 0.0, 0.6)).length() < 1e-15);
+    }
+}

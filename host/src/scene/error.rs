@@ -1,0 +1,46 @@
+//! What can be wrong with a scene.
+
+use crate::mesh;
+
+/// What is wrong with a scene, and with which part of it.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// An object has an impossible value.
+    #[error("{object}: {problem}")]
+    Object {
+        /// The object's name.
+        object: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A light has an impossible value.
+    #[error("light {number}: {problem}")]
+    Light {
+        /// Which light, counted from 1.
+        number: usize,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The camera cannot see.
+    #[error("camera: {0}")]
+    Camera(String),
+    /// A setting of the whole scene is impossible.
+    #[error("{0}")]
+    Setting(String),
+    /// More of something than PERIS takes.
+    #[error("more than {limit} {what}")]
+    Limit {
+        /// Of what.
+        what: &'static str,
+        /// How many are allowed.
+        limit: u64,
+    },
+    /// An object's mesh cannot be made or read.
+    #[error("{object}: {source}")]
+    Mesh {
+        /// The object's name.
+        object: String,
+        /// Why.
+        source: mesh::MeshError,
+    },
+}

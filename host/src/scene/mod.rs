@@ -1,0 +1,210 @@
+//! What a script builds: objects, lights, a camera and settings, as plain data.
+//!
+//! Modelling space is right-handed: x right, y up, z towards the viewer. Lengths are in scene units.
+
+mod bounds;
+mod error;
+mod prepared;
+mod shape;
+mod view;
+
+pub use bounds::Bounds;
+pub use error::SceneError;
+pub use prepared::{Prepared, PreparedObject};
+pub use shape::Shape;
+pub use view::{Camera, Projection, View};
+
+use crate::illumination::{Bands, Light, Material};
+use glam::DMat4;
+use serde::{Deserialize, Serialize};
+
+/// Most objects in a scene.
+pub const MAX_OBJECTS: usize = 100_000;
+/// Most lights in a scene.
+pub const MAX_LIGHTS: usize = 10_000;
+/// Most samples in a pixel.
+pub const MAX_SAMPLES: u32 = 65_536;
+/// Deepest chain of reflections.
+pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
+
+/// A scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Scene {
+    /// What stands in it.
+    pub objects: Vec<Object>,
+    /// What lights it.
+    pub lights: Vec<Light>,
+    /// Radiance that arrives from everywhere, W/(m² sr); only diffuse reflection answers it.
+    pub ambient: Bands,
+    /// Radiance where a ray meets nothing, W/(m² sr).
+    pub background: Bands,
+    /// From where it is seen; without one, the whole scene is framed from the front, a little from above.
+    pub camera: Option<Camera>,
+    /// How it is rendered.
+    pub settings: Settings,
+}
+
+/// One object: a shape, placed, of a material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Object {
+    /// What messages and tables call it.
+    pub name: String,
+    /// Its form in its own coordinates.
+    pub shape: Shape,
+    /// Own coordinates to scene coordinates (column vectors: `p' = M p`); affine, not singular.
+    pub transform: DMat4,
+    /// How its surface reflects.
+    pub material: Material,
+    /// Largest distance between surface and triangles in scene units; without one, that of the [`Settings`].
+    pub tolerance: Option<f64>,
+}
+
+/// How a scene is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Columns of the picture.
+    pub width: u32,
+    /// Rows of the picture.
+    pub height: u32,
+    /// Samples in each pixel; one samples the centre.
+    pub samples: u32,
+    /// Seed of the sample positions.
+    pub seed: u64,
+    /// How often a ray may be mirrored.
+    pub reflection_depth: u32,
+    /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
+    /// diagonal of each object.
+    pub tolerance: Option<f64>,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { width: 640, height: 480, samples: 16, seed: 1, reflection_depth: 6, tolerance: None }
+    }
+}
+
+impl Scene {
+    /// Checks every number in the scene.
+    ///
+    /// # Errors
+    /// The first [`SceneError`], which names the object or the light.
+    pub fn check(&self) -> Result<(), SceneError> {
+        if self.objects.len() > MAX_OBJECTS {
+            return Err(SceneError::Limit { what: "objects", limit: MAX_OBJECTS as u64 });
+        }
+        if self.lights.len() > MAX_LIGHTS {
+            return Err(SceneError::Limit { what: "lights", limit: MAX_LIGHTS as u64 });
+        }
+        self.objects.iter().try_for_each(Object::check)?;
+        for (index, light) in self.lights.iter().enumerate() {
+            check_light(light).map_err(|problem| SceneError::Light { number: index + 1, problem })?;
+        }
+        check_power("ambient light", self.ambient).map_err(SceneError::Setting)?;
+        check_power("background", self.background).map_err(SceneError::Setting)?;
+        if let Some(camera) = &self.camera {
+            camera.check()?;
+        }
+        self.settings.check()
+    }
+}
+
+impl Scene {
+    /// Largest distance between the exact surfaces and the triangles that stand for them, scene units.
+    ///
+    /// It is measured, not the tolerance that was asked for; 0 without curved surfaces.
+    ///
+    /// # Errors
+    /// [`SceneError`] if a mesh cannot be made.
+    pub fn chord_error(&self) -> Result<f64, SceneError> {
+        let mut largest = 0.0f64;
+        for object in self.objects.iter().filter(|o| o.shape.is_exact_and_curved()) {
+            largest = largest.max(object.chord_error(self.settings.tolerance)?);
+        }
+        Ok(largest)
+    }
+}
+
+impl Object {
+    fn check(&self) -> Result<(), SceneError> {
+        let failed = |problem: String| SceneError::Object { object: self.name.clone(), problem };
+        self.shape.check().map_err(failed)?;
+        if !self.transform.is_finite() {
+            return Err(failed("its transformation is not finite".into()));
+        }
+        if self.transform.row(3) != glam::DVec4::W {
+            return Err(failed("its transformation is not affine".into()));
+        }
+        let determinant = self.transform.determinant();
+        if determinant == 0.0 || !determinant.is_finite() {
+            return Err(failed("its transformation is singular: it flattens the object".into()));
+        }
+        if let Some(tolerance) = self.tolerance {
+            check_tolerance(tolerance).map_err(failed)?;
+        }
+        let m = &self.material;
+        for (what, k) in [("diffuse", m.diffuse), ("specular", m.specular), ("mirror", m.mirror)] {
+            if !k.is_finite() || k.min_element() < 0.0 || k.max_element() > 1.0 {
+                return Err(failed(format!("{what} reflectance {k} is not within 0 to 1")));
+            }
+        }
+        if !(1.0..=Material::MAX_EXPONENT).contains(&m.exponent) {
+            return Err(failed(format!("exponent {} is not within 1 to {}", m.exponent, Material::MAX_EXPONENT)));
+        }
+        Ok(())
+    }
+}
+
+impl Settings {
+    fn check(&self) -> Result<(), SceneError> {
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        if pixels == 0 || pixels > crate::picture::MAX_PIXELS {
+            let problem = format!("a picture of {} x {} pixels is empty or too large", self.width, self.height);
+            return Err(SceneError::Setting(problem));
+        }
+        if !(1..=MAX_SAMPLES).contains(&self.samples) {
+            return Err(SceneError::Setting(format!("{} samples are not within 1 to {MAX_SAMPLES}", self.samples)));
+        }
+        if self.reflection_depth > MAX_REFLECTION_DEPTH {
+            return Err(SceneError::Limit { what: "reflections in a chain", limit: u64::from(MAX_REFLECTION_DEPTH) });
+        }
+        self.tolerance.map_or(Ok(()), check_tolerance).map_err(SceneError::Setting)
+    }
+}
+
+fn check_tolerance(tolerance: f64) -> Result<(), String> {
+    if tolerance.is_finite() && tolerance > 0.0 {
+        Ok(())
+    } else {
+        Err(format!("tolerance {tolerance} is not a length above 0"))
+    }
+}
+
+fn check_power(what: &str, power: Bands) -> Result<(), String> {
+    if power.is_finite() && power.min_element() >= 0.0 {
+        Ok(())
+    } else {
+        Err(format!("{what} {power} is negative or not finite"))
+    }
+}
+
+fn check_light(light: &Light) -> Result<(), String> {
+    match light {
+        Light::Point { at, intensity } => {
+            if !at.is_finite() {
+                return Err(format!("its place {at} is not finite"));
+            }
+            check_power("its intensity", *intensity)
+        }
+        Light::Directional { direction, irradiance } => {
+            if direction.try_normalize().is_none() {
+                return Err(format!("its direction {direction} has no length"));
+            }
+            check_power("its irradiance", *irradiance)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,239 @@
+//! A scene flattened for rendering: one soup of triangles, with what each belongs to.
+
+use super::{Bounds, Camera, Object, Scene, SceneError, Settings, Shape, View};
+use crate::illumination::{Bands, Light, Material};
+use crate::mesh::Mesh;
+use glam::{DMat3, DMat4, DVec3, Vec3};
+
+/// Most triangles in a scene.
+pub const MAX_TRIANGLES: u64 = 1 << 30;
+/// Tolerance of an object for which none is given, as a fraction of the diagonal of its bounds.
+const RELATIVE_TOLERANCE: f64 = 1.0 / 2000.0;
+/// Normals of a file or surface that are this close to the plane's count as flat (sine of the angle).
+const FLAT_SINE: f64 = 1e-6;
+
+/// A scene ready for a renderer.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// Corners of all triangles, in scene coordinates.
+    pub vertices: Vec<DVec3>,
+    /// Triangles, counter-clockwise from outside; those of an object stand together.
+    pub triangles: Vec<[u32; 3]>,
+    /// The object that each triangle belongs to, an index into `objects`.
+    pub object_of: Vec<u32>,
+    /// Unit normals at the corners, for the triangles of curved objects only; see [`Prepared::corner_normals`].
+    normals: Vec<[Vec3; 3]>,
+    /// The objects, in the order of the scene.
+    pub objects: Vec<PreparedObject>,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// Ambient radiance.
+    pub ambient: Bands,
+    /// Background radiance.
+    pub background: Bands,
+    /// The camera of the scene, or one that frames it.
+    pub camera: Camera,
+    /// How to render it.
+    pub settings: Settings,
+    /// A box around everything.
+    pub bounds: Bounds,
+}
+
+/// One object of a prepared scene.
+#[derive(Clone, Debug)]
+pub struct PreparedObject {
+    /// Its name.
+    pub name: String,
+    /// The word for its shape.
+    pub shape: &'static str,
+    /// How it reflects.
+    pub material: Material,
+    /// Its first triangle.
+    pub first: u32,
+    /// How many triangles it has.
+    pub count: u32,
+    /// A box around it.
+    pub bounds: Bounds,
+    /// Distance between surface and triangles that was asked for, scene units.
+    pub tolerance: f64,
+    /// Where its corner normals begin; none for an object with flat faces.
+    normals_from: Option<u32>,
+}
+
+impl PreparedObject {
+    /// Whether it has normals other than those of its faces.
+    pub fn is_curved(&self) -> bool {
+        self.normals_from.is_some()
+    }
+}
+
+impl Prepared {
+    /// Tessellates, reads and places everything in `scene`.
+    ///
+    /// # Errors
+    /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
+    pub fn new(scene: &Scene) -> Result<Prepared, SceneError> {
+        scene.check()?;
+        let mut prepared = Prepared {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            object_of: Vec::new(),
+            normals: Vec::new(),
+            objects: Vec::new(),
+            lights: scene.lights.clone(),
+            ambient: scene.ambient,
+            background: scene.background,
+            camera: Camera::framing(&Bounds::EMPTY),
+            settings: scene.settings,
+            bounds: Bounds::EMPTY,
+        };
+        for object in &scene.objects {
+            prepared.add(object, scene.settings.tolerance)?;
+        }
+        prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.bounds));
+        Ok(prepared)
+    }
+
+    fn add(&mut self, object: &Object, scene_tolerance: Option<f64>) -> Result<(), SceneError> {
+        let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
+        let (mesh, tolerance) = object.mesh(scene_tolerance)?;
+        if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
+            return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
+        }
+        let mirrored = object.transform.determinant() < 0.0;
+        let base = u32::try_from(self.vertices.len())
+            .ok()
+            .filter(|b| b.checked_add(mesh.vertices.len() as u32).is_some())
+            .ok_or(SceneError::Limit { what: "vertices", limit: u64::from(u32::MAX) })?;
+        self.vertices.extend(mesh.vertices.iter().map(|v| object.transform.transform_point3(*v)));
+        let placed = &self.vertices[base as usize..];
+        if let Some(v) = placed.iter().find(|v| !v.is_finite()) {
+            return Err(failed(format!("a vertex is placed at {v}")));
+        }
+        let bounds = Bounds::of(placed.iter().copied());
+        let first = self.triangles.len() as u32;
+        self.triangles.extend(mesh.triangles.iter().map(|&[a, b, c]| {
+            let [b, c] = if mirrored { [c, b] } else { [b, c] };
+            [a + base, b + base, c + base]
+        }));
+        self.object_of.resize(self.triangles.len(), self.objects.len() as u32);
+        let normals_from = self.add_normals(&mesh, &object.transform, mirrored);
+        self.bounds = self.bounds.union(bounds);
+        self.objects.push(PreparedObject {
+            name: object.name.clone(),
+            shape: object.shape.word(),
+            material: object.material,
+            first,
+            count: mesh.triangles.len() as u32,
+            bounds,
+            tolerance,
+            normals_from,
+        });
+        Ok(())
+    }
+
+    /// Stores the placed corner normals if any of them departs from its face's.
+    fn add_normals(&mut self, mesh: &Mesh, transform: &DMat4, mirrored: bool) -> Option<u32> {
+        let curved = mesh.corner_normals.iter().zip(&mesh.triangles).any(|(normals, t)| {
+            let [a, b, c] = t.map(|i| mesh.vertices[i as usize]);
+            let face = (b - a).cross(c - a).normalize_or_zero();
+            normals.iter().any(|n| n.normalize_or_zero().cross(face).length() > FLAT_SINE)
+        });
+        if !curved {
+            return None;
+        }
+        let from = self.normals.len() as u32;
+        let matrix = cofactors(&DMat3::from_mat4(*transform));
+        let sign = if mirrored { -1.0 } else { 1.0 };
+        self.normals.extend(mesh.corner_normals.iter().map(|normals| {
+            let [a, b, c] = normals.map(|n| ((matrix * n).normalize_or_zero() * sign).as_vec3());
+            if mirrored { [a, c, b] } else { [a, b, c] }
+        }));
+        Some(from)
+    }
+
+    /// The corners of a triangle, in scene coordinates.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].map(|i| self.vertices[i as usize])
+    }
+
+    /// The object that a triangle belongs to.
+    pub fn object(&self, triangle: u32) -> &PreparedObject {
+        &self.objects[self.object_of[triangle as usize] as usize]
+    }
+
+    /// The unit normals at the corners of a triangle; none where its object is flat.
+    ///
+    /// A normal of length 0 stands for one that the surface does not have (a pole, a broken file).
+    pub fn corner_normals(&self, triangle: u32) -> Option<&[Vec3; 3]> {
+        let object = self.object(triangle);
+        object.normals_from.map(|from| &self.normals[(from + triangle - object.first) as usize])
+    }
+
+    /// The view of the scene's own camera.
+    pub fn view(&self) -> View {
+        View::Camera(self.camera)
+    }
+
+    /// Everything as one mesh, without materials.
+    pub fn into_mesh(self) -> Mesh {
+        Mesh { vertices: self.vertices, triangles: self.triangles, ..Mesh::default() }
+    }
+
+    /// Bytes that the tables take.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.vertices[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.object_of[..])
+            + size_of_val(&self.normals[..])
+    }
+}
+
+/// The matrix of cofactors, det(M) M^-T: carries normals, and needs no division.
+fn cofactors(m: &DMat3) -> DMat3 {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+    let matrix = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    if m.determinant() < 0.0 { matrix * -1.0 } else { matrix }
+}
+
+/// An upper bound of how much a transformation lengthens: the root of the sum of its squared columns, but never more
+/// than the longest column when they are orthogonal.
+fn largest_stretch(m: &DMat4) -> f64 {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.truncate());
+    let longest = x.length().max(y.length()).max(z.length());
+    let skew = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
+    if skew <= 1e-12 * longest * longest {
+        longest
+    } else {
+        (x.length_squared() + y.length_squared() + z.length_squared()).sqrt()
+    }
+}
+
+impl Object {
+    /// The triangles in own coordinates, and the tolerance in scene units that they were made for (0 for flat shapes).
+    fn mesh(&self, scene_tolerance: Option<f64>) -> Result<(Mesh, f64), SceneError> {
+        let stretch = largest_stretch(&self.transform);
+        let given = self.tolerance.or(scene_tolerance);
+        let own = self.shape.extent().map(|extent| given.map_or(extent * RELATIVE_TOLERANCE, |t| t / stretch));
+        let mesh = self.shape.mesh(own.unwrap_or(f64::INFINITY));
+        let mesh = mesh.map_err(|source| SceneError::Mesh { object: self.name.clone(), source })?;
+        Ok((mesh, own.unwrap_or(0.0) * stretch))
+    }
+
+    /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
+    pub(super) fn chord_error(&self, scene_tolerance: Option<f64>) -> Result<f64, SceneError> {
+        let (mesh, _) = self.mesh(scene_tolerance)?;
+        Ok(self.shape.chord_error(&mesh) * largest_stretch(&self.transform))
+    }
+}
+
+impl Shape {
+    /// Length of the diagonal in own coordinates, for curved shapes of known size.
+    fn extent(&self) -> Option<f64> {
+        match self {
+            Shape::Sphere { radius } => Some(2.0 * radius * 3f64.sqrt()),
+            Shape::Teapot => Some(super::shape::TEAPOT_DIAGONAL),
+            Shape::Box { .. } | Shape::Ground { .. } | Shape::Mesh { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! From where a scene is seen: a camera, or the matrix that a workstation reads back.
+
+use super::{Bounds, SceneError};
+use glam::{DMat4, DVec3, DVec4};
+use serde::{Deserialize, Serialize};
+
+/// How steeply the automatic camera looks down.
+const FRAMING_DIRECTION: DVec3 = DVec3::new(0.35, 0.45, 1.0);
+/// Field of view of the automatic camera, degrees.
+const FRAMING_FIELD_OF_VIEW: f64 = 30.0;
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Camera {
+    /// The eye.
+    pub from: DVec3,
+    /// What is in the middle of the picture.
+    pub at: DVec3,
+    /// What is up in the picture; not along the view.
+    pub up: DVec3,
+    /// Full angle across the *shorter* side of the picture, degrees, between 0 and 180. A square screen in the
+    /// middle of the picture, such as that of a PS 340, shows just this angle.
+    pub field_of_view: f64,
+    /// Depth along the view before which nothing is seen, scene units, 0 and more.
+    pub near: f64,
+    /// Depth along the view behind which nothing is seen; without one, there is no end.
+    pub far: Option<f64>,
+}
+
+impl Camera {
+    /// Checks that the camera can see.
+    ///
+    /// # Errors
+    /// [`SceneError::Camera`].
+    pub fn check(&self) -> Result<(), SceneError> {
+        let failed = |problem: String| Err(SceneError::Camera(problem));
+        if !(self.from.is_finite() && self.at.is_finite() && self.up.is_finite()) {
+            return failed("from, at and up must be finite".into());
+        }
+        if (self.at - self.from).try_normalize().is_none() {
+            return failed(format!("from and at are the same point {}", self.at));
+        }
+        if self.axes().is_none() {
+            return failed(format!("up {} lies along the view", self.up));
+        }
+        if !(self.field_of_view > 0.0 && self.field_of_view < 180.0) {
+            return failed(format!("field of view {} is not between 0 and 180 degrees", self.field_of_view));
+        }
+        let far = self.far.unwrap_or(f64::INFINITY);
+        if !(self.near >= 0.0 && self.near < far) {
+            return failed(format!("near {} and far {far} do not enclose anything", self.near));
+        }
+        Ok(())
+    }
+
+    /// Unit vectors to the right, up and forward in the picture; none if the camera cannot see.
+    pub fn axes(&self) -> Option<[DVec3; 3]> {
+        let forward = (self.at - self.from).try_normalize()?;
+        let right = forward.cross(self.up.try_normalize()?).try_normalize()?;
+        Some([right, right.cross(forward), forward])
+    }
+
+    /// Tangent of half the field of view.
+    pub fn half_tangent(&self) -> f64 {
+        (self.field_of_view.to_radians() / 2.0).tan()
+    }
+
+    /// A camera that frames `bounds` from the front, a little from the right and from above.
+    pub fn framing(bounds: &Bounds) -> Camera {
+        let radius = (bounds.diagonal() / 2.0).max(f64::MIN_POSITIVE.sqrt());
+        let distance = radius / (FRAMING_FIELD_OF_VIEW.to_radians() / 2.0).sin();
+        let at = bounds.center();
+        Camera {
+            from: at + FRAMING_DIRECTION.normalize() * distance,
+            at,
+            up: DVec3::Y,
+            field_of_view: FRAMING_FIELD_OF_VIEW,
+            near: 0.0,
+            far: None,
+        }
+    }
+
+    /// The same view as a matrix: scene coordinates to clip coordinates, as LOOK and FIELD_OF_VIEW make it.
+    ///
+    /// Without a far depth, depths are scaled to the tenfold distance to `at`, and not clipped.
+    pub fn projection(&self) -> Option<Projection> {
+        let [right, up, forward] = self.axes()?;
+        let t = self.half_tangent();
+        let back = self.far.unwrap_or(10.0 * (self.at - self.from).length());
+        let row = |v: DVec3| v.extend(-v.dot(self.from));
+        let depth = row(forward);
+        let z = (depth - DVec4::new(0.0, 0.0, 0.0, self.near)) * (back / (back - self.near));
+        let rows = [row(right) / t, row(up) / t, z, depth];
+        let to_clip = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+        Some(Projection { to_clip, depth_clipping: self.far.is_some() || self.near > 0.0 })
+    }
+}
+
+/// A general projective view: what a workstation's transformation makes of the scene.
+///
+/// Clip coordinates are those of a PS 340: -w..w across the square screen in x and y, depth 0 at the front boundary
+/// and w at the back one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Projection {
+    /// Scene coordinates (right-handed) to clip coordinates, for column vectors: `clip = M p`.
+    pub to_clip: DMat4,
+    /// Whether what lies before the front or behind the back boundary is cut off.
+    pub depth_clipping: bool,
+}
+
+impl Projection {
+    /// The view behind a matrix that a PS 340 reports.
+    ///
+    /// - `matrix`: object to clip coordinates in the left-handed space of the machine, in the convention of
+    ///   `protocol::value`: its row `i` is column `i` of the glam matrix, so that `p M` is `matrix * p`.
+    /// - The scene was sent with z negated; this is undone here.
+    pub fn from_workstation(matrix: &DMat4, depth_clipping: bool) -> Projection {
+        let mirror = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
+        Projection { to_clip: *matrix * mirror, depth_clipping }
+    }
+}
+
+/// From where a scene is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum View {
+    /// Through a camera.
+    Camera(Camera),
+    /// Through a matrix.
+    Projection(Projection),
+}
+
+impl View {
+    /// The view as a matrix; none for a camera that cannot see.
+    pub fn projection(&self) -> Option<Projection> {
+        match self {
+            View::Camera(camera) => camera.projection(),
+            View::Projection(projection) => Some(*projection),
+        }
+    }
+
+    /// What a picture shows in clip coordinates: x min, x max, y min, y max.
+    ///
+    /// The shorter side spans -1..1; the longer one shows as much more as keeps the pixels square.
+    pub fn window(width: u32, height: u32) -> [f64; 4] {
+        let shorter = f64::from(width.min(height));
+        let (x, y) = (f64::from(width) / shorter, f64::from(height) / shorter);
+        [-x, x, -y, y]
+    }
+}

@@ -1,0 +1,170 @@
+//! From the values of a call to the parameters of a row.
+
+use super::builder::Handle;
+use super::function::{Default, Function, Kind, Parameter};
+use glam::DVec3;
+use rhai::{Array, Dynamic, Map};
+
+/// A checked value.
+#[derive(Clone, Debug, PartialEq)]
+enum Argument {
+    Object(Handle),
+    Number(f64),
+    Integer(i64),
+    Vector(DVec3),
+    Text(String),
+}
+
+/// The checked values of a call, by parameter.
+pub(super) struct Bound {
+    values: Vec<(&'static str, Argument)>,
+}
+
+impl Bound {
+    /// Assigns the values of a call to the parameters of `function` and checks each.
+    pub(super) fn new(function: &Function, values: &[Dynamic]) -> Result<Bound, String> {
+        let mut bound = Bound { values: Vec::new() };
+        let mut rest = values;
+        let mut parameters = function.parameters.iter();
+        while let Some(first) = rest.first() {
+            if rest.len() == 1 && first.is_map() && !first.is::<Handle>() {
+                bound.take_map(function, first)?;
+                break;
+            }
+            let Some(parameter) = parameters.next() else {
+                return Err(format!("too many values; use {}", function.usage()));
+            };
+            let three =
+                parameter.kind.takes_three() && rest.len() >= 3 && rest[..3].iter().all(|v| number(v).is_some());
+            let (value, used) = if three { (Dynamic::from_array(rest[..3].to_vec()), 3) } else { (first.clone(), 1) };
+            bound.put(parameter, &value)?;
+            rest = &rest[used..];
+        }
+        let missing = |p: &&Parameter| p.default == Default::Required && bound.get(p.name).is_none();
+        match function.parameters.iter().find(missing) {
+            Some(p) => Err(format!("{} is missing; use {}", p.name, function.usage())),
+            None => Ok(bound),
+        }
+    }
+
+    fn take_map(&mut self, function: &Function, map: &Dynamic) -> Result<(), String> {
+        let map = map.read_lock::<Map>().ok_or("the map cannot be read")?;
+        for (key, value) in map.iter() {
+            let named = function.parameters.iter().find(|p| p.kind != Kind::Object && p.name == key.as_str());
+            let Some(parameter) = named else {
+                let names = function.parameters.iter().filter(|p| p.kind != Kind::Object);
+                let names: Vec<&str> = names.map(|p| p.name).collect();
+                return Err(format!("unknown parameter {key}; it takes {}", names.join(", ")));
+            };
+            if self.get(parameter.name).is_some() {
+                return Err(format!("{key} is given twice"));
+            }
+            self.put(parameter, value)?;
+        }
+        Ok(())
+    }
+
+    fn put(&mut self, parameter: &Parameter, value: &Dynamic) -> Result<(), String> {
+        let checked = check(parameter.kind, value)
+            .ok_or_else(|| format!("{} must be {}, not {}", parameter.name, parameter.kind.words(), shown(value)))?;
+        self.values.push((parameter.name, checked));
+        Ok(())
+    }
+
+    fn get(&self, name: &str) -> Option<&Argument> {
+        self.values.iter().find(|(n, _)| *n == name).map(|(_, value)| value)
+    }
+
+    pub(super) fn object(&self, name: &str) -> Option<Handle> {
+        match self.get(name)? {
+            Argument::Object(handle) => Some(*handle),
+            _ => None,
+        }
+    }
+
+    pub(super) fn number(&self, name: &str) -> Option<f64> {
+        match self.get(name)? {
+            Argument::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    pub(super) fn integer(&self, name: &str) -> Option<i64> {
+        match self.get(name)? {
+            Argument::Integer(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    pub(super) fn vector(&self, name: &str) -> Option<DVec3> {
+        match self.get(name)? {
+            Argument::Vector(vector) => Some(*vector),
+            _ => None,
+        }
+    }
+
+    pub(super) fn text(&self, name: &str) -> Option<&str> {
+        match self.get(name)? {
+            Argument::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+fn number(value: &Dynamic) -> Option<f64> {
+    value.as_float().ok().or_else(|| value.as_int().ok().map(|i| i as f64)).filter(|x| x.is_finite())
+}
+
+fn vector(value: &Dynamic) -> Option<DVec3> {
+    let array = value.read_lock::<Array>()?;
+    match array.as_slice() {
+        [x, y, z] => Some(DVec3::new(number(x)?, number(y)?, number(z)?)),
+        _ => None,
+    }
+}
+
+/// A vector, or one number for all three components.
+fn vector_or_number(value: &Dynamic) -> Option<DVec3> {
+    number(value).map(DVec3::splat).or_else(|| vector(value))
+}
+
+fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
+    let within = |v: DVec3, min: f64, max: f64| v.min_element() >= min && v.max_element() <= max;
+    match kind {
+        Kind::Object => value.read_lock::<Handle>().map(|h| Argument::Object(*h)),
+        Kind::Number(min, max) => number(value).filter(|x| (min..=max).contains(x)).map(Argument::Number),
+        Kind::Length => number(value).filter(|x| *x > 0.0).map(Argument::Number),
+        Kind::Integer(min, max) => {
+            let whole = value.as_int().ok();
+            whole.filter(|i| (min..=max).contains(i)).map(Argument::Integer)
+        }
+        Kind::Vector => vector(value).map(Argument::Vector),
+        Kind::Factors => vector_or_number(value).filter(|v| v.abs().min_element() > 0.0).map(Argument::Vector),
+        Kind::Lengths => vector_or_number(value).filter(|v| v.min_element() > 0.0).map(Argument::Vector),
+        Kind::Fractions => vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Argument::Vector),
+        Kind::Powers => vector_or_number(value).filter(|v| within(*v, 0.0, f64::MAX)).map(Argument::Vector),
+        Kind::Axis => {
+            let named = match &*value.read_lock::<rhai::ImmutableString>().map(|s| s.to_string()).unwrap_or_default() {
+                "x" => Some(DVec3::X),
+                "y" => Some(DVec3::Y),
+                "z" => Some(DVec3::Z),
+                _ => None,
+            };
+            named.or_else(|| vector(value)?.try_normalize()).map(Argument::Vector)
+        }
+        Kind::Text => value.read_lock::<rhai::ImmutableString>().map(|s| Argument::Text(s.to_string())),
+    }
+}
+
+/// The value as messages show it: short.
+fn shown(value: &Dynamic) -> String {
+    const LONGEST: usize = 60;
+    if value.is::<Handle>() {
+        return "an object".into();
+    }
+    let text = format!("{value:?}");
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} ...", &text[..end]),
+        None => text,
+    }
+}

@@ -1,0 +1,134 @@
+//! The interpreter: limits, bindings from the table, and one run.
+
+use super::argument::Bound;
+use super::builder::{Builder, Handle};
+use super::error::{self, ScriptError};
+use super::function::Function;
+use super::{Evaluated, FUNCTIONS};
+use crate::scene::Scene;
+use rhai::module_resolvers::DummyModuleResolver;
+use rhai::{Dynamic, Engine, EvalAltResult, NativeCallContext};
+use std::cell::RefCell;
+use std::io::Read;
+use std::path::Path;
+use std::rc::Rc;
+
+/// Steps that a script may take.
+pub const MAX_OPERATIONS: u64 = 20_000_000;
+/// Longest script, bytes.
+pub const MAX_SCRIPT_BYTES: u64 = 4 << 20;
+/// Longest string in a script, bytes.
+const MAX_STRING: usize = 1 << 20;
+/// Most elements of an array or a map.
+const MAX_ELEMENTS: usize = 1 << 20;
+/// Deepest nesting of calls.
+const MAX_CALLS: usize = 64;
+/// Deepest nesting of expressions, outside and inside functions.
+const MAX_NESTING: (usize, usize) = (64, 48);
+/// Most lines that a script may print.
+const MAX_PRINTED: usize = 10_000;
+/// Words that scripts may not use: they run text and load other files.
+const FORBIDDEN: [&str; 2] = ["eval", "import"];
+
+type State = Rc<RefCell<Builder>>;
+
+/// Reads a script.
+pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
+    let failed = |source| ScriptError::Read { path: path.into(), source };
+    let mut text = String::new();
+    let file = std::fs::File::open(path).map_err(failed)?;
+    file.take(MAX_SCRIPT_BYTES + 1).read_to_string(&mut text).map_err(failed)?;
+    if text.len() as u64 > MAX_SCRIPT_BYTES {
+        return Err(ScriptError::TooLong { path: path.into() });
+    }
+    Ok(text)
+}
+
+/// Runs a script.
+pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluated, ScriptError> {
+    let state: State = Rc::new(RefCell::new(Builder { scene: Scene::default(), folder: folder.into() }));
+    let printed = Rc::new(RefCell::new(Vec::new()));
+    let mut engine = limited();
+    let lines = Rc::clone(&printed);
+    engine.on_print(move |line| {
+        let mut lines = lines.borrow_mut();
+        if lines.len() < MAX_PRINTED {
+            lines.push(line.to_owned());
+        }
+    });
+    engine.on_debug(|_, _, _| {});
+    engine.register_type_with_name::<Handle>("object");
+    for function in FUNCTIONS {
+        bind(&mut engine, function, &state);
+    }
+    let outcome = engine.run(text);
+    drop(engine);
+    outcome.map_err(|e| error::place(&e, text, name))?;
+    let scene = state.borrow().scene.clone();
+    scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source })?;
+    let printed = printed.borrow().clone();
+    Ok(Evaluated { scene, name: name.to_owned(), printed })
+}
+
+fn limited() -> Engine {
+    let mut engine = Engine::new();
+    engine
+        .set_max_operations(MAX_OPERATIONS)
+        .set_max_string_size(MAX_STRING)
+        .set_max_array_size(MAX_ELEMENTS)
+        .set_max_map_size(MAX_ELEMENTS)
+        .set_max_call_levels(MAX_CALLS)
+        .set_max_expr_depths(MAX_NESTING.0, MAX_NESTING.1)
+        .set_max_modules(0)
+        .set_module_resolver(DummyModuleResolver::new());
+    for symbol in FORBIDDEN {
+        engine.disable_symbol(symbol);
+    }
+    // A scene is the same at any time, and its script does not wait.
+    let refuse = || -> Answer { Err("a scene script can neither wait nor read the clock".into()) };
+    engine.register_fn("sleep", move |_: rhai::INT| refuse());
+    engine.register_fn("sleep", move |_: rhai::FLOAT| refuse());
+    engine.register_fn("timestamp", refuse);
+    engine
+}
+
+type Answer = Result<Dynamic, Box<EvalAltResult>>;
+
+/// Registers a row for every number of arguments that it can be called with.
+fn bind(engine: &mut Engine, function: &'static Function, state: &State) {
+    let (least, most) = function.arity();
+    for arity in least..=most {
+        let state = Rc::clone(state);
+        let call = move |context: NativeCallContext<'_>, values: &[Dynamic]| call(function, &state, &context, values);
+        let name = function.name;
+        match arity {
+            0 => engine.register_fn(name, move |c: NativeCallContext<'_>| -> Answer { call(c, &[]) }),
+            1 => engine.register_fn(name, move |c: NativeCallContext<'_>, a: Dynamic| -> Answer { call(c, &[a]) }),
+            2 => engine.register_fn(name, move |c: NativeCallContext<'_>, a: Dynamic, b: Dynamic| -> Answer {
+                call(c, &[a, b])
+            }),
+            3 => engine
+                .register_fn(name, move |x: NativeCallContext<'_>, a: Dynamic, b: Dynamic, c: Dynamic| -> Answer {
+                    call(x, &[a, b, c])
+                }),
+            4 => engine.register_fn(
+                name,
+                move |x: NativeCallContext<'_>, a: Dynamic, b: Dynamic, c: Dynamic, d: Dynamic| -> Answer {
+                    call(x, &[a, b, c, d])
+                },
+            ),
+            // Longer lists of values are unreadable: a map takes their place.
+            _ => break,
+        };
+    }
+}
+
+fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, values: &[Dynamic]) -> Answer {
+    let failed = |problem: String| {
+        let message = format!("{}: {problem}", function.name);
+        Box::new(EvalAltResult::ErrorRuntime(message.into(), context.call_position()))
+    };
+    let bound = Bound::new(function, values).map_err(failed)?;
+    let object = (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)?;
+    Ok(object.map_or(Dynamic::UNIT, Dynamic::from))
+}

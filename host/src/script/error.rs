@@ -1,0 +1,144 @@
+//! What can be wrong with a script, and where.
+
+use super::FUNCTIONS;
+use crate::scene::SceneError;
+use rhai::{EvalAltResult, ParseErrorType, Position};
+use std::fmt;
+use std::path::PathBuf;
+
+/// Why a script gives no scene.
+#[derive(Debug, thiserror::Error)]
+pub enum ScriptError {
+    /// The file cannot be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file is longer than a script may be.
+    #[error("{}: longer than {} bytes", path.display(), super::MAX_SCRIPT_BYTES)]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The script is wrong at a place.
+    #[error("{0}")]
+    Place(Box<Place>),
+    /// The script runs, but what it builds is no scene.
+    #[error("{file}: {source}")]
+    Scene {
+        /// The script.
+        file: String,
+        /// What is wrong.
+        source: SceneError,
+    },
+}
+
+/// A place in a script and what is wrong there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The script.
+    pub file: String,
+    /// Line, from 1; 0 if it is not known.
+    pub line: usize,
+    /// Column, from 1; 0 if it is not known.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// The text of the line.
+    pub text: String,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Place { file, line, column, message, text } = self;
+        match line {
+            0 => write!(f, "{file}: {message}"),
+            _ => {
+                let number = line.to_string();
+                let gutter = " ".repeat(number.len());
+                let lead: String =
+                    text.chars().take(column.saturating_sub(1)).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
+                write!(f, "{file}:{line}:{column}: {message}\n{number} | {text}\n{gutter} | {lead}^")
+            }
+        }
+    }
+}
+
+/// Turns an error of the interpreter into ours, with its place in the script.
+pub(super) fn place(error: &EvalAltResult, script: &str, file: &str) -> ScriptError {
+    let (message, position) = describe(error);
+    let line = position.line().unwrap_or(0);
+    let column = if line == 0 { 0 } else { position.position().unwrap_or(1) };
+    let text = line.checked_sub(1).and_then(|l| script.lines().nth(l)).unwrap_or_default().to_owned();
+    ScriptError::Place(Box::new(Place { file: file.to_owned(), line, column, message, text }))
+}
+
+fn describe(error: &EvalAltResult) -> (String, Position) {
+    use EvalAltResult as E;
+    let position = error.position();
+    let message = match error {
+        E::ErrorInFunctionCall(name, _, inner, outer) => {
+            let (message, position) = describe(inner);
+            let called = outer.line().map_or(String::new(), |line| format!(" called in line {line}"));
+            let at = if position.is_none() { *outer } else { position };
+            return (format!("{message} (in {name}{called})"), at);
+        }
+        E::ErrorParsing(kind, _) => parsing(kind),
+        E::ErrorRuntime(value, _) => value.to_string(),
+        E::ErrorFunctionNotFound(signature, _) => unknown_function(signature),
+        E::ErrorVariableNotFound(name, _) => format!("unknown name {name}"),
+        E::ErrorTooManyOperations(_) => {
+            format!("the script takes more than {} steps; does it end?", super::MAX_OPERATIONS)
+        }
+        E::ErrorStackOverflow(_) => "too many calls within calls; does the recursion end?".into(),
+        E::ErrorDataTooLarge(what, _) => format!("too large: {what}"),
+        other => {
+            let mut plain = other.to_string();
+            // The place stands in front of the message already.
+            if let Some(end) = plain.rfind(" (line ") {
+                plain.truncate(end);
+            }
+            plain
+        }
+    };
+    (message, position)
+}
+
+fn parsing(kind: &ParseErrorType) -> String {
+    match kind {
+        ParseErrorType::Reserved(word) => format!("{word} cannot be used in a scene script"),
+        other => other.to_string(),
+    }
+}
+
+/// A call that fits no row: either the name or the number of values is wrong.
+fn unknown_function(signature: &str) -> String {
+    let name = signature.split([' ', '(']).next().unwrap_or(signature);
+    if let Some(function) = FUNCTIONS.iter().find(|f| f.name == name) {
+        return format!("{name}: these values do not fit; use {}", function.usage());
+    }
+    let nearest = FUNCTIONS.iter().map(|f| (distance(name, f.name), f.name)).min();
+    match nearest {
+        Some((d, known)) if d <= 1 + name.len() / 4 => {
+            format!("unknown function {signature}; did you mean {known}?")
+        }
+        _ => format!("unknown function {signature}"),
+    }
+}
+
+/// Number of letters to insert, delete or replace to get from one word to the other (Levenshtein).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().take(64).enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, y) in b.iter().enumerate() {
+            let cost = (diagonal + usize::from(x != *y)).min(row[j] + 1).min(row[j + 1] + 1);
+            diagonal = std::mem::replace(&mut row[j + 1], cost);
+        }
+    }
+    row[b.len()]
+}

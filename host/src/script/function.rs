@@ -1,0 +1,134 @@
+//! A row of the function table: name, parameters, help, example, action.
+
+use super::argument::Bound;
+use super::builder::{Builder, Handle};
+
+/// A function that scripts may call.
+pub struct Function {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does, in a sentence.
+    pub summary: &'static str,
+    /// What it takes, in order; the last argument may be a map `#{name: value}` instead.
+    pub parameters: &'static [Parameter],
+    /// A line of script that uses it.
+    pub example: &'static str,
+    /// What it does to the scene; returns the object that it made or changed.
+    pub(super) action: fn(&mut Builder, &Bound) -> Result<Option<Handle>, String>,
+}
+
+/// What a function takes.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name, as in the map.
+    pub name: &'static str,
+    /// What values it takes.
+    pub kind: Kind,
+    /// What it is when it is not given.
+    pub default: Default,
+    /// What it means, with its unit.
+    pub help: &'static str,
+}
+
+/// What holds for a parameter that is not given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Default {
+    /// It must be given.
+    Required,
+    /// The text says what holds instead.
+    Is(&'static str),
+}
+
+/// What values a parameter takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// An object that another function returned; before the dot in `object.function(...)`.
+    Object,
+    /// A number within limits.
+    Number(f64, f64),
+    /// A whole number within limits.
+    Integer(i64, i64),
+    /// A length above 0.
+    Length,
+    /// Three numbers `[x, y, z]`; as the only arguments also without brackets.
+    Vector,
+    /// One number for all directions or three numbers; none is 0.
+    Factors,
+    /// Three lengths above 0, or one for all.
+    Lengths,
+    /// Reflected fractions 0 to 1: `[red, green, blue]`, or one number for all.
+    Fractions,
+    /// Powers 0 and more: `[red, green, blue]`, or one number for all.
+    Powers,
+    /// "x", "y", "z" or a vector `[x, y, z]`.
+    Axis,
+    /// A string.
+    Text,
+}
+
+impl Kind {
+    /// The kind in words, as in "must be ...".
+    pub fn words(self) -> String {
+        match self {
+            Kind::Object => "an object".into(),
+            Kind::Number(min, max) if max.is_infinite() && min.is_infinite() => "a number".into(),
+            Kind::Number(min, max) if max.is_infinite() => format!("a number not below {min}"),
+            Kind::Number(min, max) => format!("a number from {min} to {max}"),
+            Kind::Integer(min, max) => format!("a whole number from {min} to {max}"),
+            Kind::Length => "a length above 0".into(),
+            Kind::Vector => "three numbers [x, y, z]".into(),
+            Kind::Factors => "a number or three [x, y, z], none of them 0".into(),
+            Kind::Lengths => "a length above 0, or three [x, y, z]".into(),
+            Kind::Fractions => "a number from 0 to 1, or three [red, green, blue]".into(),
+            Kind::Powers => "a number not below 0, or three [red, green, blue]".into(),
+            Kind::Axis => "\"x\", \"y\", \"z\" or a vector [x, y, z]".into(),
+            Kind::Text => "a string".into(),
+        }
+    }
+}
+
+impl Function {
+    /// Whether it is called on an object: `object.function(...)`.
+    pub fn is_method(&self) -> bool {
+        self.parameters.first().is_some_and(|p| p.kind == Kind::Object)
+    }
+
+    /// How it is called, in one line.
+    pub fn usage(&self) -> String {
+        let own = if self.is_method() { &self.parameters[1..] } else { self.parameters };
+        let names: Vec<&str> = own.iter().map(|p| p.name).collect();
+        let prefix = if self.is_method() { "object." } else { "" };
+        format!("{prefix}{}({})", self.name, names.join(", "))
+    }
+
+    /// The help text: usage, summary, parameters, example.
+    pub fn help(&self) -> String {
+        let mut text = format!("{}\n    {}\n", self.usage(), self.summary);
+        let own = self.parameters.iter().filter(|p| p.kind != Kind::Object);
+        let width = own.clone().map(|p| p.name.len()).max().unwrap_or(0);
+        for p in own {
+            let default = match p.default {
+                Default::Required => "required".to_owned(),
+                Default::Is(text) => format!("default: {text}"),
+            };
+            text.push_str(&format!("    {:<width$}  {}: {} ({default})\n", p.name, p.help, p.kind.words()));
+        }
+        text.push_str(&format!("    example: {}", self.example));
+        text
+    }
+
+    /// Fewest and most arguments that a call may have.
+    pub(super) fn arity(&self) -> (usize, usize) {
+        let receiver = usize::from(self.is_method());
+        // Everything after the receiver may stand in one map; a vector may be spelled as three numbers.
+        let most = self.parameters.iter().map(|p| if p.kind.takes_three() { 3 } else { 1 }).sum();
+        (receiver, most)
+    }
+}
+
+impl Kind {
+    /// Whether three bare numbers may stand for one value.
+    pub(super) fn takes_three(self) -> bool {
+        matches!(self, Kind::Vector | Kind::Factors | Kind::Lengths | Kind::Fractions | Kind::Powers)
+    }
+}

@@ -1,0 +1,99 @@
+//! Scene scripts: Rhai programs that build a scene.
+//!
+//! Every function that a script may call is one row of a table, from which its binding, its help, and the reference
+//! are derived.
+
+mod argument;
+mod builder;
+mod engine;
+mod error;
+mod function;
+mod table;
+
+#[cfg(test)]
+mod tests;
+
+pub use engine::{MAX_OPERATIONS, MAX_SCRIPT_BYTES};
+pub use error::ScriptError;
+pub use function::{Function, Kind, Parameter};
+pub use table::FUNCTIONS;
+
+use crate::scene::Scene;
+use std::path::Path;
+
+/// A scene that ships with the program.
+#[derive(Clone, Copy, Debug)]
+pub struct Embedded {
+    /// What it is called on the command line.
+    pub name: &'static str,
+    /// What it shows.
+    pub summary: &'static str,
+    /// Its script.
+    pub text: &'static str,
+}
+
+/// The scenes that ship with the program; the first is the default.
+pub const EMBEDDED: [Embedded; 2] = [
+    Embedded {
+        name: "teapot",
+        summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
+        text: include_str!("../../scenes/teapot.rhai"),
+    },
+    Embedded {
+        name: "primitives",
+        summary: "every primitive shape, in a row",
+        text: include_str!("../../scenes/primitives.rhai"),
+    },
+];
+
+/// What a script made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evaluated {
+    /// The scene.
+    pub scene: Scene,
+    /// Name of the script, for titles and messages.
+    pub name: String,
+    /// What the script printed, line by line.
+    pub printed: Vec<String>,
+}
+
+/// Runs the embedded scene of this name, or else the script in the file of this name.
+///
+/// # Errors
+/// [`ScriptError`] if the file cannot be read or the script is wrong.
+pub fn load(name: &str) -> Result<Evaluated, ScriptError> {
+    match EMBEDDED.iter().find(|e| e.name == name) {
+        Some(embedded) => evaluate(embedded.text, embedded.name, Path::new("")),
+        None => load_file(Path::new(name)),
+    }
+}
+
+/// Runs the script in a file; the paths in it are relative to its folder.
+///
+/// # Errors
+/// [`ScriptError`] if the file cannot be read or the script is wrong.
+pub fn load_file(path: &Path) -> Result<Evaluated, ScriptError> {
+    let text = engine::read(path)?;
+    evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")))
+}
+
+/// Runs a script.
+///
+/// - `text`: the script.
+/// - `name`: what messages call it.
+/// - `folder`: where the relative paths in it begin.
+///
+/// # Errors
+/// [`ScriptError`], with line and column where there are any.
+pub fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluated, ScriptError> {
+    engine::evaluate(text, name, folder)
+}
+
+/// The reference of all functions, as Markdown.
+pub fn reference() -> String {
+    let mut text = String::from("# Functions of a scene script\n");
+    for function in FUNCTIONS {
+        text.push_str(&format!("\n## {}\n\n```\n{}\n```\n", function.name, function.help()));
+    }
+    text
+}

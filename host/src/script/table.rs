@@ -1,0 +1,323 @@
+//! Every function of the scene language, one row each.
+
+use super::argument::Bound;
+use super::builder::{Builder, Handle};
+use super::function::Default::{Is, Required};
+use super::function::{Function, Kind, Parameter};
+use crate::illumination::{Light, Material};
+use crate::picture::MAX_PIXELS;
+use crate::scene::{Camera, MAX_LIGHTS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Shape};
+use glam::{DMat4, DVec3};
+use std::f64::consts::PI;
+
+type Done = Result<Option<Handle>, String>;
+
+const TOLERANCE: Parameter = Parameter {
+    name: "tolerance",
+    kind: Kind::Length,
+    default: Is("that of the scene"),
+    help: "largest distance between surface and triangles, scene units",
+};
+const OBJECT: Parameter = Parameter { name: "object", kind: Kind::Object, default: Required, help: "the object" };
+const ANY: Kind = Kind::Number(f64::NEG_INFINITY, f64::INFINITY);
+
+const fn parameter(name: &'static str, kind: Kind, default: super::function::Default, help: &'static str) -> Parameter {
+    Parameter { name, kind, default, help }
+}
+
+/// Every function that a script may call.
+pub const FUNCTIONS: &[Function] = &[
+    Function {
+        name: "teapot",
+        summary: "Adds the Utah teapot, standing on y = 0, its spout towards +x; about 6.4 wide and 3.2 high.",
+        parameters: &[TOLERANCE],
+        example: "let pot = teapot(#{ tolerance: 0.002 });",
+        action: |builder, bound| builder.add(Shape::Teapot, bound.number("tolerance")).map(Some),
+    },
+    Function {
+        name: "sphere",
+        summary: "Adds a sphere around the origin.",
+        parameters: &[parameter("radius", Kind::Length, Is("1"), "its radius"), TOLERANCE],
+        example: "let ball = sphere(0.5);",
+        action: |builder, bound| {
+            let radius = bound.number("radius").unwrap_or(1.0);
+            builder.add(Shape::Sphere { radius }, bound.number("tolerance")).map(Some)
+        },
+    },
+    Function {
+        name: "box",
+        summary: "Adds a box around the origin, its sides along the axes.",
+        parameters: &[parameter("size", Kind::Lengths, Is("1"), "its sides along x, y and z")],
+        example: "let brick = box(4, 1, 2);",
+        action: add_box,
+    },
+    Function {
+        name: "cube",
+        summary: "Adds a cube around the origin; a box with equal sides.",
+        parameters: &[parameter("size", Kind::Lengths, Is("1"), "its side")],
+        example: "let die = cube(2);",
+        action: add_box,
+    },
+    Function {
+        name: "ground",
+        summary: "Adds a level square, its middle above or below the origin.",
+        parameters: &[
+            parameter("size", Kind::Length, Is("100"), "its side; it is finite"),
+            parameter("height", ANY, Is("0"), "its y"),
+        ],
+        example: "ground(#{ size: 40, height: -1 });",
+        action: |builder, bound| {
+            let handle = builder.add(Shape::Ground { size: bound.number("size").unwrap_or(100.0) }, None)?;
+            let height = bound.number("height").unwrap_or(0.0);
+            builder.transform(Some(handle), DMat4::from_translation(DVec3::new(0.0, height, 0.0)))
+        },
+    },
+    Function {
+        name: "mesh",
+        summary: "Adds a mesh from an OBJ, STL or PLY file.",
+        parameters: &[parameter("file", Kind::Text, Required, "its path; relative to the folder of the script")],
+        example: "let bunny = mesh(\"bunny.ply\");",
+        action: add_mesh,
+    },
+    Function {
+        name: "material",
+        summary: "Says how the surface of an object reflects; what is not given becomes the default.",
+        parameters: &[
+            OBJECT,
+            parameter("diffuse", Kind::Fractions, Is("0.7"), "diffusely reflected fraction"),
+            parameter("specular", Kind::Fractions, Is("0"), "fraction in the highlight"),
+            parameter("exponent", Kind::Number(1.0, Material::MAX_EXPONENT), Is("50"), "sharpness of the highlight"),
+            parameter("mirror", Kind::Fractions, Is("0"), "mirrored fraction"),
+        ],
+        example: "pot.material(#{ diffuse: [0.8, 0.5, 0.3], specular: 0.1, exponent: 60, mirror: 0.1 });",
+        action: set_material,
+    },
+    Function {
+        name: "translate",
+        summary: "Moves an object, after all that was done to it before.",
+        parameters: &[OBJECT, parameter("by", Kind::Vector, Required, "how far along x, y and z")],
+        example: "pot.translate(0, 1, 0);",
+        action: |builder, bound| {
+            let by = bound.vector("by").unwrap_or_default();
+            builder.transform(bound.object("object"), DMat4::from_translation(by))
+        },
+    },
+    Function {
+        name: "rotate",
+        summary: "Turns an object about an axis through the origin, after all that was done to it before.",
+        parameters: &[
+            OBJECT,
+            parameter("axis", Kind::Axis, Required, "what it turns about"),
+            parameter("angle", ANY, Required, "degrees; positive as a right-handed screw turns"),
+        ],
+        example: "pot.rotate(\"y\", 30);",
+        action: |builder, bound| {
+            let axis = bound.vector("axis").unwrap_or(DVec3::Y);
+            let angle = bound.number("angle").unwrap_or_default().to_radians();
+            builder.transform(bound.object("object"), DMat4::from_axis_angle(axis, angle))
+        },
+    },
+    Function {
+        name: "scale",
+        summary: "Scales an object about the origin, after all that was done to it before.",
+        parameters: &[OBJECT, parameter("by", Kind::Factors, Required, "factor, or one for each axis")],
+        example: "pot.scale(0.5);",
+        action: |builder, bound| {
+            let by = bound.vector("by").unwrap_or(DVec3::ONE);
+            builder.transform(bound.object("object"), DMat4::from_scale(by))
+        },
+    },
+    Function {
+        name: "name",
+        summary: "Names an object, for messages and tables.",
+        parameters: &[OBJECT, parameter("text", Kind::Text, Required, "the name")],
+        example: "pot.name(\"pot\");",
+        action: |builder, bound| {
+            builder.object(bound.object("object"))?.name = bound.text("text").unwrap_or_default().to_owned();
+            Ok(bound.object("object"))
+        },
+    },
+    Function {
+        name: "point_light",
+        summary: "Adds a light that shines alike in all directions; give its intensity or its power.",
+        parameters: &[
+            parameter("at", Kind::Vector, Required, "where it is"),
+            parameter("intensity", Kind::Powers, Is("that of the power"), "radiant intensity, W/sr"),
+            parameter("power", Kind::Powers, Is("4 pi times the intensity"), "radiant power, W"),
+        ],
+        example: "point_light(#{ at: [5, 9, 6], intensity: 150 });",
+        action: add_point_light,
+    },
+    Function {
+        name: "directional_light",
+        summary: "Adds parallel light from infinitely far away.",
+        parameters: &[
+            parameter("direction", Kind::Vector, Required, "where the light goes"),
+            parameter("irradiance", Kind::Powers, Is("pi"), "of a surface that faces it, W/m²"),
+        ],
+        example: "directional_light(#{ direction: [-1, -2, -1], irradiance: 2 });",
+        action: |builder, bound| {
+            let direction = bound.vector("direction").unwrap_or_default();
+            if direction.try_normalize().is_none() {
+                return Err("direction must not have the length 0".into());
+            }
+            let irradiance = bound.vector("irradiance").unwrap_or(DVec3::splat(PI));
+            add_light(builder, Light::Directional { direction, irradiance })
+        },
+    },
+    Function {
+        name: "ambient",
+        summary: "Sets the ambient light, which reaches every surface from everywhere.",
+        parameters: &[parameter("radiance", Kind::Powers, Required, "its radiance, W/(m² sr)")],
+        example: "ambient(0.05);",
+        action: |builder, bound| {
+            builder.scene.ambient = bound.vector("radiance").unwrap_or_default();
+            Ok(None)
+        },
+    },
+    Function {
+        name: "background",
+        summary: "Sets what is seen where there is nothing.",
+        parameters: &[parameter("radiance", Kind::Powers, Required, "its radiance, W/(m² sr); 1 shows as white")],
+        example: "background([0.2, 0.3, 0.5]);",
+        action: |builder, bound| {
+            builder.scene.background = bound.vector("radiance").unwrap_or_default();
+            Ok(None)
+        },
+    },
+    Function {
+        name: "camera",
+        summary: "Sets from where the scene is seen; without it, the whole scene is framed.",
+        parameters: &[
+            parameter("from", Kind::Vector, Required, "the eye"),
+            parameter("at", Kind::Vector, Is("[0, 0, 0]"), "what is in the middle of the picture"),
+            parameter("up", Kind::Vector, Is("[0, 1, 0]"), "what is up in the picture"),
+            parameter(
+                "field_of_view",
+                Kind::Number(1e-6, 179.999_999),
+                Is("30"),
+                "full angle across the shorter side of the picture, degrees",
+            ),
+            parameter("near", Kind::Number(0.0, f64::INFINITY), Is("0"), "depth before which nothing is seen"),
+            parameter("far", Kind::Length, Is("no end"), "depth behind which nothing is seen"),
+        ],
+        example: "camera(#{ from: [0, 4, 12], at: [0, 1, 0], field_of_view: 30 });",
+        action: set_camera,
+    },
+    Function {
+        name: "image",
+        summary: "Sets the size of the picture.",
+        parameters: &[
+            parameter("width", Kind::Integer(1, MAX_PIXELS as i64), Required, "columns of pixels"),
+            parameter("height", Kind::Integer(1, MAX_PIXELS as i64), Required, "rows of pixels"),
+        ],
+        example: "image(640, 480);",
+        action: |builder, bound| {
+            let side = |name| bound.integer(name).and_then(|i| u32::try_from(i).ok()).unwrap_or(1);
+            let (width, height) = (side("width"), side("height"));
+            if u64::from(width) * u64::from(height) > MAX_PIXELS {
+                return Err(format!("a picture has at most {MAX_PIXELS} pixels"));
+            }
+            builder.scene.settings.width = width;
+            builder.scene.settings.height = height;
+            Ok(None)
+        },
+    },
+    Function {
+        name: "samples",
+        summary: "Sets the number of samples in each pixel; one samples its centre.",
+        parameters: &[parameter("count", Kind::Integer(1, MAX_SAMPLES as i64), Required, "how many")],
+        example: "samples(16);",
+        action: |builder, bound| {
+            builder.scene.settings.samples = bound.integer("count").and_then(|i| u32::try_from(i).ok()).unwrap_or(1);
+            Ok(None)
+        },
+    },
+    Function {
+        name: "seed",
+        summary: "Sets the seed of the sample positions; the same seed gives the same picture.",
+        parameters: &[parameter("number", Kind::Integer(0, i64::MAX), Required, "the seed")],
+        example: "seed(7);",
+        action: |builder, bound| {
+            builder.scene.settings.seed = bound.integer("number").unwrap_or_default().unsigned_abs();
+            Ok(None)
+        },
+    },
+    Function {
+        name: "reflection_depth",
+        summary: "Sets how often light may go from mirror to mirror; 0 leaves mirrors black.",
+        parameters: &[parameter("depth", Kind::Integer(0, MAX_REFLECTION_DEPTH as i64), Required, "how often")],
+        example: "reflection_depth(4);",
+        action: |builder, bound| {
+            let depth = bound.integer("depth").and_then(|i| u32::try_from(i).ok());
+            builder.scene.settings.reflection_depth = depth.unwrap_or_default();
+            Ok(None)
+        },
+    },
+    Function {
+        name: "tolerance",
+        summary: "Sets how closely triangles follow the surfaces of all objects that have no tolerance of their own.",
+        parameters: &[parameter("length", Kind::Length, Required, "largest distance, scene units")],
+        example: "tolerance(0.001);",
+        action: |builder, bound| {
+            builder.scene.settings.tolerance = bound.number("length");
+            Ok(None)
+        },
+    },
+];
+
+fn add_box(builder: &mut Builder, bound: &Bound) -> Done {
+    builder.add(Shape::Box { size: bound.vector("size").unwrap_or(DVec3::ONE) }, None).map(Some)
+}
+
+fn add_mesh(builder: &mut Builder, bound: &Bound) -> Done {
+    let path = builder.folder.join(bound.text("file").unwrap_or_default());
+    if !path.is_file() {
+        return Err(format!("there is no file {}", path.display()));
+    }
+    builder.add(Shape::Mesh { path }, None).map(Some)
+}
+
+fn set_material(builder: &mut Builder, bound: &Bound) -> Done {
+    let Material { diffuse, specular, exponent, mirror } = Material::default();
+    let material = Material {
+        diffuse: bound.vector("diffuse").unwrap_or(diffuse),
+        specular: bound.vector("specular").unwrap_or(specular),
+        exponent: bound.number("exponent").unwrap_or(exponent),
+        mirror: bound.vector("mirror").unwrap_or(mirror),
+    };
+    builder.object(bound.object("object"))?.material = material;
+    Ok(bound.object("object"))
+}
+
+fn add_point_light(builder: &mut Builder, bound: &Bound) -> Done {
+    let at = bound.vector("at").unwrap_or_default();
+    let intensity = match (bound.vector("intensity"), bound.vector("power")) {
+        (Some(intensity), None) => intensity,
+        (None, Some(power)) => power / (4.0 * PI),
+        _ => return Err("give either its intensity or its power".into()),
+    };
+    add_light(builder, Light::Point { at, intensity })
+}
+
+fn add_light(builder: &mut Builder, light: Light) -> Done {
+    if builder.scene.lights.len() >= MAX_LIGHTS {
+        return Err(format!("more than {MAX_LIGHTS} lights"));
+    }
+    builder.scene.lights.push(light);
+    Ok(None)
+}
+
+fn set_camera(builder: &mut Builder, bound: &Bound) -> Done {
+    let camera = Camera {
+        from: bound.vector("from").unwrap_or_default(),
+        at: bound.vector("at").unwrap_or_default(),
+        up: bound.vector("up").unwrap_or(DVec3::Y),
+        field_of_view: bound.number("field_of_view").unwrap_or(30.0),
+        near: bound.number("near").unwrap_or(0.0),
+        far: bound.number("far"),
+    };
+    camera.check().map_err(|e| e.to_string())?;
+    builder.scene.camera = Some(camera);
+    Ok(None)
+}

@@ -1,0 +1,143 @@
+//! Facts about scene scripts.
+
+use super::*;
+use crate::illumination::Light;
+use crate::scene::Shape;
+use glam::DVec3;
+
+fn run(text: &str) -> Evaluated {
+    evaluate(text, "test.rhai", Path::new("")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn problem(text: &str) -> (usize, usize, String) {
+    match evaluate(text, "test.rhai", Path::new("")) {
+        Err(ScriptError::Place(place)) => (place.line, place.column, place.message),
+        other => panic!("{text}: no error with a place, but {other:?}"),
+    }
+}
+
+#[test]
+fn a_script_builds_what_it_says() {
+    let made = run("
+        let ball = sphere(#{ radius: 2, tolerance: 0.01 });
+        ball.material(#{ diffuse: [1, 0.5, 0], mirror: 0.25 }).translate(1, 2, 3).name(\"ball\");
+        box(4, 1, 2);
+        point_light(#{ at: [0, 5, 0], power: 12.566370614359172 });
+        directional_light([0, -1, 0], 3);
+        ambient(0.1); background([0, 0, 0.5]); image(32, 16); samples(4); seed(9); reflection_depth(2);
+        camera(#{ from: [0, 0, 9] });
+        print(\"made \" + 2);
+    ");
+    let scene = &made.scene;
+    assert_eq!(scene.objects.len(), 2);
+    assert_eq!(scene.objects[0].name, "ball");
+    assert_eq!(scene.objects[0].shape, Shape::Sphere { radius: 2.0 });
+    assert_eq!(scene.objects[0].transform.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(scene.objects[0].material.mirror, DVec3::splat(0.25));
+    assert_eq!(scene.objects[1].shape, Shape::Box { size: DVec3::new(4.0, 1.0, 2.0) });
+    assert_eq!(scene.lights[0], Light::Point { at: DVec3::new(0.0, 5.0, 0.0), intensity: DVec3::ONE });
+    assert_eq!(scene.settings.width, 32);
+    assert_eq!((scene.settings.samples, scene.settings.seed, scene.settings.reflection_depth), (4, 9, 2));
+    assert_eq!(made.printed, ["made 2"]);
+}
+
+#[test]
+fn transformations_apply_in_the_order_of_their_calls() {
+    let made = run("cube(1).translate(1, 0, 0).rotate(\"z\", 90).scale(2);");
+    let moved = made.scene.objects[0].transform.transform_point3(DVec3::ZERO);
+    assert!((moved - DVec3::new(0.0, 2.0, 0.0)).length() < 1e-15);
+}
+
+#[test]
+fn every_example_in_the_table_runs() {
+    for function in FUNCTIONS.iter().filter(|f| f.name != "mesh") {
+        run(&format!("let pot = teapot(); {}", function.example));
+    }
+}
+
+#[test]
+fn the_reference_names_every_function_and_parameter() {
+    let text = reference();
+    for function in FUNCTIONS {
+        assert!(text.contains(&format!("## {}\n", function.name)));
+        assert!(function.parameters.iter().all(|p| text.contains(p.name)));
+    }
+}
+
+#[test]
+fn a_syntax_error_has_its_place() {
+    let (line, column, message) = problem("sphere(1);\nlet x = ;\n");
+    assert_eq!((line, column), (2, 9), "{message}");
+}
+
+#[test]
+fn a_bad_value_has_its_place_and_names_the_parameter() {
+    assert_eq!(
+        problem("cube(1);\n   sphere(#{ radius: -1 });"),
+        (2, 4, "sphere: radius must be a length above 0, not -1".into())
+    );
+    assert_eq!(problem("let p = cube(1);\np.material(#{ colour: 1 });").0, 2);
+    assert!(problem("cube(1).material(#{ colour: 1 });").2.contains("unknown parameter colour; it takes diffuse,"));
+    assert!(problem("point_light(#{ at: [0, 0, 0] });").2.contains("either its intensity or its power"));
+    assert!(problem("camera(#{ at: [0, 0, 0] });").2.contains("from is missing"));
+    assert!(problem("camera(#{ from: [0, 1, 0] });").2.contains("up"), "up along the view");
+    assert!(problem("sphere(1, #{ radius: 2 });").2.contains("given twice"));
+    assert!(problem("image(3.5, 2);").2.contains("width must be a whole number"));
+    assert!(problem("cube(1).rotate(\"w\", 3);").2.contains("axis must be"));
+    assert!(problem("mesh(\"nowhere.ply\");").2.contains("there is no file nowhere.ply"));
+}
+
+#[test]
+fn an_unknown_name_is_an_error_with_a_guess() {
+    assert!(problem("\n\nsphree(1);").2.contains("did you mean sphere?"));
+    assert_eq!(problem("\n\nsphree(1);").0, 3);
+    assert_eq!(problem("cube(size);"), (1, 6, "unknown name size".into()));
+    assert!(problem("samples(1, 2);").2.contains("use samples(count)"));
+}
+
+#[test]
+fn an_error_in_a_script_function_is_placed_where_it_happens() {
+    let (line, _, message) = problem("fn make(r) {\n    sphere(r)\n}\nmake(0);");
+    assert_eq!(line, 2);
+    assert!(message.contains("radius must be") && message.contains("make called in line 4"), "{message}");
+}
+
+#[test]
+fn no_script_runs_forever_or_eats_the_memory() {
+    assert!(problem("loop { }").2.contains("steps"));
+    assert!(problem("fn f(x) { f(x + 1) } f(0);").2.contains("recursion"));
+    assert!(problem("let s = \"x\"; loop { s += s; }").2.contains("too large"));
+    assert!(problem("let a = [0]; loop { a += a; }").2.contains("too large"));
+    for forbidden in ["sleep(10);", "timestamp();", "eval(\"1\");", "import \"x\" as y;"] {
+        assert!(evaluate(forbidden, "t", Path::new("")).is_err(), "{forbidden}");
+    }
+    let deep = "(".repeat(5000);
+    assert!(evaluate(&deep, "t", Path::new("")).is_err());
+}
+
+#[test]
+fn a_message_shows_the_line_and_points_at_the_column() {
+    let error = evaluate("cube(1);\n  cube(0);", "a.rhai", Path::new("")).expect_err("wrong");
+    let shown = error.to_string();
+    assert!(shown.starts_with("a.rhai:2:3: cube: size must be"), "{shown}");
+    assert!(shown.ends_with("2 |   cube(0);\n  |   ^"), "{shown}");
+}
+
+#[test]
+fn a_script_finds_meshes_beside_itself() {
+    let folder = tempfile::tempdir().expect("folder");
+    std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    let script = folder.path().join("s.rhai");
+    std::fs::write(&script, "mesh(\"a.obj\");").expect("written");
+    let made = load_file(&script).expect("a scene");
+    assert_eq!(made.scene.objects[0].shape, Shape::Mesh { path: folder.path().join("a.obj") });
+    assert!(matches!(load("no such file.rhai"), Err(ScriptError::Read { .. })));
+}
+
+#[test]
+fn the_embedded_scenes_are_right() {
+    for embedded in EMBEDDED {
+        let made = load(embedded.name).unwrap_or_else(|e| panic!("{e}"));
+        assert!(!made.scene.objects.is_empty() && !made.scene.lights.is_empty());
+    }
+}

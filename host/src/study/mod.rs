@@ -1,0 +1,91 @@
+//! Error against run time: what a quality setting costs, and what it buys.
+//!
+//! A [`Knob`] is one quality setting that can be swept. [`KNOBS`] lists those that the program offers.
+
+mod plot;
+mod samples;
+mod sweep;
+mod tessellation;
+
+#[cfg(test)]
+mod tests;
+
+pub use plot::{Plot, PlotError, Point, Series};
+pub use sweep::{Knob, Row, Study, Trial, sweep};
+
+use crate::picture::PictureError;
+use crate::render::{RenderError, Watch};
+use crate::scene::{Scene, SceneError};
+use std::num::NonZeroUsize;
+
+/// How a study is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Columns of the pictures; the rows follow from the shape of the scene's picture.
+    pub width: u32,
+    /// Samples in each pixel of the reference, or of every picture where the samples are not what is studied.
+    pub samples: u32,
+    /// How many settings are tried.
+    pub settings: u32,
+    /// Threads; every core without a number.
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// A study that the program offers.
+pub struct KnobRow {
+    /// What it is called on the command line.
+    pub name: &'static str,
+    /// What it sweeps.
+    pub summary: &'static str,
+    /// Options that give a useful curve within a minute.
+    pub options: Options,
+    /// Makes the study of a scene.
+    pub run: fn(&Scene, &Options, &Watch<'_>) -> Result<Study, StudyError>,
+}
+
+/// The studies that the program offers.
+pub const KNOBS: &[KnobRow] = &[
+    KnobRow {
+        name: "render",
+        summary: "samples per pixel against a reference of far more samples",
+        options: Options { width: 160, samples: 1024, settings: 7, threads: None },
+        run: |scene, options, watch| sweep(&samples::Samples::new(scene, options)?, watch),
+    },
+    KnobRow {
+        name: "tessellation",
+        summary: "tessellation tolerance against a far finer tessellation and the exact surfaces",
+        options: Options { width: 160, samples: 4, settings: 7, threads: None },
+        run: |scene, options, watch| sweep(&tessellation::Tessellation::new(scene, options)?, watch),
+    },
+];
+
+/// Why there is no study.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A picture cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// Two pictures cannot be compared.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// There is nothing to be studied.
+    #[error("nothing to study: {0}")]
+    Nothing(&'static str),
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// The scene with the picture size of a study.
+fn resized(scene: &Scene, options: &Options) -> Scene {
+    let mut scene = scene.clone();
+    let settings = &mut scene.settings;
+    let width = options.width.max(1);
+    let rows = f64::from(settings.height) * f64::from(width) / f64::from(settings.width.max(1));
+    settings.height = (rows.round() as u32).max(1);
+    settings.width = width;
+    scene
+}

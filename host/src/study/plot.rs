@@ -1,0 +1,273 @@
+//! Log-log plots as SVG and PNG, with a font of their own: nothing needs to be installed.
+
+use plotters::coord::combinators::IntoLogRange;
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+use std::path::{Path, PathBuf};
+use std::sync::Once;
+
+/// Size of a plot in points; the PNG has [`PNG_SCALE`] pixels for each.
+const SIZE: (u32, u32) = (760, 500);
+const PNG_SCALE: u32 = 2;
+/// Name under which the embedded font is known to the plotting library, and a generic family in SVG.
+const FONT: &str = "sans-serif";
+/// Colours of the series: dark enough on white, and told apart by people who do not tell red from green.
+const COLORS: [RGBColor; 4] =
+    [RGBColor(0, 90, 160), RGBColor(200, 80, 0), RGBColor(0, 130, 90), RGBColor(150, 60, 140)];
+
+/// Curves over logarithmic axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plot {
+    /// The heading.
+    pub title: String,
+    /// What the horizontal axis shows, with its unit.
+    pub x_label: String,
+    /// What the vertical axis shows, with its unit.
+    pub y_label: String,
+    /// A remark under the heading.
+    pub note: String,
+    /// The curves.
+    pub series: Vec<Series>,
+}
+
+/// One curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its points; those that are not above 0 have no place on a logarithmic axis and are left out.
+    pub points: Vec<Point>,
+}
+
+/// A point of a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// On the horizontal axis.
+    pub x: f64,
+    /// On the vertical axis.
+    pub y: f64,
+    /// What stands beside it.
+    pub label: String,
+}
+
+/// Why there is no plot.
+#[derive(Debug, thiserror::Error)]
+pub enum PlotError {
+    /// No point can be shown on logarithmic axes.
+    #[error("nothing to plot: no point has both coordinates above 0")]
+    Empty,
+    /// The plotting library gave up.
+    #[error("plot: {0}")]
+    Draw(String),
+    /// The file cannot be written.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The picture cannot be written.
+    #[error("{}: {source}", path.display())]
+    Image {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: image::ImageError,
+    },
+}
+
+impl Plot {
+    /// The plot as SVG.
+    ///
+    /// # Errors
+    /// [`PlotError::Empty`] or [`PlotError::Draw`].
+    pub fn svg(&self) -> Result<String, PlotError> {
+        let mut text = String::new();
+        self.draw(&SVGBackend::with_string(&mut text, SIZE).into_drawing_area(), 1)?;
+        Ok(text)
+    }
+
+    /// The plot as pixels, three bytes each, with width and height.
+    ///
+    /// # Errors
+    /// [`PlotError::Empty`] or [`PlotError::Draw`].
+    pub fn pixels(&self) -> Result<(Vec<u8>, u32, u32), PlotError> {
+        let (width, height) = (SIZE.0 * PNG_SCALE, SIZE.1 * PNG_SCALE);
+        let mut bytes = vec![255; (width * height * 3) as usize];
+        self.draw(&BitMapBackend::with_buffer(&mut bytes, (width, height)).into_drawing_area(), PNG_SCALE)?;
+        Ok((bytes, width, height))
+    }
+
+    /// Writes `NAME.svg` and `NAME.png`.
+    ///
+    /// # Errors
+    /// [`PlotError`].
+    pub fn write(&self, folder: &Path, name: &str) -> Result<[PathBuf; 2], PlotError> {
+        let svg = folder.join(format!("{name}.svg"));
+        std::fs::write(&svg, self.svg()?).map_err(|source| PlotError::Write { path: svg.clone(), source })?;
+        let png = folder.join(format!("{name}.png"));
+        let (bytes, width, height) = self.pixels()?;
+        let kind = image::ColorType::Rgb8;
+        image::save_buffer_with_format(&png, &bytes, width, height, kind, image::ImageFormat::Png)
+            .map_err(|source| PlotError::Image { path: png.clone(), source })?;
+        Ok([svg, png])
+    }
+
+    fn visible(series: &Series) -> impl Iterator<Item = &Point> {
+        series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0 && p.x.is_finite() && p.y.is_finite())
+    }
+
+    /// Least and greatest value on an axis, with a margin; at least a factor of ten apart.
+    fn range(&self, of: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
+        let values = self.series.iter().flat_map(Plot::visible).map(of);
+        let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v), h.max(v)));
+        let middle = (low * high).sqrt();
+        let (low, high) = (low.min(middle / 3.0), high.max(middle * 3.0));
+        (low <= high).then_some((low / 1.5, high * 1.8))
+    }
+
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, plotters::coord::Shift>,
+        scale: u32,
+    ) -> Result<(), PlotError> {
+        embed_font();
+        let failed = |e: &dyn std::fmt::Display| PlotError::Draw(e.to_string());
+        let (x0, x1) = self.range(|p| p.x).ok_or(PlotError::Empty)?;
+        let (y0, y1) = self.range(|p| p.y).ok_or(PlotError::Empty)?;
+        let points = |n: u32| f64::from(n * scale);
+        area.fill(&WHITE).map_err(|e| failed(&e))?;
+        let (head, body) = area.split_vertically(54 * scale);
+        let dark = RGBColor(30, 30, 30);
+        let text = |size: u32| TextStyle::from((FONT, points(size))).color(&dark);
+        let at = |x: u32, y: u32| ((x * scale) as i32, (y * scale) as i32);
+        head.draw_text(&self.title, &text(18), at(16, 10)).map_err(|e| failed(&e))?;
+        head.draw_text(&self.note, &text(13), at(16, 34)).map_err(|e| failed(&e))?;
+        let mut chart = ChartBuilder::on(&body)
+            .margin(8 * scale)
+            .margin_right(24 * scale)
+            .x_label_area_size(46 * scale)
+            .y_label_area_size(74 * scale)
+            .build_cartesian_2d(
+                (x0..x1).log_scale().with_key_points(ticks(x0, x1)),
+                (y0..y1).log_scale().with_key_points(ticks(y0, y1)),
+            )
+            .map_err(|e| failed(&e))?;
+        chart
+            .configure_mesh()
+            .x_desc(self.x_label.as_str())
+            .y_desc(self.y_label.as_str())
+            .x_label_formatter(&|x| tick_text(*x))
+            .y_label_formatter(&|y| tick_text(*y))
+            .label_style(text(13))
+            .axis_desc_style(text(15))
+            .axis_style(dark.stroke_width(scale))
+            .bold_line_style(RGBColor(215, 215, 215).stroke_width(scale))
+            .light_line_style(TRANSPARENT)
+            .set_all_tick_mark_size(5 * scale)
+            .draw()
+            .map_err(|e| failed(&e))?;
+        for (series, color) in self.series.iter().zip(COLORS.into_iter().cycle()) {
+            let line: Vec<(f64, f64)> = Plot::visible(series).map(|p| (p.x, p.y)).collect();
+            let style = color.stroke_width(2 * scale);
+            let key = move |(x, y): (i32, i32)| PathElement::new([(x, y), (x + 18 * scale as i32, y)], style);
+            chart
+                .draw_series(LineSeries::new(line.iter().copied(), style))
+                .map_err(|e| failed(&e))?
+                .label(series.name.as_str())
+                .legend(key);
+            chart
+                .draw_series(line.iter().map(|p| Circle::new(*p, 4 * scale, color.filled())))
+                .map_err(|e| failed(&e))?;
+            let small = TextStyle::from((FONT, points(12))).color(&color);
+            let beside = |p: &Point| EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), at(6, 0), small.clone());
+            chart.draw_series(Plot::visible(series).map(beside)).map_err(|e| failed(&e))?;
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.9))
+            .border_style(RGBColor(190, 190, 190).stroke_width(scale))
+            .margin(8 * scale)
+            .legend_area_size(28 * scale)
+            .label_font(text(14))
+            .draw()
+            .map_err(|e| failed(&e))?;
+        area.present().map_err(|e| failed(&e))
+    }
+}
+
+/// Makes the embedded font known, once.
+fn embed_font() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        // A font that cannot be read shows itself as a drawing error.
+        let _ = register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    });
+}
+
+/// Decades between two numbers; with 2 and 5 in between if there are few.
+fn ticks(low: f64, high: f64) -> Vec<f64> {
+    let decades = (high / low).log10();
+    let steps: &[f64] = if decades > 4.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let all = exponents.flat_map(|e| steps.iter().map(move |s| s * 10f64.powi(e)));
+    all.filter(|t| (low..=high).contains(t)).collect()
+}
+
+fn tick_text(x: f64) -> String {
+    if (0.999e-3..1e4).contains(&x) {
+        let rounded = format!("{x:.4}");
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{x:.0e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Plot {
+        let point = |i: i32| Point { x: 0.01 * 2f64.powi(i), y: 0.1 * 0.6f64.powi(i), label: (1 << i).to_string() };
+        Plot {
+            title: "A title".into(),
+            x_label: "run time (s)".into(),
+            y_label: "error".into(),
+            note: "labels: samples".into(),
+            series: vec![Series { name: "RMSE".into(), points: (0..6).map(point).collect() }],
+        }
+    }
+
+    #[test]
+    fn an_svg_names_axes_ticks_and_curves() {
+        let svg = sample().svg().expect("drawn");
+        for text in ["A title", "run time (s)", "error", "RMSE", "labels: samples", "0.05", "0.1", "\n32\n"] {
+            assert!(svg.contains(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_bitmap_holds_text_and_curve() {
+        let (bytes, width, height) = sample().pixels().expect("drawn");
+        assert_eq!(bytes.len(), (width * height * 3) as usize);
+        let blue = bytes.chunks(3).filter(|p| *p == [0, 90, 160]).count();
+        let dark = bytes.chunks(3).filter(|p| p.iter().all(|c| *c < 60)).count();
+        assert!(blue > 500 && dark > 500, "{blue} of the curve, {dark} of text and axes");
+    }
+
+    #[test]
+    fn nothing_above_zero_is_an_error() {
+        let mut plot = sample();
+        plot.series[0].points.iter_mut().for_each(|p| p.y = 0.0);
+        assert!(matches!(plot.svg(), Err(PlotError::Empty)));
+    }
+
+    #[test]
+    fn ticks_are_decades_or_finer() {
+        assert_eq!(ticks(0.009, 0.6), [0.01, 0.02, 0.05, 0.1, 0.2, 0.5]);
+        assert_eq!(tick_text(0.001), "0.001");
+        assert_eq!(tick_text(1e-6), "1e-6");
+    }
+}

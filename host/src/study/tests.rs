@@ -1,0 +1,65 @@
+//! Facts about studies.
+
+use super::*;
+use crate::illumination::{Light, Material};
+use crate::scene::{Object, Settings, Shape};
+use glam::{DMat4, DVec3};
+
+/// One white object under parallel light.
+fn scene(shape: Shape) -> Scene {
+    let light = Light::Directional { direction: DVec3::new(0.0, -1.0, -1.0), irradiance: DVec3::splat(3.0) };
+    let material = Material { diffuse: DVec3::ONE, ..Material::default() };
+    let object = Object { name: "it".into(), shape, transform: DMat4::IDENTITY, material, tolerance: None };
+    let settings = Settings { width: 40, height: 40, ..Settings::default() };
+    Scene { objects: vec![object], lights: vec![light], settings, ..Scene::default() }
+}
+
+fn sphere() -> Scene {
+    scene(Shape::Sphere { radius: 1.0 })
+}
+
+fn row(name: &str) -> &'static KnobRow {
+    KNOBS.iter().find(|k| k.name == name).expect("a known study")
+}
+
+#[test]
+fn more_samples_make_a_smaller_error() {
+    let options = Options { width: 24, samples: 1024, settings: 6, threads: None };
+    let study = (row("render").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
+    assert_eq!(study.rows.iter().map(|r| r.setting).collect::<Vec<_>>(), [1.0, 2.0, 4.0, 8.0, 16.0, 32.0]);
+    let (first, last) = (&study.rows[0], &study.rows[5]);
+    // Stratified sampling of edges: the error falls faster than n^-1/2, at which it would be 5.7 times smaller.
+    assert!(first.errors[0] / last.errors[0] > 7.0, "{} to {}", first.errors[0], last.errors[0]);
+    assert!(study.rows.iter().all(|r| r.seconds > 0.0));
+    let csv = study.csv();
+    assert_eq!(csv.lines().count(), 7);
+    assert!(csv.starts_with("samples per pixel,run time (s),RMSE,relative MSE,"));
+    assert!(study.plot("A").svg().expect("a plot").contains("RMSE"));
+}
+
+#[test]
+fn a_finer_tolerance_follows_the_sphere_more_closely() {
+    let options = Options { width: 24, samples: 1, settings: 3, threads: None };
+    let study = (row("tessellation").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
+    for row in &study.rows {
+        assert!(row.errors[0] <= row.setting, "chord error {} above the tolerance {}", row.errors[0], row.setting);
+        assert!(row.errors[0] > row.setting / 30.0, "far more triangles than asked for");
+    }
+    assert!(study.rows[0].errors[1] > study.rows[2].errors[1], "the picture gets better");
+    assert!(study.rows[0].counts[0] < study.rows[2].counts[0], "with more triangles");
+}
+
+#[test]
+fn a_scene_without_curved_surfaces_has_no_tolerance_to_study() {
+    let options = row("tessellation").options;
+    let result = (row("tessellation").run)(&scene(Shape::Box { size: DVec3::ONE }), &options, &Watch::NOBODY);
+    assert!(matches!(result, Err(StudyError::Nothing(_))));
+}
+
+#[test]
+fn a_cancelled_study_says_so() {
+    let cancelled = std::sync::atomic::AtomicBool::new(true);
+    let watch = Watch { cancelled: &cancelled, progress: &|_, _| {} };
+    let result = (row("render").run)(&sphere(), &row("render").options, &watch);
+    assert!(matches!(result, Err(StudyError::Interrupted)));
+}
