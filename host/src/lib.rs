@@ -22,4 +22,8 @@ pub mod study;
 
 pub mod script;
 
+pub mod workstation;
+
+pub mod production;
+
 pub mod cli;

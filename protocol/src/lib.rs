@@ -2,6 +2,7 @@
 //!
 //! The order of the modules is their layer order, lowest first.
 
+pub mod address;
 pub mod name;
 pub mod value;
 pub mod record;

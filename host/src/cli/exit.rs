@@ -1,10 +1,12 @@
 //! How the program ends.
 
 use crate::picture::PictureError;
+use crate::production::ProductionError;
 use crate::render::RenderError;
 use crate::scene::SceneError;
 use crate::script::ScriptError;
 use crate::study::{PlotError, StudyError};
+use crate::workstation::WorkstationError;
 use std::process::ExitCode;
 
 /// Exit codes of the program.
@@ -92,6 +94,17 @@ failures! {
     RenderError => Failed,
     SceneError => Scene,
     ScriptError => Scene,
+    WorkstationError => Line,
+}
+
+impl From<ProductionError> for Failure {
+    fn from(error: ProductionError) -> Failure {
+        match error {
+            ProductionError::Scene(e) => e.into(),
+            ProductionError::Workstation(e) => e.into(),
+            ProductionError::Render(e) => e.into(),
+        }
+    }
 }
 
 impl From<StudyError> for Failure {

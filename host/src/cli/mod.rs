@@ -3,10 +3,12 @@
 mod convert;
 mod exit;
 mod functions;
+mod job;
 mod octree;
 mod plan;
 mod progress;
 mod render;
+mod show;
 mod source;
 mod study;
 
@@ -30,7 +32,8 @@ pub struct Row {
 }
 
 /// Every sub-command.
-pub const COMMANDS: &[Row] = &[render::ROW, plan::ROW, octree::ROW, study::ROW, convert::ROW, functions::ROW];
+pub const COMMANDS: &[Row] =
+    &[job::DEMO, job::RUN, show::ROW, render::ROW, plan::ROW, octree::ROW, study::ROW, convert::ROW, functions::ROW];
 
 /// The command line as clap knows it.
 pub fn command() -> Command {

@@ -20,6 +20,18 @@ pub use queue::{Arrival, MAX_QUEUE, Port};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ObjectId(pub u32);
 
+impl ObjectId {
+    /// The object in place `index` of the tables.
+    pub const fn new(index: usize) -> ObjectId {
+        ObjectId(index as u32)
+    }
+
+    /// Its place in the tables.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// An input of a function: what it accepts and how messages wait there.
 #[derive(Clone, Copy, Debug)]
 pub struct PortSpec {

@@ -1,0 +1,274 @@
+//! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
+
+use super::{Exit, Failure, Progress, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
+use crate::{
+    picture::Picture,
+    production::{Production, difference, view_of_dials},
+    render::{Order, Watch},
+    scene::Scene,
+    study::{KNOBS, Options},
+    workstation::{Drawing, Emulator},
+};
+use clap::{Args, FromArgMatches};
+use protocol::address::Address;
+use std::{
+    fmt::Write as _,
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+    str::FromStr,
+    time::Instant,
+};
+
+pub(super) const RUN: Row = Row {
+    name: "run",
+    summary: "Shows a scene on a PS 340, turns dials there, renders the view, and shows the image on the raster screen.",
+    arguments: RunArguments::augment_args,
+    run: |matches| run(&RunArguments::from_arg_matches(matches)?),
+};
+
+pub(super) const DEMO: Row = Row {
+    name: "demo",
+    summary: "Does the main job on the teapot, with a PS 340 process of its own, and studies error against run time.",
+    arguments: DemoArguments::augment_args,
+    run: |matches| demo(&DemoArguments::from_arg_matches(matches)?),
+};
+
+/// What the demo turns: about the upright axis, then a little towards the viewer.
+const DEMO_DIALS: [Turn; 2] = [Turn { dial: 2, turns: 0.22 }, Turn { dial: 1, turns: -0.06 }];
+
+/// A dial and how far it is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Turn {
+    dial: usize,
+    turns: f64,
+}
+
+impl FromStr for Turn {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Turn, String> {
+        let failed = || format!("'{text}' is not DIAL=TURNS with a dial of 1 to 7, such as 2=0.25");
+        let (dial, turns) = text.split_once('=').ok_or_else(failed)?;
+        let dial = dial.trim().parse().ok().filter(|d| (1..=7).contains(d)).ok_or_else(failed)?;
+        let turns = turns.trim().parse().ok().filter(|t: &f64| t.abs() <= 1e6).ok_or_else(failed)?;
+        Ok(Turn { dial, turns })
+    }
+}
+
+#[derive(Args, Debug)]
+struct Common {
+    /// Folder for what is made; it is made if need be
+    #[arg(short, long, value_name = "DIR", default_value = "peris-demo")]
+    output: PathBuf,
+    /// Samples in each pixel, instead of those of the scene
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
+    samples: Option<u32>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "COUNT")]
+    threads: Option<NonZeroUsize>,
+}
+
+#[derive(Args, Debug)]
+struct RunArguments {
+    #[arg(help = SCRIPT_HELP, value_name = "SCRIPT")]
+    script: String,
+    #[command(flatten)]
+    common: Common,
+    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started
+    #[arg(long, value_name = "LINE")]
+    to: Option<Address>,
+    /// Turns a dial of the PS 340 that is started, e.g. 2=0.25; may be given more than once
+    #[arg(long = "dial", value_name = "DIAL=TURNS", conflicts_with = "to")]
+    dials: Vec<Turn>,
+}
+
+#[derive(Args, Debug)]
+struct DemoArguments {
+    #[command(flatten)]
+    common: Common,
+    /// Leaves the study of error against run time out
+    #[arg(long)]
+    quick: bool,
+}
+
+/// What is to be done.
+struct Job<'a> {
+    title: &'a str,
+    scene: Scene,
+    common: &'a Common,
+    to: Option<&'a Address>,
+    dials: &'a [Turn],
+    study: bool,
+}
+
+fn run(arguments: &RunArguments) -> Result<(), Failure> {
+    let evaluated = load(&arguments.script)?;
+    let (common, to, dials) = (&arguments.common, arguments.to.as_ref(), arguments.dials.as_slice());
+    Job { title: &evaluated.name, scene: evaluated.scene, common, to, dials, study: false }.perform()
+}
+
+fn demo(arguments: &DemoArguments) -> Result<(), Failure> {
+    let evaluated = load("teapot")?;
+    let (common, study) = (&arguments.common, !arguments.quick);
+    Job { title: "the teapot", scene: evaluated.scene, common, to: None, dials: &DEMO_DIALS, study }.perform()
+}
+
+/// The files that were made, with what they are.
+struct Contents<'a> {
+    folder: &'a Path,
+    lines: String,
+}
+
+impl Contents<'_> {
+    /// The path of a file in the folder, which is noted with what it is.
+    fn file(&mut self, name: &str, what: &str) -> String {
+        let _ = writeln!(self.lines, "{name:<24} {what}");
+        self.folder.join(name).display().to_string()
+    }
+}
+
+impl Job<'_> {
+    fn perform(mut self) -> Result<(), Failure> {
+        watch_interrupts();
+        let folder = &self.common.output;
+        std::fs::create_dir_all(folder)
+            .map_err(|e| Failure::new(Exit::Failed, anyhow::anyhow!("{}: {e}", folder.display())))?;
+        let folder = std::path::absolute(folder)?;
+        let mut contents = Contents { folder: &folder, lines: String::new() };
+        self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
+        let mut emulator = if self.to.is_none() { Some(Emulator::start()?) } else { None };
+        let line = match (&emulator, self.to) {
+            (Some(emulator), _) => {
+                println!("workstation: process {}, host line {}", emulator.process(), emulator.line());
+                emulator.line().clone()
+            }
+            (None, Some(line)) => line.clone(),
+            (None, None) => unreachable!("either a line is given or a process is started"),
+        };
+        println!("host: process {}", std::process::id());
+        let mut production = Production::begin(&self.scene, &line, &Drawing::default())?;
+        let (prepared, sent) = (production.prepared(), production.sent());
+        println!(
+            "{}: {} objects, {} triangles; {} vectors ({} points) shown after {:.3} s",
+            self.title,
+            prepared.objects.len(),
+            prepared.triangles.len(),
+            sent.lines,
+            sent.points,
+            sent.seconds
+        );
+        if let Some(emulator) = &mut emulator {
+            self.turn(emulator, &mut contents)?;
+        }
+        stop_if_interrupted()?;
+        let picture = self.image(&mut production, &mut contents)?;
+        production.show_image(&picture)?;
+        if let Some(emulator) = &mut emulator {
+            let file = contents.file("raster.png", "the raster screen of the PS 340 with that image");
+            emulator.order(&format!("picture raster {file}"))?;
+        }
+        if self.study {
+            self.study(&mut contents)?;
+        }
+        let path = contents.folder.join("CONTENTS.txt");
+        std::fs::write(&path, &contents.lines)?;
+        println!("\n{}", contents.folder.display());
+        print!("{}", contents.lines);
+        Ok(())
+    }
+
+    /// Takes a picture, turns the dials, and takes another.
+    fn turn(&self, emulator: &mut Emulator, contents: &mut Contents<'_>) -> Result<(), Failure> {
+        emulator.order("idle")?;
+        let file = contents.file("vector-before.png", "the vector screen of the PS 340 before a dial was turned");
+        emulator.order(&format!("picture vector {file}"))?;
+        for turn in self.dials {
+            emulator.order(&format!("dial {} {}", turn.dial, turn.turns))?;
+        }
+        emulator.order("idle")?;
+        let file = contents.file("vector-after.png", "the vector screen after the dials were turned");
+        emulator.order(&format!("picture vector {file}"))?;
+        Ok(())
+    }
+
+    /// Renders the view that is set on the workstation.
+    fn image(&self, production: &mut Production, contents: &mut Contents<'_>) -> Result<Picture, Failure> {
+        let matrix = production.view()?;
+        if self.to.is_none() {
+            let mut turns = [0.0; 7];
+            self.dials.iter().for_each(|t| turns[t.dial - 1] += t.turns);
+            let (camera, center) = production.camera();
+            let diagonal = production.prepared().bounds.diagonal();
+            if let Some(expected) = view_of_dials(&camera, center, diagonal, &turns) {
+                let off = difference(&matrix, &expected);
+                println!("the matrix that the dials set was read back; off the closed form by {off:.1e}");
+            }
+        }
+        let order = Order { threads: self.common.threads, ..Order::of(&self.scene.settings) };
+        let progress = Progress::new("rendering", false);
+        let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
+        let shot = production.render(&matrix, &order, &watch);
+        progress.finish();
+        let shot = shot?;
+        let rendering = &shot.rendering;
+        if let Some(octree) = &shot.octree {
+            println!(
+                "octree: {} terminal nodes, {:.1} bytes a triangle, built with all tables in {:.3} s",
+                octree.leaves, octree.bytes_per_triangle, shot.build_seconds
+            );
+        }
+        println!(
+            "ray tracing: {} rays in {:.3} s, {:.2} million a second on {} threads",
+            rendering.rays.total(),
+            rendering.seconds,
+            rendering.mega_rays_per_second(),
+            rendering.threads
+        );
+        let what = "the ray-traced image of that view";
+        for name in ["raytraced.png", "raytraced.exr"] {
+            let form = if name.ends_with("exr") { " (linear light, coverage as alpha)" } else { "" };
+            rendering.picture.write(Path::new(&contents.file(name, &format!("{what}{form}"))))?;
+        }
+        stop_if_interrupted()?;
+        Ok(shot.rendering.picture)
+    }
+
+    fn study(&self, contents: &mut Contents<'_>) -> Result<(), Failure> {
+        let Some(knob) = KNOBS.iter().find(|k| k.name == "render") else { return Ok(()) };
+        let options = Options { samples: 256, settings: 6, threads: self.common.threads, ..knob.options };
+        let progress = Progress::new("studying", false);
+        let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
+        let start = Instant::now();
+        let study = (knob.run)(&self.scene, &options, &watch);
+        progress.finish();
+        let study = study?;
+        println!("\nerror against run time: {} (studied in {:.1} s)", knob.summary, start.elapsed().as_secs_f64());
+        print!("{}", study.table());
+        std::fs::write(contents.file("study-render.txt", "error against run time, as a table"), study.table())?;
+        std::fs::write(contents.file("study-render.csv", "the same for programs"), study.csv())?;
+        contents.file("study-render.svg", "the same as a plot");
+        contents.file("study-render.png", "the same plot in pixels");
+        study.plot(&format!("{}: {}", self.title, knob.summary)).write(contents.folder, "study-render")?;
+        Ok(())
+    }
+}
+
+fn stop_if_interrupted() -> Result<(), Failure> {
+    if interrupted() {
+        return Err(Failure::new(Exit::Interrupted, anyhow::anyhow!("interrupted; what was finished is kept")));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_are_read() {
+        assert_eq!("2=0.25".parse(), Ok(Turn { dial: 2, turns: 0.25 }));
+        for text in ["", "2", "0=1", "8=1", "1=x", "1=NaN"] {
+            assert!(text.parse::<Turn>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! `peris show`: a scene on a workstation, with dials and keys, until someone ends it.
+
+use super::{Exit, Failure, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
+use crate::{
+    production::{Production, ProductionError},
+    render::{Order, Watch},
+    scene::Scene,
+    workstation::{
+        Drawing, Emulator, Lines, WorkstationError,
+        network::{KEY_PREFIX, KEYS, Key},
+    },
+};
+use clap::{Args, FromArgMatches};
+use protocol::address::Address;
+use std::{io::BufRead, num::NonZeroUsize, sync::mpsc, time::Duration};
+
+pub(super) const ROW: Row = Row {
+    name: "show",
+    summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 2 resets, key 12 ends.",
+    arguments: Arguments::augment_args,
+    run: |matches| run(&Arguments::from_arg_matches(matches)?),
+};
+
+/// How long to wait for a message before looking for orders and Ctrl-C.
+const GLANCE: Duration = Duration::from_millis(50);
+
+#[derive(Args, Debug)]
+struct Arguments {
+    #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
+    script: String,
+    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, and the
+    /// lines of standard input are orders for its operator ('help' lists them)
+    #[arg(long, value_name = "LINE")]
+    to: Option<Address>,
+    /// Sends the scene and ends, without waiting for keys
+    #[arg(long, requires = "to")]
+    once: bool,
+    /// Which edges are sent
+    #[arg(long, value_enum, default_value = "grid")]
+    lines: Lines,
+    /// Edges that bend more than this are always sent, degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = Drawing::default().crease_degrees)]
+    crease: f64,
+    /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
+    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance)]
+    tolerance: f64,
+    /// Threads that render [default: one for each core]
+    #[arg(long, value_name = "COUNT")]
+    threads: Option<NonZeroUsize>,
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    watch_interrupts();
+    let usage = |text: &str| Err(Failure::new(Exit::Usage, anyhow::anyhow!("{text}")));
+    if !(0.0..=180.0).contains(&arguments.crease) {
+        return usage("--crease is an angle of 0 to 180 degrees");
+    }
+    if !(arguments.tolerance > 0.0 && arguments.tolerance <= 1.0) {
+        return usage("--tolerance is a part of the diagonal, above 0 and at most 1");
+    }
+    let drawing =
+        Drawing { lines: arguments.lines, crease_degrees: arguments.crease, tolerance: arguments.tolerance };
+    let scene = load(&arguments.script)?.scene;
+    let mut emulator = if arguments.to.is_none() { Some(Emulator::start()?) } else { None };
+    let line = match (&arguments.to, &emulator) {
+        (Some(line), _) => line.clone(),
+        (None, Some(emulator)) => emulator.line().clone(),
+        (None, None) => return Ok(()),
+    };
+    let mut production = Production::begin(&scene, &line, &drawing)?;
+    let sent = production.sent();
+    println!("{} vectors ({} points) shown on {line} after {:.3} s", sent.lines, sent.points, sent.seconds);
+    if arguments.once {
+        return Ok(());
+    }
+    for (number, label, _) in KEYS {
+        println!("key {number}: {label}");
+    }
+    serve(&mut production, &mut emulator, &scene, arguments.threads)
+}
+
+/// Carries out keys of the workstation and, if it is ours, orders from standard input.
+fn serve(
+    production: &mut Production,
+    emulator: &mut Option<Emulator>,
+    scene: &Scene,
+    threads: Option<NonZeroUsize>,
+) -> Result<(), Failure> {
+    let orders = emulator.as_ref().map(|_| read_orders());
+    loop {
+        if interrupted() {
+            return Err(Failure::new(Exit::Interrupted, anyhow::anyhow!("interrupted")));
+        }
+        if let (Some(orders), Some(emulator)) = (&orders, emulator.as_mut()) {
+            match orders.try_recv() {
+                Ok(order) if order == "quit" => return Ok(()),
+                Ok(order) => match emulator.order(&order) {
+                    Ok(reply) => println!("ok {}", reply.replace("\\n", "\n")),
+                    Err(WorkstationError::Order { reason, .. }) => println!("error {reason}"),
+                    Err(error) => return Err(error.into()),
+                },
+                Err(mpsc::TryRecvError::Empty) => {}
+                Err(mpsc::TryRecvError::Disconnected) => return Ok(()),
+            }
+        }
+        let message = match production.session().message(GLANCE, "a key") {
+            Ok(message) => message,
+            Err(WorkstationError::Silent { .. }) => continue,
+            Err(error) => return Err(error.into()),
+        };
+        let number = message.strip_prefix(KEY_PREFIX.as_bytes()).and_then(|n| std::str::from_utf8(n).ok());
+        let number = number.and_then(|n| n.trim().parse::<i32>().ok());
+        let key = KEYS.iter().find(|row| Some(row.0) == number).map(|row| row.2);
+        match key {
+            Some(Key::Render) => render(production, scene, threads)?,
+            Some(Key::Reset) => production.reset()?,
+            Some(Key::End) => return Ok(()),
+            None => println!("message: {}", String::from_utf8_lossy(&message)),
+        }
+    }
+}
+
+fn render(production: &mut Production, scene: &Scene, threads: Option<NonZeroUsize>) -> Result<(), Failure> {
+    let matrix = production.view()?;
+    let order = Order { threads, ..Order::of(&scene.settings) };
+    let watch = Watch { cancelled: watch_interrupts(), progress: &|_, _| {} };
+    match production.render(&matrix, &order, &watch) {
+        Ok(shot) => {
+            production.show_image(&shot.rendering.picture)?;
+            println!("rendered in {:.3} s", shot.rendering.seconds);
+        }
+        // The person at the dials may have set a view that shows nothing; that ends nothing.
+        Err(ProductionError::Render(error)) => println!("not rendered: {error}"),
+        Err(error) => return Err(error.into()),
+    }
+    Ok(())
+}
+
+/// The lines of standard input, read by a thread of their own.
+fn read_orders() -> mpsc::Receiver<String> {
+    let (sender, orders) = mpsc::channel();
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            let order = line.trim().to_string();
+            if !order.is_empty() && sender.send(order).is_err() {
+                return;
+            }
+        }
+    });
+    orders
+}

@@ -1,0 +1,140 @@
+//! The main job: a scene on the workstation, the view that is set there with the dials, and its image back.
+
+mod closed_form;
+
+pub use closed_form::{difference, view_of_dials};
+
+use crate::{
+    octree::Statistics,
+    picture::Picture,
+    plan::Plan,
+    render::{Order, RenderError, Renderer, Rendering, Watch, ray_tracing::RayTracer},
+    scene::{Camera, Prepared, Projection, Scene, SceneError, View},
+    workstation::{Drawing, Session, WorkstationError, network, raster, structure},
+};
+use glam::{DMat4, DVec3};
+use protocol::address::Address;
+use std::time::Instant;
+
+/// Why the main job failed.
+#[derive(Debug, thiserror::Error)]
+pub enum ProductionError {
+    /// The scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The workstation, or the way there, failed.
+    #[error(transparent)]
+    Workstation(#[from] WorkstationError),
+    /// The image cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+/// A scene that stands on a workstation.
+#[derive(Debug)]
+pub struct Production {
+    prepared: Prepared,
+    session: Session,
+    depth_clipping: bool,
+    sent: Sent,
+}
+
+/// What was sent to show a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sent {
+    /// Lines drawn.
+    pub lines: usize,
+    /// Points sent: lines and moves.
+    pub points: usize,
+    /// Until the workstation had them, seconds.
+    pub seconds: f64,
+}
+
+/// An image of the view that is set on the workstation.
+#[derive(Debug)]
+pub struct Shot {
+    /// The image, with what it took.
+    pub rendering: Rendering,
+    /// The octree that the rays went through; none if the view needs no triangles.
+    pub octree: Option<Statistics>,
+    /// Until octree and tables stood, seconds.
+    pub build_seconds: f64,
+}
+
+impl Production {
+    /// Models the scene, attaches to the workstation at `line`, and shows the scene there.
+    ///
+    /// # Errors
+    /// [`ProductionError`].
+    pub fn begin(scene: &Scene, line: &Address, drawing: &Drawing) -> Result<Production, ProductionError> {
+        let prepared = Prepared::new(scene)?;
+        let start = Instant::now();
+        let mut session = Session::attach(line)?;
+        let shown = structure::commands(scene, &prepared.camera, prepared.bounds.center(), drawing)?;
+        session.show(&shown, prepared.bounds.diagonal().max(f64::MIN_POSITIVE))?;
+        let sent = Sent { lines: shown.lines, points: shown.points, seconds: start.elapsed().as_secs_f64() };
+        Ok(Production { prepared, session, depth_clipping: shown.depth_clipping, sent })
+    }
+
+    /// The scene as it is rendered.
+    pub fn prepared(&self) -> &Prepared {
+        &self.prepared
+    }
+
+    /// What was sent.
+    pub fn sent(&self) -> Sent {
+        self.sent
+    }
+
+    /// The session with the workstation.
+    pub fn session(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// The camera that the scene began with, and the point that the dials turn it about.
+    pub fn camera(&self) -> (Camera, DVec3) {
+        (self.prepared.camera, self.prepared.bounds.center())
+    }
+
+    /// Reads the matrix of the view back: scene coordinates (z negated) to clip space.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn view(&mut self) -> Result<DMat4, ProductionError> {
+        Ok(self.session.view()?)
+    }
+
+    /// Ray-traces the view of a matrix that was read back.
+    ///
+    /// # Errors
+    /// [`ProductionError::Render`]; a matrix that shows nothing is one.
+    pub fn render(&self, matrix: &DMat4, order: &Order, watch: &Watch<'_>) -> Result<Shot, ProductionError> {
+        let view = View::Projection(Projection::from_workstation(matrix, self.depth_clipping));
+        let start = Instant::now();
+        let plan = Plan::new(&self.prepared, &view);
+        let tracer = RayTracer::new(&self.prepared, &plan)?;
+        let build_seconds = start.elapsed().as_secs_f64();
+        let octree = tracer.octree().map(crate::octree::Octree::statistics);
+        Ok(Shot { rendering: tracer.render(&view, order, watch)?, octree, build_seconds })
+    }
+
+    /// Shows an image on the raster screen. It is there when this returns.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn show_image(&mut self, picture: &Picture) -> Result<(), ProductionError> {
+        let bytes = picture.to_srgb8();
+        let (pixels, _) = bytes.as_chunks::<3>();
+        self.session.raster(&raster::commands(picture.width(), picture.height(), pixels))?;
+        Ok(self.session.synchronize()?)
+    }
+
+    /// Puts the dials back to where they began.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn reset(&mut self) -> Result<(), ProductionError> {
+        self.session.commands(&network::reset())?;
+        Ok(self.session.synchronize()?)
+    }
+}
