@@ -2,4 +2,12 @@
 //!
 //! The order of the modules is their layer order, lowest first.
 
+pub mod hue;
+
 pub mod traversal;
+
+pub mod picture;
+
+pub mod calligraphic;
+
+pub mod raster;

@@ -1,5 +1,6 @@
 //! One update of the picture: walk the display structure, transform, clip, project, and emit strokes.
 
+pub mod font;
 pub mod stroke;
 
 pub use stroke::Stroke;
