@@ -1,0 +1,261 @@
+//! A picture of either screen: linear red, green and blue, as PNG or OpenEXR.
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use image::ExtendedColorType::{Rgb8, Rgb32F};
+use image::codecs::openexr::OpenExrEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ImageEncoder, ImageError};
+use rayon::prelude::*;
+
+/// A rectangle of linear red, green and blue, 1 = the white of the display; top row first.
+///
+/// The same pixels always give the same bytes of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    width: u32,
+    height: u32,
+    pixels: Vec<[f32; 3]>,
+}
+
+/// Why a picture was not made or not written.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// The number of pixels is not width times height, or the picture is empty.
+    #[error("a picture of {width} by {height} cannot have {pixels} pixels")]
+    Shape {
+        /// Width asked for, in pixels.
+        width: u32,
+        /// Height asked for, in pixels.
+        height: u32,
+        /// Pixels given.
+        pixels: usize,
+    },
+    /// The name of the file does not end in `.png` or `.exr`.
+    #[error("cannot write a picture to {}: the name must end in .png or .exr", path.display())]
+    Extension {
+        /// The file asked for.
+        path: PathBuf,
+    },
+    /// The encoder refused.
+    #[error("cannot encode the picture for {}: {source}", path.display())]
+    Encode {
+        /// The file asked for.
+        path: PathBuf,
+        /// What the encoder says.
+        source: ImageError,
+    },
+    /// The file system refused.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file asked for.
+        path: PathBuf,
+        /// What the file system says.
+        source: std::io::Error,
+    },
+}
+
+impl Picture {
+    /// Makes a picture of `pixels`, top row first, left to right.
+    ///
+    /// # Errors
+    /// [`PictureError::Shape`] if there are not `width * height` pixels, or none.
+    pub fn new(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self, PictureError> {
+        let expected = u64::from(width) * u64::from(height);
+        if expected == 0 || pixels.len() as u64 != expected {
+            return Err(PictureError::Shape { width, height, pixels: pixels.len() });
+        }
+        Ok(Self { width, height, pixels })
+    }
+
+    /// Width in pixels, at least 1.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels, at least 1.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels, top row first, left to right.
+    pub fn pixels(&self) -> &[[f32; 3]] {
+        &self.pixels
+    }
+
+    /// The pixel in column `x` from the left and row `y` from the top; `None` outside the picture.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        let inside = x < self.width && y < self.height;
+        inside.then(|| self.pixels[y as usize * self.width as usize + x as usize])
+    }
+
+    /// The pixels as bytes of sRGB, three a pixel: what a PNG of the picture holds.
+    pub fn to_srgb(&self) -> Vec<u8> {
+        let mut bytes = vec![0; self.pixels.len() * 3];
+        let row = self.width as usize;
+        bytes.par_chunks_mut(row * 3).zip(self.pixels.par_chunks(row)).for_each(|(bytes, pixels)| {
+            for (byte, value) in bytes.iter_mut().zip(pixels.as_flattened()) {
+                *byte = srgb_from_linear(*value);
+            }
+        });
+        bytes
+    }
+
+    /// The picture as a PNG file: 8 bits a channel, sRGB.
+    ///
+    /// # Errors
+    /// What the encoder says, if it refuses the size.
+    pub fn to_png(&self) -> Result<Vec<u8>, ImageError> {
+        let mut file = Vec::new();
+        let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Fast, FilterType::Adaptive);
+        encoder.write_image(&self.to_srgb(), self.width, self.height, Rgb8)?;
+        Ok(file)
+    }
+
+    /// The picture as an OpenEXR file: 32-bit floats, linear, not clamped.
+    ///
+    /// # Errors
+    /// What the encoder says, if it refuses the size.
+    pub fn to_exr(&self) -> Result<Vec<u8>, ImageError> {
+        let samples: Vec<u8> = self.pixels.as_flattened().iter().flat_map(|value| value.to_ne_bytes()).collect();
+        let mut file = Cursor::new(Vec::new());
+        OpenExrEncoder::new(&mut file).write_image(&samples, self.width, self.height, Rgb32F)?;
+        Ok(file.into_inner())
+    }
+
+    /// Writes the picture to a file, whose ending says how: `.png` or `.exr`, in either case of letters.
+    ///
+    /// # Errors
+    /// Another ending, or what the encoder or the file system says; each names the path.
+    pub fn write(&self, path: &Path) -> Result<(), PictureError> {
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        let encoded = match ending.as_ref().and_then(|ending| ending.to_str()) {
+            Some("png") => self.to_png(),
+            Some("exr") => self.to_exr(),
+            _ => return Err(PictureError::Extension { path: path.into() }),
+        };
+        let file = encoded.map_err(|source| PictureError::Encode { path: path.into(), source })?;
+        std::fs::write(path, file).map_err(|source| PictureError::Write { path: path.into(), source })
+    }
+}
+
+/// Linear light, 0..=1, of a byte of sRGB.
+///
+/// [`srgb_from_linear`] gives every byte back exactly.
+///
+/// # Source
+/// IEC 61966-2-1.
+pub fn linear_from_srgb(byte: u8) -> f32 {
+    LINEAR[usize::from(byte)]
+}
+
+/// Byte of sRGB of a linear light; clamped to 0..=1, and NaN is black.
+///
+/// Exact: rounds the encoded value to the nearest byte, by comparing with the light of every half step.
+///
+/// # Source
+/// IEC 61966-2-1.
+pub fn srgb_from_linear(light: f32) -> u8 {
+    // At most 255 thresholds are passed, so that the count fits a byte. NaN passes none.
+    THRESHOLDS.partition_point(|threshold| *threshold <= light) as u8
+}
+
+/// Light of every byte.
+static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| decode(byte as f64 / 255.0)));
+
+/// Light of every half step between two bytes, rising.
+static THRESHOLDS: LazyLock<[f32; 255]> =
+    LazyLock::new(|| std::array::from_fn(|byte| decode((byte as f64 + 0.5) / 255.0)));
+
+/// The transfer function of sRGB, encoded 0..=1 to linear 0..=1.
+fn decode(encoded: f64) -> f32 {
+    let linear = if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) };
+    linear as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gradient() -> Picture {
+        let pixels = (0..35).map(|index| [index as f32 / 34.0, 0.25, 2.0 - index as f32]).collect();
+        Picture::new(7, 5, pixels).unwrap()
+    }
+
+    #[test]
+    fn every_byte_survives_the_way_through_linear_light() {
+        for byte in 0..=255 {
+            assert_eq!(srgb_from_linear(linear_from_srgb(byte)), byte);
+        }
+    }
+
+    #[test]
+    fn encoding_equals_the_rounded_inverse_of_the_standard() {
+        for step in 0..=100_000 {
+            let light = f64::from(step as f32 / 100_000.0);
+            let encoded = if light <= 0.0031308 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+            let exact = encoded * 255.0;
+            let byte = f64::from(srgb_from_linear(light as f32));
+            assert!((byte - exact).abs() < 0.5 + 1e-2, "{light}: {byte} for {exact}");
+        }
+    }
+
+    #[test]
+    fn light_out_of_range_is_clamped() {
+        let bytes = [f32::NAN, f32::NEG_INFINITY, -1.0, 0.0, 1.0, 9.0, f32::INFINITY].map(srgb_from_linear);
+        assert_eq!(bytes, [0, 0, 0, 0, 255, 255, 255]);
+    }
+
+    #[test]
+    fn a_png_holds_the_srgb_bytes() {
+        let read = image::load_from_memory(&gradient().to_png().unwrap()).unwrap().into_rgb8();
+        assert_eq!((read.width(), read.height()), (7, 5));
+        assert_eq!(read.into_raw(), gradient().to_srgb());
+    }
+
+    #[test]
+    fn an_exr_holds_the_linear_floats_unclamped() {
+        let read = image::load_from_memory(&gradient().to_exr().unwrap()).unwrap().into_rgb32f();
+        assert_eq!(read.into_raw(), gradient().pixels().as_flattened());
+    }
+
+    #[test]
+    fn the_same_picture_gives_the_same_bytes() {
+        assert_eq!(gradient().to_png().unwrap(), gradient().to_png().unwrap());
+        assert_eq!(gradient().to_exr().unwrap(), gradient().to_exr().unwrap());
+    }
+
+    #[test]
+    fn the_ending_chooses_the_format_and_errors_name_the_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let png = folder.path().join("a.PNG");
+        gradient().write(&png).unwrap();
+        assert_eq!(std::fs::read(&png).unwrap(), gradient().to_png().unwrap());
+        let exr = folder.path().join("a.exr");
+        gradient().write(&exr).unwrap();
+        assert_eq!(std::fs::read(&exr).unwrap(), gradient().to_exr().unwrap());
+
+        for (name, kind) in [("a.gif", "must end in"), ("a", "must end in"), ("no/such/folder/a.png", "cannot write")] {
+            let path = folder.path().join(name);
+            let message = gradient().write(&path).unwrap_err().to_string();
+            assert!(message.contains(kind) && message.contains(path.to_str().unwrap()), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_number_of_pixels_is_refused() {
+        assert!(matches!(Picture::new(2, 2, vec![[0.0; 3]; 3]), Err(PictureError::Shape { pixels: 3, .. })));
+        assert!(Picture::new(0, 2, vec![]).is_err());
+    }
+
+    #[test]
+    fn pixels_are_addressed_from_the_top_left() {
+        let picture = gradient();
+        assert_eq!(picture.pixel(6, 0), Some(picture.pixels()[6]));
+        assert_eq!(picture.pixel(0, 4), Some(picture.pixels()[28]));
+        assert_eq!(picture.pixel(7, 0), None);
+        assert_eq!(picture.pixel(0, 5), None);
+    }
+}
