@@ -159,7 +159,7 @@ impl Walk<'_> {
         for (cell, code) in characters.text.iter().enumerate() {
             for line in font::glyph(*code) {
                 self.update.vectors += line.len() as u64;
-                if let [only] = line {
+                if let [only] = line.as_slice() {
                     self.update.strokes.extend(clipper.dot(clip(cell, *only), 1.0));
                 }
                 let ends = line.windows(2).filter_map(|w| clipper.line(clip(cell, w[0]), clip(cell, w[1]), [1.0; 2]));
