@@ -100,7 +100,7 @@ fn run(octree: &Octree, set: &RaySet, step: usize) -> usize {
 
 fn settings() -> Settings {
     Settings {
-        leaf_triangles: std::env::var("LEAF").ok().and_then(|s| s.parse().ok()).unwrap_or(4),
+        leaf_triangles: std::env::var("LEAF").ok().and_then(|s| s.parse().ok()).unwrap_or(16),
         ..Settings::default()
     }
 }
