@@ -12,6 +12,9 @@ mod packet;
 mod partition;
 mod walk;
 
+#[cfg(test)]
+mod tests;
+
 use glam::DVec3;
 use serde::Serialize;
 
@@ -21,6 +24,7 @@ use build::Division;
 use clip::Bounds;
 pub use code::{LocationalCode, MAX_DEPTH};
 use cube::Cube;
+pub use frame::MAX_DISTANCE;
 use index::{Index, Node};
 use items::Items;
 use packet::Packet;
@@ -41,7 +45,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { depth: 16, leaf_triangles: 4, walk: Walk::Index }
+        Self { depth: 16, leaf_triangles: 16, walk: Walk::Index }
     }
 }
 
@@ -210,11 +214,17 @@ impl Octree {
         })
     }
 
+    /// The same octree, walked another way.
+    pub fn with_walk(self, walk: Walk) -> Self {
+        Self { walk, ..self }
+    }
+
     /// Finds the nearest hit with `t_min < t < t_max`, both exclusive.
     ///
     /// Either side of a triangle is hit. Edges and corners belong to their triangles, so a closed mesh lets no ray
     /// through; of several hits with the same `t` the triangle with the lowest index counts. A triangle seen exactly
-    /// edge-on is not hit. A ray whose direction is zero, or that is not finite, hits nothing.
+    /// edge-on is not hit. A ray whose direction is zero, or that is not finite, or that begins farther away than
+    /// [`MAX_DISTANCE`] sides of the modelling cube, hits nothing.
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
         self.closest_counted(ray, t_min, t_max).0
     }
