@@ -3,6 +3,7 @@
 use protocol::Value;
 
 /// The sum of two values, by the typing rules; none if they do not add.
+#[inline]
 pub fn sum(a: &Value, b: &Value) -> Option<Value> {
     Some(match (a, b) {
         (Value::Integer(a), Value::Integer(b)) => Value::Integer(a.wrapping_add(*b)),
@@ -17,6 +18,7 @@ pub fn sum(a: &Value, b: &Value) -> Option<Value> {
 }
 
 /// The difference of two values, by the typing rules; none if they do not subtract.
+#[inline]
 pub fn difference(a: &Value, b: &Value) -> Option<Value> {
     Some(match (a, b) {
         (Value::Integer(a), Value::Integer(b)) => Value::Integer(a.wrapping_sub(*b)),
@@ -33,6 +35,7 @@ pub fn difference(a: &Value, b: &Value) -> Option<Value> {
 /// The product of two values in row-vector order, by the typing rules; none if they do not multiply.
 ///
 /// The machine's `p M` is glam's `m * p`, and its `A B` is glam's `b * a`.
+#[inline]
 pub fn product(a: &Value, b: &Value) -> Option<Value> {
     Some(match (a, b) {
         (Value::Integer(a), Value::Integer(b)) => Value::Integer(a.wrapping_mul(*b)),

@@ -3,7 +3,7 @@
 //! Integers and reals compare by value. EQ and NE also compare Booleans, strings, vectors and matrices of the same
 //! kind; values of different kinds are a fault.
 
-use super::{Example, FunctionRow, Source};
+use super::{Behaviour, Example, FunctionRow, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{B, I, R, S, V2, V3},
@@ -28,7 +28,7 @@ const fn ordering(
     name: &'static str,
     summary: &'static str,
     constant: u16,
-    behaviour: fn(&mut Firing) -> Result<(), Problem>,
+    behaviour: Behaviour,
     examples: &'static [Example],
 ) -> FunctionRow {
     const FORMS: [&[PortSpec]; 3] = [&pair(ORDERED, 0), &pair(ORDERED, 1), &pair(ORDERED, 2)];

@@ -20,7 +20,7 @@ pub mod transformation;
 pub mod vectors;
 pub mod viewing;
 
-pub use row::{Confidence, Example, Family, FunctionRow, MAX_SIZE, Rule, Shape, SizeError, Source};
+pub use row::{Behaviour, Clock, Confidence, Example, Family, FunctionRow, MAX_SIZE, Rule, Shape, SizeError, Source};
 
 use std::{collections::HashMap, sync::LazyLock};
 

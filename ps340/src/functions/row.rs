@@ -5,6 +5,12 @@ use crate::port::{Elapsed, Firing, Literal, PortSpec, Problem};
 /// Largest n of a family such as ROUTE(n). Ours.
 pub const MAX_SIZE: u16 = 127;
 
+/// What a function does when it fires: reads its inputs, sends its results. On a problem nothing is sent.
+pub type Behaviour = fn(&mut Firing) -> Result<(), Problem>;
+
+/// What a clock does when time passes: returns how many outputs it left out.
+pub type Clock = fn(&mut Firing, &Elapsed) -> Result<u64, Problem>;
+
 /// What a function is and does.
 #[derive(Debug)]
 pub struct FunctionRow {
@@ -25,9 +31,9 @@ pub struct FunctionRow {
     /// Values that it remembers between firings.
     pub memory: u8,
     /// What it does when it fires.
-    pub behaviour: fn(&mut Firing) -> Result<(), Problem>,
+    pub behaviour: Behaviour,
     /// What it does as time passes, if it is a clock.
-    pub clock: Option<fn(&mut Firing, &Elapsed) -> Result<u64, Problem>>,
+    pub clock: Option<Clock>,
     /// Examples.
     pub examples: &'static [Example],
 }

@@ -19,17 +19,17 @@ pub struct Destination {
 #[derive(Debug, Default)]
 pub(super) struct Output {
     first: Option<Destination>,
-    more: Option<Box<Vec<Destination>>>,
+    more: Vec<Destination>,
 }
 
 impl Output {
     /// The only arc, if there is exactly one; else the number of arcs.
     #[inline]
     pub(super) fn single(&self) -> Result<Destination, usize> {
-        match (self.first, &self.more) {
-            (Some(only), None) => Ok(only),
-            (None, _) => Err(0),
-            (Some(_), Some(more)) => Err(1 + more.len()),
+        match self.first {
+            Some(only) if self.more.is_empty() => Ok(only),
+            Some(_) => Err(1 + self.more.len()),
+            None => Err(0),
         }
     }
 
@@ -38,13 +38,13 @@ impl Output {
     pub(super) fn get(&self, index: usize) -> Option<Destination> {
         match index {
             0 => self.first,
-            _ => self.more.as_ref()?.get(index - 1).copied(),
+            _ => self.more.get(index - 1).copied(),
         }
     }
 
     /// The arcs.
     pub(super) fn iter(&self) -> impl Iterator<Item = Destination> {
-        self.first.into_iter().chain(self.more.iter().flat_map(|more| more.iter().copied()))
+        self.first.into_iter().chain(self.more.iter().copied())
     }
 
     /// Adds an arc; one that exists stays as it is.
@@ -58,23 +58,20 @@ impl Output {
             self.first = Some(to);
             return true;
         }
-        let more = self.more.get_or_insert_default();
-        if more.len() + 1 >= MAX_ARCS {
+        if self.more.len() + 1 >= MAX_ARCS {
             return false;
         }
-        more.push(to);
+        self.more.push(to);
         true
     }
 
     /// Keeps the arcs for which `keep` is true.
     pub(super) fn retain(&mut self, mut keep: impl FnMut(Destination) -> bool) {
-        if !self.iter().any(|_| true) {
-            return;
+        self.first = self.first.filter(|&arc| keep(arc));
+        self.more.retain(|&arc| keep(arc));
+        if self.first.is_none() && !self.more.is_empty() {
+            self.first = Some(self.more.remove(0));
         }
-        let mut kept = self.iter().filter(|&arc| keep(arc)).collect::<Vec<_>>().into_iter();
-        self.first = kept.next();
-        let rest: Vec<_> = kept.collect();
-        self.more = (!rest.is_empty()).then(|| Box::new(rest));
     }
 }
 

@@ -12,6 +12,15 @@ mod instance;
 mod pool;
 mod run;
 
+#[cfg(test)]
+mod clock_tests;
+#[cfg(test)]
+mod contract;
+#[cfg(test)]
+mod stress;
+#[cfg(test)]
+mod tests;
+
 pub use arcs::{Destination, MAX_ARCS};
 pub use run::Ran;
 

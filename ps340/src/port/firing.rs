@@ -152,7 +152,12 @@ impl<'a> Firing<'a> {
     /// [`Problem::Overflow`] if a component is not finite: such a value never enters the network.
     #[inline]
     pub fn emit(&mut self, output: u16, value: Value) -> Result<(), Problem> {
-        if !value.is_finite() {
+        let finite = match &value {
+            Value::Real(number) => number.is_finite(),
+            Value::Integer(_) => true,
+            other => other.is_finite(),
+        };
+        if !finite {
             return Err(Problem::Overflow);
         }
         self.outbox.push((output, value));

@@ -1,0 +1,115 @@
+//! Random commands against the network: nothing panics, and its books stay right.
+
+use super::*;
+use crate::{
+    functions::all,
+    port::{Effect, Literal, MAX_QUEUE},
+};
+use proptest::prelude::*;
+
+/// What a host may do.
+#[derive(Clone, Debug)]
+enum Act {
+    Define(u32, usize, Option<u16>),
+    Undefine(u32),
+    Connect(u32, u16, u32, u32),
+    Disconnect(u32, Option<u16>),
+    Send(u32, u32, usize, f64),
+    Emit(u32, u16, usize, f64),
+    Run(u64),
+    Advance(u64),
+}
+
+fn act() -> impl Strategy<Value = Act> {
+    let id = 0..6_u32;
+    let number = prop_oneof![-3.0..3.0_f64, Just(0.0), Just(1e308), Just(f64::NAN), Just(f64::INFINITY), Just(-1e-308)];
+    prop_oneof![
+        2 => (id.clone(), any::<prop::sample::Index>(), prop::option::of(0..5_u16))
+            .prop_map(|(id, row, size)| Act::Define(id, row.index(all().count()), size)),
+        1 => id.clone().prop_map(Act::Undefine),
+        4 => (id.clone(), 0..4_u16, id.clone(), 0..6_u32).prop_map(|(a, o, b, i)| Act::Connect(a, o, b, i)),
+        1 => (id.clone(), prop::option::of(0..4_u16)).prop_map(|(a, o)| Act::Disconnect(a, o)),
+        8 => (id.clone(), 0..7_u32, 0..12_usize, number.clone()).prop_map(|(a, i, k, n)| Act::Send(a, i, k, n)),
+        1 => (id, 0..4_u16, 0..12_usize, number).prop_map(|(a, o, k, n)| Act::Emit(a, o, k, n)),
+        3 => (0..300_u64).prop_map(Act::Run),
+        1 => (0..50_u64).prop_map(Act::Advance),
+    ]
+}
+
+fn value(kind: usize, n: f64) -> Value {
+    match kind {
+        0 => Literal::B(n > 0.0),
+        1 => Literal::I(n as i32),
+        2 => Literal::R(n),
+        3 => Literal::S("PS 340"),
+        4 => Literal::V2([n, 1.0]),
+        5 => Literal::V3([n, 1.0, 2.0]),
+        6 => Literal::V4([n, 1.0, 2.0, 3.0]),
+        7 => Literal::M2([[n, 1.0]; 2]),
+        8 => Literal::M3([[n, 1.0, 2.0]; 3]),
+        9 => Literal::M43([[n, 1.0, 2.0]; 4]),
+        10 => Literal::M4([[n, 1.0, 2.0, 3.0]; 4]),
+        _ => Literal::T([[n, 1.0, 2.0, 3.0]; 4]),
+    }
+    .value()
+}
+
+/// Carries the acts out; everything that came out.
+fn perform(acts: &[Act]) -> (Network, Vec<Effect>) {
+    let (mut network, mut effects, mut frame) = (Network::new(), Vec::new(), 0);
+    for act in acts {
+        match *act {
+            Act::Define(id, row, size) => drop(network.define(ObjectId(id), all().nth(row).unwrap(), size)),
+            Act::Undefine(id) => network.undefine(ObjectId(id)),
+            Act::Connect(a, o, b, i) => drop(network.connect(ObjectId(a), o, ObjectId(b), Input::Number(i))),
+            Act::Disconnect(a, o) => network.disconnect(ObjectId(a), o, None),
+            Act::Send(a, i, k, n) => network.send(ObjectId(a), Input::Number(i), value(k, n), &mut effects),
+            Act::Emit(a, o, k, n) => network.emit(ObjectId(a), o, value(k, n), &mut effects),
+            Act::Run(budget) => drop(network.run(budget, &mut effects)),
+            Act::Advance(frames) => {
+                frame += frames;
+                network.advance(frame, frame, &mut effects);
+            }
+        }
+        check_books(&network);
+    }
+    (network, effects)
+}
+
+/// What each instance waits for, who is ready, and how many bytes of strings wait, counted anew.
+fn check_books(network: &Network) {
+    let mut string_bytes = 0;
+    for id in network.objects() {
+        let instance = network.instance(id).unwrap();
+        let ports = network.ports.get(instance.ports);
+        string_bytes += ports.iter().map(Port::string_bytes).sum::<usize>();
+        let wanting = ports.iter().filter(|port| port.is_wanting()).count() as u16;
+        let no_active = u16::from(!ports.iter().any(Port::is_active));
+        assert_eq!(instance.missing, wanting + no_active, "{id:?} {}", instance.row.name);
+        assert_eq!(instance.queued, instance.is_ready(), "{id:?} {}", instance.row.name);
+        assert!(ports.iter().all(|port| port.len() <= MAX_QUEUE));
+        assert!(ports.iter().filter_map(Port::first).all(Value::is_finite));
+    }
+    assert_eq!(network.string_bytes, string_bytes);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_networks_keep_their_books_and_send_finite_values(acts in prop::collection::vec(act(), 1..120)) {
+        let (mut network, effects) = perform(&acts);
+        for effect in &effects {
+            if let Effect::Deliver { value, .. } = effect {
+                prop_assert!(value.is_finite());
+            }
+        }
+        let (_, again) = perform(&acts);
+        prop_assert_eq!(effects, again, "the same acts give the same effects");
+        for id in 0..6 {
+            network.undefine(ObjectId(id));
+        }
+        prop_assert_eq!(network.string_bytes, 0);
+        prop_assert_eq!(network.objects().count(), 0);
+    }
+}
