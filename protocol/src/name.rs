@@ -2,7 +2,7 @@
 
 use std::{borrow::Borrow, fmt, sync::Arc};
 
-/// Longest name that is kept, in characters. [S]: the library and the driver of the time check 256;
+/// Longest name that is kept, in characters. \[S\]: the library and the driver of the time check 256;
 /// 240 characters were significant in commands.
 pub const MAX_NAME: usize = 256;
 

@@ -249,7 +249,7 @@ fn every_file_says_first_what_it_is_for_and_is_short() {
     for path in CRATES.iter().flat_map(|(name, _)| sources(&root().join(name))) {
         let text = read(&path);
         let first = text.lines().next().unwrap_or_default();
-        if !first.strip_prefix("//! ").is_some_and(|purpose| purpose.len() > 8) {
+        if first.strip_prefix("//! ").is_none_or(|purpose| purpose.len() < 8) {
             faults.push(format!("{}: the first line is not `//!` and the purpose", path.display()));
         }
         let lines = text.lines().count();

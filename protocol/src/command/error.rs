@@ -86,7 +86,7 @@ impl CommandError {
             line: 1 + before.iter().filter(|&&b| b == b'\n').count(),
             column: 1 + start - line_start,
             expected: fault.expected,
-            found: quoted.escape_ascii().to_string(),
+            found: quoted.iter().fold(String::new(), readable),
             problem: fault.problem,
         }
     }
@@ -109,6 +109,15 @@ impl CommandError {
         }
         message
     }
+}
+
+/// Appends a byte: itself if it can be printed, else its escape.
+fn readable(mut text: String, byte: &u8) -> String {
+    match byte {
+        b' '..=b'~' => text.push(char::from(*byte)),
+        _ => text += &byte.escape_ascii().to_string(),
+    }
+    text
 }
 
 impl fmt::Display for CommandError {

@@ -10,7 +10,8 @@ use crate::{Name, Value};
 use glam::{DMat4, DVec2, DVec3};
 use std::{fmt, io::Write};
 
-/// Appends a command as text, with its `;` (BEGIN_STRUCTURE has none) and without a line end.
+/// Appends a command as text, with its `;`. BEGIN_STRUCTURE has none; a line end follows it, so that commands can be
+/// printed one behind the other.
 ///
 /// All reals must be finite and a text must fit [`MAX_STRING`](crate::value::MAX_STRING), or the text cannot be parsed.
 /// The text is printable except for the bytes of texts in quotes, which stand as they are.
@@ -19,11 +20,11 @@ pub fn print(command: &Command, out: &mut Vec<u8>) {
 }
 
 impl fmt::Display for Command {
-    /// The command as text; bytes that are not UTF-8 are replaced.
+    /// The command as text, without a line end; bytes that are not UTF-8 are replaced.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut out = Vec::new();
         print(self, &mut out);
-        f.write_str(&String::from_utf8_lossy(&out))
+        f.write_str(String::from_utf8_lossy(&out).trim_end())
     }
 }
 
@@ -81,7 +82,7 @@ impl Printer<'_> {
                 }
                 self.object(object);
                 if *object == Object::BeginStructure {
-                    return;
+                    return self.text("\n");
                 }
             }
             Command::EndStructure => self.word(Word::EndStructure),

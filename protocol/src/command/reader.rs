@@ -27,6 +27,8 @@ enum Place {
     Code,
     Text,
     Comment,
+    /// A comment before the first token of a statement; it is dropped.
+    FirstComment,
     /// Behind a statement that was too long; all up to the next `;` is dropped.
     Dropped,
 }
@@ -94,7 +96,7 @@ impl CommandReader {
     /// Whether a statement has begun and its `;` is still to come.
     pub fn is_unfinished(&self) -> bool {
         let rest = &self.buffer[self.start..];
-        self.place == Place::Dropped || blanks(rest, 0).map_or(true, |at| at < rest.len())
+        self.place != Place::Code || blanks(rest, 0).map_or(true, |at| at < rest.len())
     }
 
     /// Forgets an unfinished statement and all that was not taken out.
@@ -110,39 +112,35 @@ impl CommandReader {
 
     /// Looks for the `;` of the current statement. False if it is not there yet.
     fn find_end(&mut self) -> bool {
-        if self.scanned == self.start && self.place == Place::Code {
-            let blank = self.buffer[self.start..].iter().take_while(|b| **b <= b' ').count();
-            self.start += blank;
-            self.scanned = self.start;
-        }
         loop {
+            if self.scanned == self.start && self.place == Place::Code {
+                self.start += self.buffer[self.start..].iter().take_while(|b| **b <= b' ').count();
+                self.scanned = self.start;
+            }
             let rest = &self.buffer[self.scanned..];
-            let found = match self.place {
-                Place::Code => find(rest, [b';', b'\'', b'{']),
-                Place::Text => find(rest, [b'\''; 3]),
-                Place::Comment => find(rest, [b'}'; 3]),
-                Place::Dropped => find(rest, [b';'; 3]),
+            let (found, dropping) = match self.place {
+                Place::Code => (find(rest, [b';', b'\'', b'{']), false),
+                Place::Text => (find(rest, [b'\''; 3]), false),
+                Place::Comment => (find(rest, [b'}'; 3]), false),
+                Place::FirstComment => (find(rest, [b'}'; 3]), true),
+                Place::Dropped => (find(rest, [b';'; 3]), true),
             };
-            let Some(offset) = found else {
-                self.scanned = self.buffer.len();
-                if self.place == Place::Dropped {
-                    self.start = self.scanned;
-                }
+            let at = found.map(|offset| self.scanned + offset);
+            self.scanned = at.map_or(self.buffer.len(), |at| at + 1);
+            if dropping {
+                self.start = self.scanned;
+            }
+            let Some(at) = at else {
                 return false;
             };
-            let at = self.scanned + offset;
-            self.scanned = at + 1;
             self.place = match (self.place, self.buffer[at]) {
                 (Place::Code, b'\'') => Place::Text,
+                (Place::Code, b'{') if at == self.start => Place::FirstComment,
                 (Place::Code, b'{') => Place::Comment,
                 (Place::Code, _) => {
                     self.complete = Some(at);
                     self.parsed = 0;
                     return true;
-                }
-                (Place::Dropped, _) => {
-                    self.start = self.scanned;
-                    Place::Code
                 }
                 _ => Place::Code,
             };
@@ -230,7 +228,7 @@ mod tests {
         assert_eq!(all.len(), 4);
         assert_eq!(all.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, false, true, true]);
         let error = all[1].as_ref().unwrap_err();
-        assert_eq!(error.to_string(), "1:15: expected a name, found `\\'x;y\\'`");
+        assert_eq!(error.to_string(), "1:9: expected a name, found `'x;y'`");
     }
 
     #[test]
@@ -255,6 +253,16 @@ mod tests {
         reader.push(b"; DISPLAY A;");
         assert!(reader.next().unwrap().is_ok());
         assert!(reader.next().is_none() && !reader.is_unfinished());
+    }
+
+    #[test]
+    fn a_comment_before_a_statement_is_no_part_of_it() {
+        let mut reader = CommandReader::default();
+        reader.push(b"{ a comment\n");
+        assert!(reader.next().is_none() && reader.is_unfinished());
+        reader.push(b"of two lines ; }\n {and} DISPLAY 7;");
+        assert_eq!(reader.next().unwrap().unwrap_err().to_string(), "1:9: expected a name, found `7`");
+        assert_eq!(reader.statement(), b"DISPLAY 7");
     }
 
     #[test]

@@ -115,7 +115,7 @@ impl Input {
         (Input::Substitute, "substitute"),
     ];
 
-    /// The input number of the library of the time: 0 for append, -1 for delete, and so on. [S]
+    /// The input number of the library of the time: 0 for append, -1 for delete, and so on. \[S\]
     pub const fn code(self) -> i64 {
         match self {
             Input::Number(n) => n as i64,
@@ -204,13 +204,13 @@ pub enum Object {
 /// How the points of a vector list are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorClass {
-    /// First a move, the others lines. The default. Code 0 [S].
+    /// First a move, the others lines. The default. Code 0 \[S\].
     Connected,
-    /// A dot at each point. Code 1 [S].
+    /// A dot at each point. Code 1 \[S\].
     Dots,
-    /// Each says P (position) or L (line). Code 2 [S].
+    /// Each says P (position) or L (line). Code 2 \[S\].
     Itemized,
-    /// Pairs: odd a move, even a line. Code 3 [S].
+    /// Pairs: odd a move, even a line. Code 3 \[S\].
     Separate,
 }
 

@@ -4,9 +4,9 @@ mod binary;
 
 pub use binary::{MAX_LOOKUP_ENTRIES, MAX_RUNS, RasterOpcode, decode, encode, record};
 
-/// Width of the raster screen, in pixels. [M], size class [S].
+/// Width of the raster screen, in pixels. \[M\], size class \[S\].
 pub const RASTER_WIDTH: u32 = 640;
-/// Height of the raster screen, in pixels. [M], size class [S].
+/// Height of the raster screen, in pixels. \[M\], size class \[S\].
 pub const RASTER_HEIGHT: u32 = 480;
 
 /// One operation on the raster screen. Pixel (0, 0) is the lower left one.

@@ -1,6 +1,6 @@
 //! Messages to the host, one string each, in two forms.
 //!
-//! A connection begins in the text form: the bytes of a message, then CR LF. The CR is historical [M]; the LF is ours, so
+//! A connection begins in the text form: the bytes of a message, then CR LF. The CR is historical \[M\]; the LF is ours, so
 //! that a terminal shows lines. A packet on the route `=` with the body `P` switches the messages of that connection to
 //! the packet form: one long packet on the route `=` for each message, with exactly its bytes; the body `T` switches
 //! back. Both are ours.

@@ -2,13 +2,13 @@
 
 use crate::record::{EncodeError, MAX_RECORD, within};
 
-/// Start byte of a count packet: FS, control-backslash. Historical [M].
+/// Start byte of a count packet: FS, control-backslash. Historical \[M\].
 pub const COUNT_START: u8 = 28;
-/// Added to each count character, so that it is printable. [U]
+/// Added to each count character, so that it is printable. \[U\]
 pub const COUNT_BIAS: u8 = 32;
-/// Values of a count character. [U]
+/// Values of a count character. \[U\]
 pub const COUNT_RADIX: usize = 64;
-/// Most data bytes in a count packet, after the route byte. [U]
+/// Most data bytes in a count packet, after the route byte. \[U\]
 pub const MAX_COUNT_DATA: usize = COUNT_RADIX * COUNT_RADIX - 2;
 
 /// Start byte of a long packet: GS. Ours.
@@ -42,15 +42,15 @@ impl PacketForm {
 /// Who is to read the data of a packet: its routing byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Route {
-    /// `0`: command text for the interpreter. [M]
+    /// `0`: command text for the interpreter. \[M\]
     Text,
-    /// `1`: binary commands for the interpreter. The byte is [M], the records are ours.
+    /// `1`: binary commands for the interpreter. The byte is \[M\], the records are ours.
     Binary,
-    /// `9`: raster records, 8-bit. The byte is [U], the records are ours.
+    /// `9`: raster records, 8-bit. The byte is \[U\], the records are ours.
     Raster,
-    /// `=`: messages to the host, and from the host their form. [U]
+    /// `=`: messages to the host, and from the host their form. \[U\]
     Message,
-    /// `>`: text for the terminal emulator. [U]
+    /// `>`: text for the terminal emulator. \[U\]
     Terminal,
     /// Any other byte: nobody reads it yet.
     Other(u8),
