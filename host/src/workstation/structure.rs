@@ -121,7 +121,7 @@ fn view(
     operate(commands, Some("VIEW"), Operate::FieldOfView { angle: camera.field_of_view, boundaries });
     let (at, from) = (mirrored(camera.at), mirrored(camera.from));
     // The workstation takes UP as a point above AT.
-    operate(commands, Some("LOOK"), Operate::Look { at, from, up: at + mirrored(camera.up) });
+    operate(commands, Some("LOOK"), Operate::Look { at, from, up: Some(at + mirrored(camera.up)) });
     operate(commands, Some("T"), Operate::Translate(DVec3::ZERO));
     operate(commands, None, Operate::Translate(mirrored(center)));
     for (node, axis) in [("RX", Axis::X), ("RY", Axis::Y), ("RZ", Axis::Z)] {

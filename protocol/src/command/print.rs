@@ -264,7 +264,7 @@ impl Printer<'_> {
             Operate::Matrix4(m) => self.put(format_args!("MATRIX_4X4 {}", List(&m.to_cols_array()))),
             Operate::Look { at, from, up } => {
                 self.put(format_args!("LOOK AT {} FROM {}", List(&at.to_array()), List(&from.to_array())));
-                if *up != DVec3::Y {
+                if let Some(up) = up {
                     self.put(format_args!(" UP {}", List(&up.to_array())));
                 }
             }

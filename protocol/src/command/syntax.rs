@@ -326,8 +326,8 @@ pub enum Operate {
         at: DVec3,
         /// The eye.
         from: DVec3,
-        /// UP as given; default (0,1,0).
-        up: DVec3,
+        /// UP as given; without it, +y is upward.
+        up: Option<DVec3>,
     },
     /// `WINDOW X = a:b Y = c:d FRONT = f BACK = b`.
     Window {

@@ -29,9 +29,9 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// Frames a second: the nominal refresh rate. [M]
 pub const FRAMES_PER_SECOND: u64 = 60;
-/// Function firings between two frames; what is left waits for the next frame, so that a network that never
-/// rests stops neither the display nor the lines. [C]
-pub const FIRINGS_PER_FRAME: u64 = 200_000;
+/// Messages that functions deliver between two frames (at least one a firing); what is left waits for the next frame,
+/// so that a network that never rests stops neither the display nor the lines. Ours.
+pub const WORK_PER_FRAME: u64 = 200_000;
 /// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames; the rest are logged and
 /// counted only, so that a message that causes messages ends.
 pub const REPORTS_PER_FRAME: u64 = 1000;
@@ -84,7 +84,7 @@ pub struct Machine {
     panel: Panel,
     frame_buffer: FrameBuffer,
     frame: u64,
-    firings_left: u64,
+    work_left: u64,
     reports_left: u64,
     network_idle: bool,
     update: Update,
@@ -117,7 +117,7 @@ impl Machine {
             panel: Panel::default(),
             frame_buffer: FrameBuffer::default(),
             frame: 0,
-            firings_left: FIRINGS_PER_FRAME,
+            work_left: WORK_PER_FRAME,
             reports_left: REPORTS_PER_FRAME,
             network_idle: true,
             update: Update::default(),
@@ -162,7 +162,7 @@ impl Machine {
     /// Lets one frame pass: dials and clocks speak, the network runs, the picture is updated.
     pub fn next_frame(&mut self) {
         self.frame += 1;
-        self.firings_left = FIRINGS_PER_FRAME;
+        self.work_left = WORK_PER_FRAME;
         if self.reports_left == 0 {
             tracing::warn!("more than {REPORTS_PER_FRAME} messages in one frame: the rest did not reach ERROR and WARNING");
         }
@@ -266,12 +266,12 @@ impl Machine {
     fn settle(&mut self) {
         loop {
             self.carry_effects();
-            if self.firings_left == 0 {
+            if self.work_left == 0 {
                 self.network_idle = false;
                 return;
             }
-            let ran = self.memory.network.run(self.firings_left, &mut self.memory.effects);
-            self.firings_left = self.firings_left.saturating_sub(ran.firings);
+            let ran = self.memory.network.run(self.work_left, &mut self.memory.effects);
+            self.work_left = self.work_left.saturating_sub(ran.work);
             self.counters.firings += ran.firings;
             self.network_idle = ran.idle;
             if self.memory.effects.is_empty() {

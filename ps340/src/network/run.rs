@@ -15,6 +15,8 @@ const BYTES_PER_UNIT: usize = 64;
 pub struct Ran {
     /// Firings.
     pub firings: u64,
+    /// What of the budget was used; a single firing may exceed what was left.
+    pub work: u64,
     /// Whether nothing is ready any more; false if the budget ended the run.
     pub idle: bool,
 }
@@ -65,7 +67,7 @@ impl Network {
                 work += self.fire(slot, effects);
             }
         }
-        Ran { firings: self.counters.firings - before, idle: self.ready.is_empty() }
+        Ran { firings: self.counters.firings - before, work, idle: self.ready.is_empty() }
     }
 
     /// Lets the clocks advance to a time and send what is due.

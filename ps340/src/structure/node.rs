@@ -102,7 +102,7 @@ impl Operation {
             Operate::Matrix4x3(m) => Operation::Affine(m),
             Operate::Matrix4(m) => Operation::Projective(m),
             Operate::Look { at, from, up } => Operation::Affine(
-                matrices::look(at, from, up).ok_or("LOOK needs FROM and AT apart, and UP across the line of sight")?,
+                matrices::look(at, from, up.unwrap_or(at + DVec3::Y)).ok_or("LOOK needs FROM and AT apart, and UP across the line of sight")?,
             ),
             Operate::Window { x, y, boundaries } => {
                 let b = boundaries.unwrap_or(DEFAULT_BOUNDARIES);

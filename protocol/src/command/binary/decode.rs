@@ -371,7 +371,7 @@ fn operate<W: Witness>(opcode: Opcode, reader: &mut Reader<'_, '_, W>) -> Result
         Opcode::Look => Operate::Look {
             at: DVec3::from_array(reader.reals("at")?),
             from: DVec3::from_array(reader.reals("from")?),
-            up: DVec3::from_array(reader.reals("up")?),
+            up: if reader.boolean("up given")? { Some(DVec3::from_array(reader.reals("up")?)) } else { None },
         },
         Opcode::Window => {
             let (x, y) = (reader.reals("x")?, reader.reals("y")?);

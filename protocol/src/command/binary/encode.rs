@@ -246,7 +246,12 @@ fn operate_fields(operate: &Operate, writer: &mut Writer<'_>) {
         Operate::Matrix3(m) => writer.reals(&m.to_cols_array()),
         Operate::Matrix4x3(m) => writer.reals(&four_by_three(m)),
         Operate::Matrix4(m) => writer.reals(&m.to_cols_array()),
-        Operate::Look { at, from, up } => [at, from, up].iter().for_each(|point| writer.reals(&point.to_array())),
+        Operate::Look { at, from, up } => {
+            writer.reals(&at.to_array());
+            writer.reals(&from.to_array());
+            writer.u8(up.is_some().into());
+            writer.reals(up.as_ref().map_or(&[], |up| up.as_ref()));
+        }
         Operate::Window { x, y, boundaries: b } => {
             writer.reals(&[x[0], x[1], y[0], y[1]]);
             boundaries(b, writer);

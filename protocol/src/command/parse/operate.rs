@@ -81,7 +81,7 @@ impl Parser<'_> {
             self.expect_word(Word::At, &["AT"])?;
             (DVec3::from_array(self.reals()?), first_point)
         };
-        let up = if self.accept_word(Word::Up) { DVec3::from_array(self.reals()?) } else { DVec3::Y };
+        let up = if self.accept_word(Word::Up) { Some(DVec3::from_array(self.reals()?)) } else { None };
         Ok(Operate::Look { at, from, up })
     }
 
