@@ -144,9 +144,8 @@ impl Prepared {
         }
         let from = self.normals.len() as u32;
         let matrix = cofactors(&DMat3::from_mat4(*transform));
-        let sign = if mirrored { -1.0 } else { 1.0 };
         self.normals.extend(mesh.corner_normals.iter().map(|normals| {
-            let [a, b, c] = normals.map(|n| ((matrix * n).normalize_or_zero() * sign).as_vec3());
+            let [a, b, c] = normals.map(|n| (matrix * n).normalize_or_zero().as_vec3());
             if mirrored { [a, c, b] } else { [a, b, c] }
         }));
         Some(from)
@@ -189,7 +188,8 @@ impl Prepared {
     }
 }
 
-/// The matrix of cofactors, det(M) M^-T: carries normals, and needs no division.
+/// The matrix of cofactors with the sign of its determinant, |det(M)| M^-T: carries outward normals to outward normals,
+/// and needs no division.
 fn cofactors(m: &DMat3) -> DMat3 {
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
     let matrix = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
