@@ -2,5 +2,6 @@
 //!
 //! The order of the modules is their layer order, lowest first.
 
-pub mod mesh;
 pub mod numeric;
+pub mod mesh;
+pub mod surface;
