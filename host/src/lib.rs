@@ -1,29 +1,18 @@
 //! PERIS, the host: models an environment, keeps it in a linear octree, renders it, and shows it on a PS 340.
 //!
-//! The order of the modules is their layer order, lowest first; the empty lines keep it from being sorted.
+//! The order of the modules is their layer order, lowest first.
 
 pub mod numeric;
-
 pub mod picture;
-
 pub mod mesh;
-
 pub mod octree;
-
+pub mod surface;
 pub mod illumination;
-
 pub mod scene;
-
 pub mod plan;
-
 pub mod render;
-
 pub mod study;
-
 pub mod script;
-
 pub mod workstation;
-
 pub mod production;
-
 pub mod cli;

@@ -1,7 +1,7 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
 use super::{Failure, Row};
-use crate::mesh::Mesh;
+use crate::mesh::{self, Mesh};
 use crate::picture::Picture;
 use crate::scene::Prepared;
 use crate::script;
@@ -17,7 +17,7 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A mesh (.obj, .stl, .ply), a picture (.png, .exr), a scene script (.rhai) or the name of a scene that ships
+    /// A mesh (.obj, .stl, .ply, .cmesh), a picture (.png, .exr), a scene script (.rhai) or the name of a scene that ships
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// The file to write: a mesh from a mesh or a scene, a picture from a picture
@@ -33,18 +33,18 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         println!("{}: {} x {} pixels", output.display(), picture.width(), picture.height());
         return Ok(());
     }
-    let mesh = mesh(input)?;
-    mesh.write(output)?;
+    let mesh = triangles(input)?;
+    mesh::write(&mesh, output)?;
     println!("{}: {} vertices, {} triangles", output.display(), mesh.vertices.len(), mesh.triangles.len());
     Ok(())
 }
 
-fn mesh(input: &Path) -> Result<Mesh, Failure> {
+fn triangles(input: &Path) -> Result<Mesh, Failure> {
     let name = input.to_string_lossy();
     let is_script = input.extension().is_some_and(|e| e == "rhai");
     if is_script || script::EMBEDDED.iter().any(|e| e.name == name) {
         Ok(Prepared::new(&super::load(&name)?.scene)?.into_mesh())
     } else {
-        Ok(Mesh::read(input)?)
+        Ok(mesh::read(input)?)
     }
 }

@@ -1,4 +1,30 @@
 //! Triangle meshes, and what can be said of them without knowing their surfaces.
+//!
+//! Files come in through [`read`], go out through [`write`]; [`Mesh::validate`] and [`Mesh::edge_report`] tell whether
+//! a mesh can be trusted; [`edges`] and [`Polylines`] turn it into vectors.
+
+mod check;
+mod compact;
+pub mod edges;
+mod error;
+mod file;
+mod holes;
+mod measure;
+mod obj;
+mod placement;
+mod ply;
+mod polylines;
+mod stl;
+mod subdivide;
+
+pub use check::EdgeReport;
+pub use edges::{Eye, Interior, Selection, wire};
+pub use error::{Fault, MeshError, Place, Problem};
+pub use file::{Format, parse, print, read, write};
+pub use measure::Bounds;
+pub(crate) use measure::bits;
+pub(crate) use placement::normal_matrix;
+pub use polylines::{Polylines, polylines};
 
 use glam::{DVec2, DVec3};
 
@@ -19,20 +45,28 @@ pub struct Mesh {
     /// The surface that each triangle approximates, an index into the surfaces of the object.
     pub surfaces: Vec<u32>,
 }
-/// shim
-#[derive(Debug, thiserror::Error)]
-pub enum MeshError {
-    /// shim
-    #[error("shim")]
-    Shim,
-}
+
 impl Mesh {
-    /// shim
-    pub fn read(_: &std::path::Path) -> Result<Mesh, MeshError> {
-        Err(MeshError::Shim)
-    }
-    /// shim
-    pub fn write(&self, _: &std::path::Path) -> Result<(), MeshError> {
-        Err(MeshError::Shim)
+    /// The positions of the corners of triangle `triangle`.
+    ///
+    /// # Panics
+    /// If the triangle or one of its vertices does not exist; [`Mesh::validate`] excludes the latter.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|vertex| self.vertices[vertex as usize])
     }
 }
+
+/// The Stanford bunny, closed: 34,835 vertices and 69,666 triangles, about 2 units high, y up, facing the viewer.
+///
+/// Coordinates are rounded to 1/65535 of the longest side of its box. Please acknowledge the Stanford Computer
+/// Graphics Laboratory in what you publish with it; its terms are in `data/README.md`.
+///
+/// # Source
+/// Stanford 3D Scanning Repository, scan of Greg Turk and Marc Levoy, 1994; the holes of its base are filled.
+pub fn bunny() -> Mesh {
+    compact::parse(include_bytes!("../../data/bunny.cmesh"))
+        .expect("the embedded bunny is well formed; a test reads it")
+}
+
+#[cfg(test)]
+mod tests;

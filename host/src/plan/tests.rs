@@ -1,1 +1,99 @@
 //! Facts about plans.
+
+use super::*;
+use crate::illumination::{Bands, Light, Material};
+use crate::scene::{Camera, Object, Scene, Shape};
+use glam::{DMat4, DVec3};
+
+fn object(name: &str, shape: Shape, at: DVec3) -> Object {
+    let material = Material { diffuse: Bands::splat(0.5), ..Material::default() };
+    Object { name: name.into(), shape, transform: DMat4::from_translation(at), material, tolerance: None }
+}
+
+/// A cube in view, a cube far to the right, and light from the right.
+fn scene() -> Scene {
+    let cube = Shape::Box { size: DVec3::ONE };
+    let objects = vec![object("middle", cube.clone(), DVec3::ZERO), object("right", cube, DVec3::new(50.0, 0.0, 0.0))];
+    let lights = vec![Light::Directional { direction: DVec3::new(-1.0, 0.0, 0.0), irradiance: Bands::ONE }];
+    let camera = Camera {
+        from: DVec3::new(0.0, 0.0, 8.0),
+        at: DVec3::ZERO,
+        up: DVec3::Y,
+        field_of_view: 30.0,
+        near: 0.0,
+        far: None,
+    };
+    let mut scene = Scene { objects, lights, camera: Some(camera), ..Scene::default() };
+    scene.settings.samples = 1;
+    scene
+}
+
+fn plan(scene: &Scene) -> Plan {
+    let prepared = Prepared::new(scene).expect("a scene");
+    Plan::new(&prepared, &prepared.view())
+}
+
+#[test]
+fn a_plain_scene_needs_only_its_stages() {
+    let plan = plan(&scene());
+    let needed: Vec<Stage> = Stage::ALL.into_iter().filter(|s| plan.needs(*s)).collect();
+    assert_eq!(needed, [Stage::Octree, Stage::Diffuse, Stage::Shadows]);
+    assert_eq!(plan.entries.len(), Stage::ALL.len() + 2 + 1);
+}
+
+#[test]
+fn each_property_brings_its_stage() {
+    let with = |change: fn(&mut Scene)| {
+        let mut scene = scene();
+        change(&mut scene);
+        plan(&scene)
+    };
+    assert!(with(|s| s.objects[0].material.mirror = Bands::splat(0.1)).needs(Stage::Reflection));
+    assert!(with(|s| s.objects[0].material.specular = Bands::splat(0.1)).needs(Stage::Specular));
+    assert!(with(|s| s.ambient = Bands::splat(0.1)).needs(Stage::Ambient));
+    assert!(with(|s| s.settings.samples = 2).needs(Stage::AntiAliasing));
+    assert!(with(|s| s.objects[0].shape = Shape::Sphere { radius: 1.0 }).needs(Stage::Normals));
+    let dark = with(|s| s.lights.clear());
+    assert!(!dark.needs(Stage::Shadows) && !dark.needs(Stage::Diffuse));
+    let shallow = with(|s| {
+        s.objects[0].material.mirror = Bands::splat(0.1);
+        s.settings.reflection_depth = 0;
+    });
+    assert!(!shallow.needs(Stage::Reflection));
+}
+
+#[test]
+fn an_object_out_of_view_is_kept_for_its_shadow_or_its_mirror_image_only() {
+    assert!(plan(&scene()).keeps_object(1), "it stands between the light and the cube in view");
+    let mut lit_from_the_left = scene();
+    lit_from_the_left.lights =
+        vec![Light::Directional { direction: DVec3::new(1.0, 0.0, 0.0), irradiance: Bands::ONE }];
+    assert!(!plan(&lit_from_the_left).keeps_object(1));
+    let mut lamp = scene();
+    lamp.lights = vec![Light::Point { at: DVec3::new(9.0, 9.0, 9.0), intensity: Bands::ONE }];
+    assert!(!plan(&lamp).keeps_object(1), "beyond the lamp");
+    lamp.objects[0].material.mirror = Bands::splat(0.5);
+    assert!(plan(&lamp).keeps_object(1), "a mirror may show it");
+}
+
+#[test]
+fn a_light_without_power_is_left_out() {
+    let mut scene = scene();
+    scene.lights.push(Light::Point { at: DVec3::Y, intensity: Bands::ZERO });
+    let plan = plan(&scene);
+    assert!(plan.keeps_light(0) && !plan.keeps_light(1));
+}
+
+#[test]
+fn a_forced_plan_leaves_nothing_out_and_says_so() {
+    let mut scene = scene();
+    scene.lights.clear();
+    let prepared = Prepared::new(&scene).expect("a scene");
+    let plan = Plan::everything(&prepared, &prepared.view());
+    assert!(plan.entries.iter().all(|e| e.needed) && Stage::ALL.into_iter().all(|s| plan.needs(s)));
+    assert!(plan.entries.iter().any(|e| e.reason.starts_with("forced; no light")));
+    assert!(plan.table().lines().count() == plan.entries.len() + 1);
+    let json = serde_json::to_value(&plan).expect("plain data");
+    assert_eq!(json["forced"], true);
+    assert_eq!(json["entries"][0]["name"], "octree");
+}

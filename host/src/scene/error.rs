@@ -1,6 +1,6 @@
 //! What can be wrong with a scene.
 
-use crate::mesh;
+use super::ShapeError;
 
 /// What is wrong with a scene, and with which part of it.
 #[derive(Debug, thiserror::Error)]
@@ -35,12 +35,12 @@ pub enum SceneError {
         /// How many are allowed.
         limit: u64,
     },
-    /// An object's mesh cannot be made or read.
+    /// The triangles of an object cannot be made or read.
     #[error("{object}: {source}")]
-    Mesh {
+    Shape {
         /// The object's name.
         object: String,
         /// Why.
-        source: mesh::MeshError,
+        source: ShapeError,
     },
 }

@@ -11,7 +11,7 @@ mod view;
 pub use bounds::Bounds;
 pub use error::SceneError;
 pub use prepared::{Prepared, PreparedObject};
-pub use shape::Shape;
+pub use shape::{Shape, ShapeError};
 pub use view::{Camera, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};

@@ -1,6 +1,6 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
-use super::{Bounds, Camera, Object, Scene, SceneError, Settings, Shape, View};
+use super::{Bounds, Camera, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use glam::{DMat3, DMat4, DVec3, Vec3};
@@ -9,6 +9,8 @@ use glam::{DMat3, DMat4, DVec3, Vec3};
 pub const MAX_TRIANGLES: u64 = 1 << 30;
 /// Tolerance of an object for which none is given, as a fraction of the diagonal of its bounds.
 const RELATIVE_TOLERANCE: f64 = 1.0 / 2000.0;
+/// Diagonal of the box around the teapot: 6.525 long, 3.15 high, 4 wide.
+const TEAPOT_DIAGONAL: f64 = 8.28;
 /// Normals of a file or surface that are this close to the plane's count as flat (sine of the angle).
 const FLAT_SINE: f64 = 1e-6;
 
@@ -144,9 +146,8 @@ impl Prepared {
         }
         let from = self.normals.len() as u32;
         let matrix = cofactors(&DMat3::from_mat4(*transform));
-        let sign = if mirrored { -1.0 } else { 1.0 };
         self.normals.extend(mesh.corner_normals.iter().map(|normals| {
-            let [a, b, c] = normals.map(|n| ((matrix * n).normalize_or_zero() * sign).as_vec3());
+            let [a, b, c] = normals.map(|n| (matrix * n).normalize_or_zero().as_vec3());
             if mirrored { [a, c, b] } else { [a, b, c] }
         }));
         Some(from)
@@ -189,7 +190,8 @@ impl Prepared {
     }
 }
 
-/// The matrix of cofactors, det(M) M^-T: carries normals, and needs no division.
+/// The matrix of cofactors with the sign of its determinant, |det(M)| M^-T: carries outward normals to outward normals,
+/// and needs no division.
 fn cofactors(m: &DMat3) -> DMat3 {
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
     let matrix = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
@@ -215,25 +217,30 @@ impl Object {
         let stretch = largest_stretch(&self.transform);
         let given = self.tolerance.or(scene_tolerance);
         let own = self.shape.extent().map(|extent| given.map_or(extent * RELATIVE_TOLERANCE, |t| t / stretch));
-        let mesh = self.shape.mesh(own.unwrap_or(f64::INFINITY));
-        let mesh = mesh.map_err(|source| SceneError::Mesh { object: self.name.clone(), source })?;
+        // A flat shape fits any tolerance.
+        let mesh = self.shape.mesh(own.unwrap_or(f64::MAX)).map_err(|source| self.failed(source))?;
         Ok((mesh, own.unwrap_or(0.0) * stretch))
     }
 
     /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
     pub(super) fn chord_error(&self, scene_tolerance: Option<f64>) -> Result<f64, SceneError> {
         let (mesh, _) = self.mesh(scene_tolerance)?;
-        Ok(self.shape.chord_error(&mesh) * largest_stretch(&self.transform))
+        let error = self.shape.chord_error(&mesh).map_err(|source| self.failed(source))?;
+        Ok(error * largest_stretch(&self.transform))
+    }
+
+    fn failed(&self, source: ShapeError) -> SceneError {
+        SceneError::Shape { object: self.name.clone(), source }
     }
 }
 
 impl Shape {
     /// Length of the diagonal in own coordinates, for curved shapes of known size.
-    fn extent(&self) -> Option<f64> {
+    pub fn extent(&self) -> Option<f64> {
         match self {
             Shape::Sphere { radius } => Some(2.0 * radius * 3f64.sqrt()),
-            Shape::Teapot => Some(super::shape::TEAPOT_DIAGONAL),
-            Shape::Box { .. } | Shape::Ground { .. } | Shape::Mesh { .. } => None,
+            Shape::Teapot => Some(TEAPOT_DIAGONAL),
+            Shape::Box { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => None,
         }
     }
 }

@@ -1,9 +1,27 @@
 //! Shapes in their own coordinates, and their triangles.
 
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::{self, Mesh, MeshError};
+use crate::surface::{self, Sphere, TessellationError, Tolerance, box_faces, chord_error, ground, tessellate};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+
+/// Largest turn of the normal from vertex to vertex, degrees: beyond it, interpolated normals are no longer those of the
+/// surface, however loose the tolerance.
+const LARGEST_TURN_DEGREES: f64 = 45.0;
+/// Steps along the sides of a triangle at which its distance to the exact surface is measured.
+const MEASURED_STEPS: usize = 6;
+
+/// Why a shape has no triangles.
+#[derive(Debug, thiserror::Error)]
+pub enum ShapeError {
+    /// The mesh cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The surface cannot be approximated to the tolerance.
+    #[error(transparent)]
+    Tessellation(#[from] TessellationError),
+}
 
 /// The form of an object in its own coordinates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -11,6 +29,8 @@ use std::path::PathBuf;
 pub enum Shape {
     /// The Utah teapot, standing on y = 0, its spout towards +x.
     Teapot,
+    /// The Stanford bunny, about 2 high.
+    Bunny,
     /// A sphere around the origin.
     Sphere {
         /// Its radius.
@@ -38,6 +58,7 @@ impl Shape {
     pub fn word(&self) -> &'static str {
         match self {
             Shape::Teapot => "teapot",
+            Shape::Bunny => "bunny",
             Shape::Sphere { .. } => "sphere",
             Shape::Box { .. } => "box",
             Shape::Ground { .. } => "ground",
@@ -49,7 +70,7 @@ impl Shape {
     pub(super) fn check(&self) -> Result<(), String> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         match self {
-            Shape::Teapot | Shape::Mesh { .. } => Ok(()),
+            Shape::Teapot | Shape::Bunny | Shape::Mesh { .. } => Ok(()),
             Shape::Sphere { radius } if positive(*radius) => Ok(()),
             Shape::Sphere { radius } => Err(format!("radius {radius} is not a length above 0")),
             Shape::Box { size } if positive(size.x) && positive(size.y) && positive(size.z) => Ok(()),
@@ -67,91 +88,28 @@ impl Shape {
     /// Triangles within `chord` of the shape, in own coordinates.
     ///
     /// # Errors
-    /// [`MeshError`] if the file cannot be read, or the tolerance asks for too many triangles.
-    pub fn mesh(&self, chord: f64) -> Result<Mesh, MeshError> {
+    /// [`ShapeError`] if the file cannot be read, or the tolerance asks for too many triangles.
+    pub(super) fn mesh(&self, chord: f64) -> Result<Mesh, ShapeError> {
+        let tolerance = Tolerance::new(chord, LARGEST_TURN_DEGREES);
         match self {
-            Shape::Sphere { radius } => Ok(shim_sphere(*radius, chord)),
-            Shape::Teapot => Ok(shim_sphere(2.0, chord)),
-            Shape::Box { size } => Ok(shim_box(*size)),
-            Shape::Ground { size } => {
-                let h = size / 2.0;
-                Ok(Mesh {
-                    vertices: vec![
-                        DVec3::new(-h, 0.0, -h),
-                        DVec3::new(-h, 0.0, h),
-                        DVec3::new(h, 0.0, h),
-                        DVec3::new(h, 0.0, -h),
-                    ],
-                    triangles: vec![[0, 1, 2], [0, 2, 3]],
-                    ..Mesh::default()
-                })
-            }
-            Shape::Mesh { path } => {
-                let _ = path;
-                Err(MeshError::Shim)
-            }
+            Shape::Bunny => Ok(mesh::bunny()),
+            Shape::Mesh { path } => Ok(mesh::read(path)?),
+            Shape::Teapot => Ok(tessellate(&surface::teapot(), tolerance)?),
+            Shape::Sphere { radius } => Ok(tessellate(&[Sphere::new(DVec3::ZERO, *radius)], tolerance)?),
+            Shape::Box { size } => Ok(tessellate(&box_faces(*size * -0.5, *size * 0.5), tolerance)?),
+            Shape::Ground { size } => Ok(tessellate(&[ground(DVec3::ZERO, *size)], tolerance)?),
         }
     }
-}
-impl Shape {
-    pub(super) fn chord_error(&self, mesh: &Mesh) -> f64 {
-        let r = match self {
-            Shape::Sphere { radius } => *radius,
-            _ => 2.0,
+
+    /// Largest measured distance between `mesh`, made by [`Shape::mesh`], and the exact surface, in own coordinates.
+    ///
+    /// 0 for shapes that have no exact surface or are flat.
+    pub(super) fn chord_error(&self, mesh: &Mesh) -> Result<f64, ShapeError> {
+        let accuracy = match self {
+            Shape::Teapot => chord_error(mesh, &surface::teapot(), MEASURED_STEPS)?,
+            Shape::Sphere { radius } => chord_error(mesh, &[Sphere::new(DVec3::ZERO, *radius)], MEASURED_STEPS)?,
+            Shape::Box { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => return Ok(0.0),
         };
-        mesh.triangles
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.map(|i| mesh.vertices[i as usize]);
-                r - ((a + b + c) / 3.0)
-                    .length()
-                    .min(((a + b) / 2.0).length())
-                    .min(((b + c) / 2.0).length())
-                    .min(((a + c) / 2.0).length())
-            })
-            .fold(0.0, f64::max)
+        Ok(accuracy.maximum)
     }
-}
-pub(super) const TEAPOT_DIAGONAL: f64 = 8.0;
-fn shim_box(size: DVec3) -> Mesh {
-    let h = size / 2.0;
-    let v: Vec<DVec3> = (0..8)
-        .map(|i| {
-            DVec3::new(
-                if i & 1 == 0 { -h.x } else { h.x },
-                if i & 2 == 0 { -h.y } else { h.y },
-                if i & 4 == 0 { -h.z } else { h.z },
-            )
-        })
-        .collect();
-    let q = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = q.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Mesh { vertices: v, triangles, ..Mesh::default() }
-}
-fn shim_sphere(r: f64, chord: f64) -> Mesh {
-    use std::f64::consts::PI;
-    let step = 2.0 * (1.0 - (chord / r).min(0.2)).acos() / 1.5;
-    let n = ((PI / step).ceil() as u32).max(4);
-    let m = 2 * n;
-    let mut mesh = Mesh::default();
-    for i in 0..=n {
-        for j in 0..m {
-            let (t, p) = (PI * f64::from(i) / f64::from(n), 2.0 * PI * f64::from(j) / f64::from(m));
-            mesh.vertices.push(DVec3::new(t.sin() * p.sin(), t.cos(), t.sin() * p.cos()) * r);
-        }
-    }
-    for i in 0..n {
-        for j in 0..m {
-            let at = |i: u32, j: u32| i * m + j % m;
-            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-            if i + 1 < n {
-                mesh.triangles.push([a, b, c]);
-            }
-            if i > 0 {
-                mesh.triangles.push([a, c, d]);
-            }
-        }
-    }
-    mesh.corner_normals = mesh.triangles.iter().map(|t| t.map(|i| mesh.vertices[i as usize] / r)).collect();
-    mesh
 }

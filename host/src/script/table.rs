@@ -29,10 +29,17 @@ const fn parameter(name: &'static str, kind: Kind, default: super::function::Def
 pub const FUNCTIONS: &[Function] = &[
     Function {
         name: "teapot",
-        summary: "Adds the Utah teapot, standing on y = 0, its spout towards +x; about 6.4 wide and 3.2 high.",
+        summary: "Adds the Utah teapot, standing on y = 0, its spout towards +x; 6.525 long and 3.15 high.",
         parameters: &[TOLERANCE],
         example: "let pot = teapot(#{ tolerance: 0.002 });",
         action: |builder, bound| builder.add(Shape::Teapot, bound.number("tolerance")).map(Some),
+    },
+    Function {
+        name: "bunny",
+        summary: "Adds the Stanford bunny, about 2 high, facing the viewer; 69,666 triangles.",
+        parameters: &[],
+        example: "bunny().translate(0, 1, 0);",
+        action: |builder, _| builder.add(Shape::Bunny, None).map(Some),
     },
     Function {
         name: "sphere",

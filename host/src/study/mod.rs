@@ -49,13 +49,13 @@ pub const KNOBS: &[KnobRow] = &[
         name: "render",
         summary: "samples per pixel against a reference of far more samples",
         options: Options { width: 160, samples: 1024, settings: 7, threads: None },
-        run: |scene, options, watch| sweep(&samples::Samples::new(scene, options)?, watch),
+        run: samples::study,
     },
     KnobRow {
         name: "tessellation",
         summary: "tessellation tolerance against a far finer tessellation and the exact surfaces",
         options: Options { width: 160, samples: 4, settings: 7, threads: None },
-        run: |scene, options, watch| sweep(&tessellation::Tessellation::new(scene, options)?, watch),
+        run: tessellation::study,
     },
 ];
 

@@ -181,7 +181,9 @@ impl Plot {
                 .draw_series(line.iter().map(|p| Circle::new(*p, 4 * scale, color.filled())))
                 .map_err(|e| failed(&e))?;
             let small = TextStyle::from((FONT, points(12))).color(&color);
-            let beside = |p: &Point| EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), at(6, 0), small.clone());
+            let beside_point = (5 * scale as i32, -15 * scale as i32);
+            let beside =
+                |p: &Point| EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), beside_point, small.clone());
             chart.draw_series(Plot::visible(series).map(beside)).map_err(|e| failed(&e))?;
         }
         chart

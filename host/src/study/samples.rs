@@ -1,6 +1,6 @@
 //! The knob of the renderer: samples in each pixel.
 
-use super::{Knob, Options, StudyError, Trial, resized};
+use super::{Knob, Options, Study, StudyError, Trial, resized, sweep};
 use crate::picture::{Picture, difference};
 use crate::plan::Plan;
 use crate::render::ray_tracing::RayTracer;
@@ -11,23 +11,23 @@ use crate::scene::{Prepared, Scene};
 const REFERENCE_SEED: u64 = 0x5EED;
 
 /// Samples in each pixel: 1, 2, 4, ... against a reference with many.
-pub(super) struct Samples {
-    prepared: Prepared,
-    plan: Plan,
+struct Samples<'a> {
+    prepared: &'a Prepared,
+    tracer: RayTracer<'a>,
     options: Options,
 }
 
-impl Samples {
-    pub(super) fn new(scene: &Scene, options: &Options) -> Result<Samples, StudyError> {
-        let mut scene = resized(scene, options);
-        scene.settings.samples = options.samples;
-        let prepared = Prepared::new(&scene)?;
-        let plan = Plan::new(&prepared, &prepared.view());
-        Ok(Samples { prepared, plan, options: *options })
-    }
+/// Makes the study of a scene.
+pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+    let mut scene = resized(scene, options);
+    scene.settings.samples = options.samples;
+    let prepared = Prepared::new(&scene)?;
+    let plan = Plan::new(&prepared, &prepared.view());
+    let tracer = RayTracer::new(&prepared, &plan)?;
+    sweep(&Samples { prepared: &prepared, tracer, options: *options }, watch)
 }
 
-impl Knob for Samples {
+impl Knob for Samples<'_> {
     type Answer = Picture;
 
     fn setting(&self) -> &'static str {
@@ -40,12 +40,11 @@ impl Knob for Samples {
     }
 
     fn run(&self, setting: f64, watch: &Watch<'_>) -> Result<Trial<Picture>, StudyError> {
-        let tracer = RayTracer::new(&self.prepared, &self.plan)?;
         let samples = setting as u32;
         let shift = if samples == self.options.samples { REFERENCE_SEED } else { 0 };
         let seed = self.prepared.settings.seed.wrapping_add(shift);
         let order = Order { samples, seed, threads: self.options.threads, ..Order::of(&self.prepared.settings) };
-        let rendering = tracer.render(&self.prepared.view(), &order, watch)?;
+        let rendering = self.tracer.render(&self.prepared.view(), &order, watch)?;
         let counts = vec![("rays", rendering.rays.total() as f64)];
         Ok(Trial { answer: rendering.picture, seconds: rendering.seconds, counts })
     }

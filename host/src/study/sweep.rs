@@ -179,7 +179,7 @@ impl Study {
             title: title.to_owned(),
             x_label: "run time (s)".into(),
             y_label: "error".into(),
-            note: format!("labels: {}", self.setting),
+            note: format!("each point is labelled with its {}", self.setting),
             series: series.collect(),
         }
     }

@@ -1,6 +1,6 @@
 //! The knob of the modeller: how closely triangles follow the exact surfaces.
 
-use super::{Knob, Options, StudyError, Trial, resized};
+use super::{Knob, Options, Study, StudyError, Trial, resized, sweep};
 use crate::picture::{Picture, difference};
 use crate::plan::Plan;
 use crate::render::ray_tracing::RayTracer;
@@ -16,20 +16,25 @@ const STEP: f64 = 3.0;
 const REFERENCE_STEP: f64 = 9.0;
 
 /// Tessellation tolerance: each a third of the one before, against a ninth of the last.
-pub(super) struct Tessellation {
+struct Tessellation {
     scene: Scene,
     options: Options,
     coarsest: f64,
 }
 
 /// What a tolerance gives: the picture, and the distance between triangles and exact surfaces.
-pub(super) struct Answer {
+struct Answer {
     picture: Picture,
     chord_error: f64,
 }
 
+/// Makes the study of a scene.
+pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+    sweep(&Tessellation::new(scene, options)?, watch)
+}
+
 impl Tessellation {
-    pub(super) fn new(scene: &Scene, options: &Options) -> Result<Tessellation, StudyError> {
+    fn new(scene: &Scene, options: &Options) -> Result<Tessellation, StudyError> {
         let mut scene = resized(scene, options);
         scene.settings.samples = options.samples;
         let prepared = Prepared::new(&scene)?;

@@ -24,7 +24,7 @@ fn row(name: &str) -> &'static KnobRow {
 
 #[test]
 fn more_samples_make_a_smaller_error() {
-    let options = Options { width: 24, samples: 1024, settings: 6, threads: None };
+    let options = Options { width: 16, samples: 512, settings: 6, threads: None };
     let study = (row("render").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
     assert_eq!(study.rows.iter().map(|r| r.setting).collect::<Vec<_>>(), [1.0, 2.0, 4.0, 8.0, 16.0, 32.0]);
     let (first, last) = (&study.rows[0], &study.rows[5]);

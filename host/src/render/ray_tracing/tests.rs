@@ -1,1 +1,370 @@
-//! Facts about ray tracing.
+//! Facts about ray tracing: closed forms first, then invariants.
+
+use super::*;
+use crate::illumination::{Bands, Light, Material};
+use crate::picture::difference;
+use crate::scene::{Camera, Object, Projection, Scene, Settings, Shape};
+use glam::{DMat4, DVec4};
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
+use std::sync::atomic::AtomicBool;
+
+fn object(shape: Shape, transform: DMat4, material: Material) -> Object {
+    Object { name: shape.word().into(), shape, transform, material, tolerance: None }
+}
+
+fn diffuse(k: f64) -> Material {
+    Material { diffuse: Bands::splat(k), ..Material::default() }
+}
+
+fn mirror(k: f64) -> Material {
+    Material { mirror: Bands::splat(k), ..diffuse(0.0) }
+}
+
+fn scene(objects: Vec<Object>, lights: Vec<Light>, side: u32) -> Scene {
+    let settings = Settings { width: side, height: side, samples: 1, ..Settings::default() };
+    Scene { objects, lights, settings, ..Scene::default() }
+}
+
+/// Looks straight down on the square -half..half of the plane y = 0; x to the right, -z up.
+fn from_above(half: f64) -> View {
+    let rows = [
+        DVec4::new(1.0 / half, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -1.0 / half, 0.0),
+        DVec4::new(0.0, -1e-3, 0.0, 0.5),
+        DVec4::W,
+    ];
+    let to_clip = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+    View::Projection(Projection { to_clip, depth_clipping: false })
+}
+
+fn trace(scene: &Scene, view: Option<View>, everything: bool, threads: usize) -> Rendering {
+    let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
+    let view = view.unwrap_or(prepared.view());
+    let plan = if everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
+    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let order = Order { threads: NonZeroUsize::new(threads), ..Order::of(&scene.settings) };
+    tracer.render(&view, &order, &Watch::NOBODY).expect("a picture")
+}
+
+fn red(rendering: &Rendering, x: u32, y: u32) -> f64 {
+    f64::from(rendering.picture.get(x, y).expect("inside").radiance[0])
+}
+
+/// A busy scene: curved and flat, shiny and dull, two kinds of light, something out of view.
+fn still_life() -> Scene {
+    let shiny = Material { specular: Bands::splat(0.1), mirror: Bands::splat(0.4), ..diffuse(0.3) };
+    let objects = vec![
+        object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.6)),
+        object(Shape::Sphere { radius: 1.0 }, DMat4::from_translation(DVec3::new(-1.0, 1.0, 0.0)), shiny),
+        object(
+            Shape::Box { size: DVec3::new(1.0, 2.0, 1.0) },
+            DMat4::from_translation(DVec3::new(1.4, 1.0, -0.5)) * DMat4::from_rotation_y(0.4),
+            diffuse(0.5),
+        ),
+        object(Shape::Sphere { radius: 0.5 }, DMat4::from_translation(DVec3::new(0.0, 0.5, 30.0)), diffuse(0.9)),
+    ];
+    let lights = vec![
+        Light::Point { at: DVec3::new(3.0, 5.0, 4.0), intensity: Bands::new(30.0, 25.0, 20.0) },
+        Light::Directional { direction: DVec3::new(1.0, -1.0, -0.5), irradiance: Bands::splat(1.0) },
+        Light::Point { at: DVec3::new(0.0, 9.0, 0.0), intensity: Bands::ZERO },
+    ];
+    let camera = Camera {
+        from: DVec3::new(0.5, 2.5, 8.0),
+        at: DVec3::new(0.0, 0.8, 0.0),
+        up: DVec3::Y,
+        field_of_view: 35.0,
+        near: 0.0,
+        far: None,
+    };
+    let mut scene = scene(objects, lights, 40);
+    (scene.camera, scene.ambient, scene.background) = (Some(camera), Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
+    scene.settings.samples = 3;
+    scene
+}
+
+#[test]
+fn a_diffuse_sphere_under_parallel_light_follows_lambert() {
+    let towards = DVec3::new(0.3, 0.5, 0.81).normalize();
+    let light = Light::Directional { direction: -towards, irradiance: Bands::splat(2.0) };
+    let mut scene = scene(vec![object(Shape::Sphere { radius: 1.0 }, DMat4::IDENTITY, diffuse(0.8))], vec![light], 40);
+    scene.settings.tolerance = Some(2e-4);
+    let to_clip = DMat4::from_scale(DVec3::new(1.0, 1.0, -0.1));
+    let rendering = trace(&scene, Some(View::Projection(Projection { to_clip, depth_clipping: false })), false, 2);
+    let mut compared = 0;
+    for (i, pixel) in rendering.picture.pixels().iter().enumerate() {
+        let x = (f64::from(i as u32 % 40) + 0.5) / 20.0 - 1.0;
+        let y = 1.0 - (f64::from(i as u32 / 40) + 0.5) / 20.0;
+        let depth = 1.0 - x * x - y * y;
+        assert_eq!(pixel.coverage, if depth > 0.0 { 1.0 } else { 0.0 }, "pixel {i}");
+        if depth > 0.05 {
+            let normal = DVec3::new(x, y, depth.sqrt());
+            let expected = 0.8 * 2.0 * normal.dot(towards).max(0.0) / PI;
+            assert!((f64::from(pixel.radiance[1]) - expected).abs() < 5e-4, "pixel {i}: {pixel:?}, not {expected}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 1100);
+}
+
+#[test]
+fn a_point_light_over_a_plane_falls_with_the_cube_of_the_slant_distance() {
+    let light = Light::Point { at: DVec3::new(0.0, 2.0, 0.0), intensity: Bands::splat(10.0) };
+    let scene = scene(vec![object(Shape::Ground { size: 50.0 }, DMat4::IDENTITY, diffuse(0.5))], vec![light], 21);
+    let rendering = trace(&scene, Some(from_above(5.25)), false, 2);
+    for x in 0..21u32 {
+        let r = (f64::from(x) - 10.0) * 0.5;
+        let expected = 0.5 / PI * 10.0 * 2.0 / (4.0 + r * r).powf(1.5);
+        assert!((red(&rendering, x, 10) - expected).abs() < 1e-6, "at {r}");
+    }
+}
+
+#[test]
+fn a_mirror_shows_the_luminance_of_what_it_reflects() {
+    // A mirror on the floor, seen at 45 degrees, shows a wall of ambient luminance, and above it the background.
+    let wall = object(
+        Shape::Box { size: DVec3::new(100.0, 4.0, 1.0) },
+        DMat4::from_translation(DVec3::new(0.0, 2.0, -10.5)),
+        diffuse(0.5),
+    );
+    let floor = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, mirror(0.8));
+    let mut scene = scene(vec![floor, wall], vec![], 1);
+    (scene.ambient, scene.background) = (Bands::splat(0.3), Bands::splat(2.0));
+    let look = |z: f64| Camera {
+        from: DVec3::new(0.0, 5.0, z + 5.0),
+        at: DVec3::new(0.0, 0.0, z),
+        up: DVec3::Y,
+        field_of_view: 1.0,
+        near: 0.0,
+        far: None,
+    };
+    let seen = |scene: &Scene, z: f64| red(&trace(scene, Some(View::Camera(look(z))), false, 1), 0, 0);
+    assert!((seen(&scene, -7.0) - 0.8 * 0.5 * 0.3).abs() < 1e-6, "the wall, 3 above its foot");
+    assert!((seen(&scene, -5.0) - 0.8 * 2.0).abs() < 1e-6, "past the wall, 5 above its foot");
+    scene.settings.reflection_depth = 0;
+    assert_eq!(seen(&scene, -7.0), 0.0, "without reflection a mirror is black");
+}
+
+#[test]
+fn two_facing_mirrors_end_by_depth_or_by_energy() {
+    let up = object(Shape::Ground { size: 50.0 }, DMat4::IDENTITY, mirror(0.5));
+    let down = object(Shape::Ground { size: 50.0 }, DMat4::from_translation(DVec3::Y * 2.0), mirror(0.5));
+    let mut scene = scene(vec![up, down], vec![], 1);
+    scene.background = Bands::ONE;
+    let straight_down =
+        Camera { from: DVec3::Y, at: DVec3::ZERO, up: DVec3::Z, field_of_view: 1.0, near: 0.0, far: None };
+    scene.settings.reflection_depth = 5;
+    assert_eq!(trace(&scene, Some(View::Camera(straight_down)), false, 1).rays.reflected, 5);
+    scene.settings.reflection_depth = 1000;
+    let chain = trace(&scene, Some(View::Camera(straight_down)), false, 1).rays.reflected;
+    assert_eq!(chain, 12, "0.5^12 is the last that is not below the cut-off");
+}
+
+#[test]
+fn the_shadow_of_a_plate_is_its_central_projection() {
+    // A plate of side 2 at height 1 under a light at height 3 throws a shadow of side 3.
+    let plate = object(Shape::Ground { size: 2.0 }, DMat4::from_translation(DVec3::Y), mirror(0.0));
+    let floor = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(1.0));
+    let light = Light::Point { at: DVec3::new(0.0, 3.0, 0.0), intensity: Bands::splat(9.0) };
+    let scene = scene(vec![floor, plate], vec![light], 80);
+    let rendering = trace(&scene, Some(from_above(4.0)), false, 2);
+    for (i, pixel) in rendering.picture.pixels().iter().enumerate() {
+        let (x, z) = ((f64::from(i as u32 % 80) - 39.5) / 10.0, (f64::from(i as u32 / 80) - 39.5) / 10.0);
+        let dark = x.abs() < 1.5 && z.abs() < 1.5;
+        assert_eq!(pixel.radiance[0] == 0.0, dark, "at {x}, {z}");
+    }
+}
+
+#[test]
+fn no_surface_shadows_itself_at_any_scale_or_place() {
+    for (size, shift) in [(1e-6, 0.0), (1.0, 0.0), (1e6, 0.0), (1.0, 1e7), (1e3, 1e7)] {
+        let center = DVec3::new(shift, -0.5 * shift, shift);
+        let place = DMat4::from_translation(center) * DMat4::from_scale(DVec3::splat(size));
+        let ball = object(Shape::Sphere { radius: 1.0 }, place, diffuse(1.0));
+        // The light stands behind the eye: whatever is seen is lit.
+        let towards = DVec3::new(0.2, 0.3, 1.0).normalize();
+        let lights = vec![Light::Directional { direction: -towards, irradiance: Bands::splat(PI) }];
+        let mut scene = scene(vec![ball], lights, 64);
+        scene.settings.samples = 1;
+        scene.camera = Some(Camera {
+            from: center + towards * size * 1e3,
+            at: center,
+            up: DVec3::Y,
+            field_of_view: 0.12,
+            near: 0.0,
+            far: None,
+        });
+        let rendering = trace(&scene, None, false, 2);
+        let covered: Vec<_> = rendering.picture.pixels().iter().filter(|p| p.coverage > 0.0).collect();
+        assert!(covered.len() > 2000, "{size}, {shift}: {} pixels", covered.len());
+        let dark = covered.iter().filter(|p| p.radiance[0] < 0.03).count();
+        assert!(dark * 200 < covered.len(), "{size}, {shift}: {dark} of {} are dark", covered.len());
+    }
+}
+
+#[test]
+fn grazing_light_on_a_plane_is_not_shadowed_by_the_plane() {
+    for turn in [0.0, 0.3, 1.1] {
+        let tilt = DMat4::from_rotation_z(turn) * DMat4::from_rotation_x(0.7 * turn);
+        let floor = object(Shape::Ground { size: 10.0 }, tilt, diffuse(1.0));
+        let normal = tilt.transform_vector3(DVec3::Y);
+        let along = tilt.transform_vector3(DVec3::new(0.6, 0.0, 0.8));
+        for grazing in [1e-3, 1e-6, 1e-9] {
+            let direction = -(along + normal * grazing);
+            let light = Light::Directional { direction, irradiance: Bands::splat(1.0 / grazing) };
+            let mut scene = scene(vec![floor.clone()], vec![light], 32);
+            let from = normal * 10.0;
+            let up = tilt.transform_vector3(DVec3::Z);
+            scene.camera = Some(Camera { from, at: DVec3::ZERO, up, field_of_view: 40.0, near: 0.0, far: None });
+            let rendering = trace(&scene, None, false, 2);
+            for pixel in rendering.picture.pixels() {
+                assert!((f64::from(pixel.radiance[0]) * PI - 1.0).abs() < 1e-4, "{turn}, {grazing}: {pixel:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_coarse_sphere_has_no_jagged_terminator() {
+    let light = Light::Directional { direction: DVec3::NEG_X, irradiance: Bands::splat(PI) };
+    let mut scene = scene(vec![object(Shape::Sphere { radius: 1.0 }, DMat4::IDENTITY, diffuse(1.0))], vec![light], 48);
+    scene.settings.tolerance = Some(0.01);
+    let to_clip = DMat4::from_scale(DVec3::new(1.0, 1.0, -0.1));
+    let rendering = trace(&scene, Some(View::Projection(Projection { to_clip, depth_clipping: false })), false, 2);
+    // Right of the terminator (x > 0) every pixel is lit: none is black where the exact luminance is above 0.1.
+    let picture = &rendering.picture;
+    for y in 8..40 {
+        for x in 27..46 {
+            let pixel = picture.get(x, y).expect("inside");
+            if pixel.coverage > 0.0 {
+                assert!(pixel.radiance[0] > 0.05, "{x}, {y}: {pixel:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_picture_is_the_same_for_any_number_of_threads() {
+    let scene = still_life();
+    let one = trace(&scene, None, false, 1);
+    for threads in [2, 3, 7] {
+        let many = trace(&scene, None, false, threads);
+        assert_eq!(one.picture, many.picture);
+        assert_eq!(one.rays, many.rays);
+    }
+    assert!(one.picture.is_finite() && one.is_complete());
+}
+
+#[test]
+fn another_seed_gives_another_picture_of_the_same_scene() {
+    let scene = still_life();
+    let mut other = scene.clone();
+    other.settings.seed = 2;
+    let (a, b) = (trace(&scene, None, false, 2).picture, trace(&other, None, false, 2).picture);
+    let d = difference(&a, &b).expect("same size");
+    assert!(d.rmse > 0.0 && d.rmse < 0.1, "{d:?}");
+}
+
+#[test]
+fn forcing_everything_gives_the_same_picture() {
+    let full = still_life();
+    let mut dull = full.clone();
+    dull.objects.iter_mut().for_each(|o| o.material = diffuse(0.5));
+    let mut dark = full.clone();
+    dark.lights.clear();
+    let mut flat = full.clone();
+    flat.objects.retain(|o| matches!(o.shape, Shape::Box { .. } | Shape::Ground { .. }));
+    let mut black = full.clone();
+    black.ambient = Bands::ZERO;
+    black.objects.iter_mut().for_each(|o| o.material = mirror(0.0));
+    let mut plain = full.clone();
+    (plain.settings.samples, plain.settings.reflection_depth) = (1, 0);
+    let mut empty = full.clone();
+    empty.objects.clear();
+    let mut away = full.clone();
+    away.camera = away.camera.map(|c| Camera { at: DVec3::new(0.0, 50.0, 8.0), up: DVec3::Z, ..c });
+    for (name, scene) in [
+        ("full", full),
+        ("dull", dull),
+        ("dark", dark),
+        ("flat", flat),
+        ("black", black),
+        ("plain", plain),
+        ("empty", empty),
+        ("away", away),
+    ] {
+        let (lean, forced) = (trace(&scene, None, false, 2), trace(&scene, None, true, 2));
+        assert_eq!(lean.picture, forced.picture, "{name}");
+        assert!(lean.rays.total() <= forced.rays.total(), "{name}");
+    }
+}
+
+#[test]
+fn a_camera_and_the_matrix_of_the_workstation_show_the_same_silhouette() {
+    let mut scene = still_life();
+    scene.objects.remove(0);
+    scene.settings.samples = 1;
+    let camera = scene.camera.expect("set");
+    // What LOOK and FIELD_OF_VIEW make of the scene with its z negated: rows times matrix, left-handed.
+    let negated = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
+    let reported = camera.projection().expect("sees").to_clip * negated;
+    let view = View::Projection(Projection::from_workstation(&reported, false));
+    let (a, b) = (trace(&scene, None, false, 2), trace(&scene, Some(view), false, 2));
+    let d = difference(&a.picture, &b.picture).expect("same size");
+    assert!(d.silhouette < 0.005 && d.rmse < 0.02, "{d:?}");
+}
+
+#[test]
+fn stratified_samples_converge_faster_than_random_ones() {
+    // An edge across the picture: its coverage is known exactly.
+    let mut scene =
+        scene(vec![object(Shape::Box { size: DVec3::ONE }, DMat4::from_rotation_z(0.3), diffuse(0.5))], vec![], 12);
+    scene.ambient = Bands::ONE;
+    let to_clip = DMat4::from_scale(DVec3::new(1.2, 1.2, -0.1));
+    let view = View::Projection(Projection { to_clip, depth_clipping: false });
+    let error = |samples: u32| {
+        let reference = 1.2f64 * 1.2 / 4.0;
+        let runs = (0..24).map(|seed| {
+            scene.settings.samples = samples;
+            scene.settings.seed = seed;
+            let picture = trace(&scene, Some(view), false, 1).picture;
+            let mean = picture.pixels().iter().map(|p| f64::from(p.coverage)).sum::<f64>() / 144.0;
+            (mean - reference).powi(2)
+        });
+        (runs.collect::<Vec<f64>>().iter().sum::<f64>() / 24.0).sqrt()
+    };
+    let mut error = error;
+    let (coarse, fine) = (error(4), error(256));
+    let rate = (coarse / fine).ln() / 64f64.ln();
+    assert!(rate > 0.6, "error ~ n^-{rate}: {coarse} to {fine}");
+}
+
+#[test]
+fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
+    let scene = still_life();
+    let prepared = Prepared::new(&scene).expect("a scene");
+    let plan = Plan::new(&prepared, &prepared.view());
+    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let cancelled = AtomicBool::new(false);
+    let watch = Watch { cancelled: &cancelled, progress: &|done, _| cancelled.store(done >= 5, Ordering::Relaxed) };
+    let order = Order { threads: NonZeroUsize::new(1), ..Order::of(&scene.settings) };
+    let part = tracer.render(&prepared.view(), &order, &watch).expect("a part");
+    assert_eq!(part.rows.iter().filter(|r| **r).count(), 5);
+    assert!(!part.is_complete());
+    let whole = trace(&scene, None, false, 1);
+    for (y, _) in part.rows.iter().enumerate().filter(|(_, done)| **done) {
+        let row = y * 40..(y + 1) * 40;
+        assert_eq!(part.picture.pixels()[row.clone()], whole.picture.pixels()[row]);
+    }
+}
+
+#[test]
+fn degenerate_views_are_errors() {
+    let scene = still_life();
+    let prepared = Prepared::new(&scene).expect("a scene");
+    let plan = Plan::new(&prepared, &prepared.view());
+    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let view = View::Projection(Projection { to_clip: DMat4::ZERO, depth_clipping: true });
+    let result = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY);
+    assert!(matches!(result, Err(RenderError::View)));
+}

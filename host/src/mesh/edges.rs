@@ -1,0 +1,308 @@
+//! Edges of a mesh as vectors: each once, classified by what they are to the eye.
+
+use glam::DVec3;
+use robust::{Coord3D, orient3d};
+
+use super::Mesh;
+use super::measure::{angle_between, unit_normal};
+
+/// All edges of a mesh and the triangles at each. Vertices at the same position count as one.
+#[derive(Clone, Debug)]
+pub struct EdgeTable {
+    /// The edges, sorted by their ends.
+    pub edges: Vec<Edge>,
+    uses: Vec<EdgeUse>,
+    /// For each vertex the lowest vertex at its position.
+    pub(super) same: Vec<u32>,
+}
+
+/// An edge of an [`EdgeTable`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// Its vertices, the lower index first; each is the lowest index at its position.
+    pub ends: [u32; 2],
+    first_use: u32,
+    use_count: u32,
+}
+
+/// A triangle at an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeUse {
+    /// The triangle.
+    pub triangle: u32,
+    /// Which of its sides, 0..3; side k goes from corner k to the next.
+    pub side: u8,
+    /// Whether the triangle runs from the lower to the higher end.
+    pub forward: bool,
+}
+
+/// Where the viewer is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Eye {
+    /// At a point.
+    Point(DVec3),
+    /// Infinitely far in this direction (from the mesh towards the viewer).
+    Direction(DVec3),
+}
+
+/// Which edges inside smooth parts are wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interior {
+    /// None.
+    #[default]
+    None,
+    /// Those along which one surface parameter is constant: the grid of a tessellated surface without its diagonals.
+    /// All edges of a mesh that has no parameters.
+    Isoparametric,
+    /// All.
+    All,
+}
+
+/// Which edges of a mesh become vectors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Selection {
+    /// Edges of one triangle. (Edges of more than two are always creases.)
+    pub boundary: bool,
+    /// Edges where the two planes meet at more than this angle, degrees, 0..=180; `None` for no creases.
+    pub crease_degrees: Option<f64>,
+    /// Edges between triangles of different surfaces, whatever their angle.
+    pub seams: bool,
+    /// Edges that are none of the above.
+    pub interior: Interior,
+    /// Edges between a triangle that faces this eye and one that does not.
+    pub outline: Option<Eye>,
+}
+
+impl Selection {
+    /// Every edge.
+    pub const ALL: Selection =
+        Selection { boundary: true, crease_degrees: Some(0.0), seams: true, interior: Interior::All, outline: None };
+
+    /// Boundaries, and creases sharper than `degrees`.
+    pub fn creases(degrees: f64) -> Selection {
+        Selection {
+            boundary: true,
+            crease_degrees: Some(degrees),
+            seams: false,
+            interior: Interior::None,
+            outline: None,
+        }
+    }
+
+    /// Boundaries, creases sharper than `degrees`, and the outline that `eye` sees.
+    pub fn drawing(degrees: f64, eye: Eye) -> Selection {
+        Selection { outline: Some(eye), ..Selection::creases(degrees) }
+    }
+
+    /// Boundaries, creases sharper than `degrees`, and the parameter lines of tessellated surfaces.
+    pub fn grid(degrees: f64) -> Selection {
+        Selection { seams: true, interior: Interior::Isoparametric, ..Selection::creases(degrees) }
+    }
+}
+
+impl EdgeTable {
+    /// Finds the edges of `mesh`; triangles that use one position twice have no part in it.
+    ///
+    /// # Panics
+    /// If an index of the mesh is out of range.
+    pub fn of(mesh: &Mesh) -> EdgeTable {
+        let same = mesh.first_of_each_position();
+        let mut sides = Vec::with_capacity(mesh.triangles.len() * 3);
+        for (triangle, corners) in mesh.triangles.iter().enumerate() {
+            let [a, b, c] = corners.map(|vertex| same[vertex as usize]);
+            if a == b || b == c || c == a {
+                continue;
+            }
+            for (side, [from, to]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
+                let place = EdgeUse { triangle: triangle as u32, side: side as u8, forward: from < to };
+                sides.push(([from.min(to), from.max(to)], place));
+            }
+        }
+        sides.sort_unstable_by_key(|(ends, place)| (*ends, place.triangle));
+        let mut edges: Vec<Edge> = Vec::with_capacity(sides.len() / 2);
+        for (index, (ends, _)) in sides.iter().enumerate() {
+            match edges.last_mut().filter(|edge| edge.ends == *ends) {
+                Some(edge) => edge.use_count += 1,
+                None => edges.push(Edge { ends: *ends, first_use: index as u32, use_count: 1 }),
+            }
+        }
+        EdgeTable { edges, uses: sides.into_iter().map(|(_, place)| place).collect(), same }
+    }
+
+    /// The triangles at `edge`, by rising index.
+    pub fn uses(&self, edge: &Edge) -> &[EdgeUse] {
+        &self.uses[edge.first_use as usize..(edge.first_use + edge.use_count) as usize]
+    }
+
+    /// The edges of `mesh` that `selection` asks for; `mesh` must be the one that this table was made of.
+    pub fn select<'a>(&'a self, mesh: &'a Mesh, selection: &'a Selection) -> impl Iterator<Item = &'a Edge> + 'a {
+        let facing = selection.outline.map(|eye| facing(mesh, eye));
+        self.edges.iter().filter(move |edge| self.is_wanted(mesh, selection, facing.as_deref(), edge))
+    }
+
+    pub(super) fn is_collapsed(&self, mesh: &Mesh, triangle: usize) -> bool {
+        let [a, b, c] = mesh.triangles[triangle].map(|vertex| self.same[vertex as usize]);
+        a == b || b == c || c == a
+    }
+
+    fn is_wanted(&self, mesh: &Mesh, selection: &Selection, facing: Option<&[bool]>, edge: &Edge) -> bool {
+        let (a, b) = match self.uses(edge) {
+            [_] => return selection.boundary,
+            [a, b] => (a, b),
+            _ => return selection.crease_degrees.is_some() || selection.boundary,
+        };
+        if let Some(facing) = facing
+            && facing[a.triangle as usize] != (facing[b.triangle as usize] ^ (a.forward == b.forward))
+        {
+            return true;
+        }
+        if let Some(degrees) = selection.crease_degrees
+            && self.dihedral_degrees(mesh, edge).is_some_and(|angle| angle > degrees)
+        {
+            return true;
+        }
+        let surface = |place: &EdgeUse| mesh.surfaces.get(place.triangle as usize);
+        if selection.seams && surface(a) != surface(b) {
+            return true;
+        }
+        match selection.interior {
+            Interior::None => false,
+            Interior::Isoparametric => is_isoparametric(mesh, a) || is_isoparametric(mesh, b),
+            Interior::All => true,
+        }
+    }
+
+    /// The angle between the planes of the two triangles of an edge, degrees, 0 where they continue each other; `None`
+    /// unless there are exactly two and both have an area.
+    pub fn dihedral_degrees(&self, mesh: &Mesh, edge: &Edge) -> Option<f64> {
+        let [a, b] = self.uses(edge) else { return None };
+        let normal_a = mesh.face_normal(a.triangle as usize)?;
+        let normal_b = mesh.face_normal(b.triangle as usize)?;
+        let turned = if a.forward == b.forward { -normal_b } else { normal_b };
+        Some(angle_between(normal_a, turned).to_degrees())
+    }
+}
+
+/// The selected edges of `mesh` as vectors, each once.
+pub fn wire(mesh: &Mesh, selection: &Selection) -> Vec<[DVec3; 2]> {
+    let table = EdgeTable::of(mesh);
+    table.select(mesh, selection).map(|edge| edge.ends.map(|vertex| mesh.vertices[vertex as usize])).collect()
+}
+
+/// For each triangle whether `eye` sees its outside; edge-on counts as not. Exact for an eye at a point.
+fn facing(mesh: &Mesh, eye: Eye) -> Vec<bool> {
+    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    let faces = |triangle| {
+        let [a, b, c] = mesh.corners(triangle);
+        match eye {
+            Eye::Point(eye) => orient3d(coord(a), coord(b), coord(c), coord(eye)) < 0.0,
+            Eye::Direction(eye) => unit_normal(a, b, c).is_some_and(|normal| normal.dot(eye) > 0.0),
+        }
+    };
+    (0..mesh.triangles.len()).map(faces).collect()
+}
+
+/// Whether one parameter is the same at both ends of a side; true where there are no parameters.
+fn is_isoparametric(mesh: &Mesh, place: &EdgeUse) -> bool {
+    let Some(corners) = mesh.corner_parameters.get(place.triangle as usize) else { return true };
+    let (from, to) = (corners[usize::from(place.side)], corners[(usize::from(place.side) + 1) % 3]);
+    from.x == to.x || from.y == to.y
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::super::check::tests::tetrahedron;
+    use super::super::measure::bits;
+    use super::*;
+    use crate::surface::{self, Sphere, Tolerance};
+
+    /// The unit cube with four vertices of its own for each face, as many files have it.
+    fn cube() -> Mesh {
+        let faces = surface::box_faces(DVec3::ZERO, DVec3::ONE);
+        let joined = surface::tessellate(&faces, Tolerance::new(0.1, 10.0)).unwrap();
+        let mut mesh = Mesh::default();
+        for triangle in 0..joined.triangles.len() {
+            let first = mesh.vertices.len() as u32;
+            mesh.vertices.extend(joined.corners(triangle));
+            mesh.triangles.push([first, first + 1, first + 2]);
+        }
+        mesh
+    }
+
+    fn ball() -> Mesh {
+        surface::tessellate(&[Sphere::new(DVec3::ZERO, 1.0)], Tolerance::new(0.002, 10.0)).unwrap()
+    }
+
+    #[test]
+    fn a_cube_has_twelve_creases_and_no_diagonals() {
+        let wires = wire(&cube(), &Selection::creases(20.0));
+        assert_eq!(wires.len(), 12);
+        assert!(wires.iter().all(|[a, b]| ((*a - *b).length() - 1.0).abs() < 1e-15));
+        assert_eq!(wire(&cube(), &Selection::ALL).len(), 18);
+    }
+
+    #[test]
+    fn a_smooth_sphere_has_no_creases() {
+        assert!(wire(&ball(), &Selection::creases(20.0)).is_empty());
+    }
+
+    #[test]
+    fn every_edge_of_a_closed_mesh_comes_once() {
+        let mesh = ball();
+        let wires = wire(&mesh, &Selection::ALL);
+        assert_eq!(wires.len(), mesh.triangles.len() * 3 / 2);
+        let keys: HashSet<_> = wires.iter().map(|[a, b]| (bits(*a).min(bits(*b)), bits(*a).max(bits(*b)))).collect();
+        assert_eq!(keys.len(), wires.len());
+    }
+
+    #[test]
+    fn the_grid_of_a_sphere_is_its_edges_without_one_diagonal_a_quad() {
+        let mesh = ball();
+        let all = wire(&mesh, &Selection::ALL).len();
+        let grid = wire(&mesh, &Selection::grid(20.0)).len();
+        // A grid of m by n has 2m triangles at the poles and (n - 2) m quads between.
+        let m = mesh.triangles.iter().filter(|triangle| triangle.contains(&pole(&mesh))).count();
+        let n = (mesh.triangles.len() / m + 2) / 2;
+        assert_eq!(mesh.triangles.len(), 2 * m * (n - 1));
+        assert_eq!(all - grid, m * (n - 2));
+    }
+
+    fn pole(mesh: &Mesh) -> u32 {
+        mesh.vertices.iter().position(|vertex| vertex.y == 1.0).unwrap() as u32
+    }
+
+    #[test]
+    fn a_cube_seen_along_its_diagonal_has_an_outline_of_six_edges() {
+        let outline = |eye| Selection { boundary: false, crease_degrees: None, ..Selection::drawing(0.0, eye) };
+        assert_eq!(wire(&cube(), &outline(Eye::Direction(DVec3::ONE))).len(), 6);
+        assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::splat(5.0)))).len(), 6);
+        assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::new(0.4, 0.3, 5.0)))).len(), 4);
+        assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::splat(0.4)))).len(), 0);
+    }
+
+    #[test]
+    fn the_outline_of_a_sphere_is_closed_and_nearly_a_great_circle() {
+        let selection = Selection {
+            boundary: false,
+            crease_degrees: None,
+            ..Selection::drawing(0.0, Eye::Direction(DVec3::new(0.3, 0.5, 0.8)))
+        };
+        let outline = wire(&ball(), &selection);
+        let mut degree = std::collections::HashMap::new();
+        outline.iter().flatten().for_each(|end| *degree.entry(bits(*end)).or_insert(0) += 1);
+        assert!(!outline.is_empty() && degree.values().all(|count| count % 2 == 0));
+        let eye = DVec3::new(0.3, 0.5, 0.8).normalize();
+        assert!(outline.iter().flatten().all(|end| end.dot(eye).abs() < 0.2));
+    }
+
+    #[test]
+    fn edges_of_three_triangles_are_creases() {
+        let mut mesh = tetrahedron();
+        mesh.vertices.push(DVec3::splat(-1.0));
+        mesh.triangles.push([0, 1, 4]);
+        let wires = wire(&mesh, &Selection { boundary: false, ..Selection::creases(179.0) });
+        assert_eq!(wires, [[DVec3::ZERO, DVec3::X]]);
+    }
+}

@@ -1,0 +1,145 @@
+//! What can be wrong with a mesh or its file, and where.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// A failure to read, write or accept a mesh.
+#[derive(Debug, thiserror::Error)]
+pub enum MeshError {
+    /// The file system refused.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The extension names no known format.
+    #[error("{}: unknown mesh format; known extensions are obj, stl, ply and cmesh", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The content cannot be understood or trusted.
+    #[error("{}: {fault}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        fault: Fault,
+    },
+}
+
+/// One thing wrong, and its place in the text, in the bytes or in the mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{place}: {problem}")]
+pub struct Fault {
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub problem: Problem,
+}
+
+/// A place in a file or in a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of a text, from 1.
+    Line(usize),
+    /// A byte of a binary file, from 0.
+    Byte(usize),
+    /// A vertex, from 0.
+    Vertex(usize),
+    /// A triangle, from 0.
+    Triangle(usize),
+    /// The mesh as a whole.
+    Mesh,
+}
+
+impl Place {
+    /// The fault `problem` at this place.
+    pub(super) fn fault(self, problem: Problem) -> Fault {
+        Fault { place: self, problem }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line(line) => write!(formatter, "line {line}"),
+            Place::Byte(byte) => write!(formatter, "byte {byte}"),
+            Place::Vertex(vertex) => write!(formatter, "vertex {vertex}"),
+            Place::Triangle(triangle) => write!(formatter, "triangle {triangle}"),
+            Place::Mesh => write!(formatter, "mesh"),
+        }
+    }
+}
+
+/// A thing that is wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Problem {
+    /// The data ends too early.
+    #[error("ends where {0} is expected")]
+    Ends(&'static str),
+    /// One thing stands where another must stand.
+    #[error("expected {expected}, found `{found}`")]
+    Expected {
+        /// What may stand there.
+        expected: &'static str,
+        /// What stands there, shortened.
+        found: String,
+    },
+    /// A coordinate that is infinite or not a number.
+    #[error("a coordinate is not finite")]
+    NotFinite,
+    /// An index outside its table.
+    #[error("index {index} is outside the {count} {table}")]
+    Index {
+        /// The index as it stands in the file.
+        index: i64,
+        /// Entries of the table.
+        count: usize,
+        /// What the table holds.
+        table: &'static str,
+    },
+    /// More than PERIS is built for.
+    #[error("{count} {what}, the limit is {limit}")]
+    TooMany {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many.
+        count: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// A face of one or two corners.
+    #[error("a face needs at least 3 corners, this one has {0}")]
+    FewCorners(usize),
+    /// A table per corner that is neither empty nor as long as the triangles.
+    #[error("{table} has {length} entries for {triangles} triangles")]
+    Length {
+        /// The table.
+        table: &'static str,
+        /// Its entries.
+        length: usize,
+        /// Triangles of the mesh.
+        triangles: usize,
+    },
+    /// A coordinate that the format cannot hold.
+    #[error("{value} does not fit into the single precision of the format")]
+    Range {
+        /// The coordinate.
+        value: f64,
+    },
+    /// A mesh that the format cannot hold.
+    #[error("{0}")]
+    Unsuited(&'static str),
+}
+
+/// `text` shortened for an error message.
+pub(super) fn shortened(text: &str) -> String {
+    const SHOWN: usize = 40;
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}

@@ -1,0 +1,277 @@
+//! Stanford polygon files: a header that describes tables, then the tables as text or binary.
+//!
+//! Read are the elements `vertex` (x y z; nx ny nz; s t, u v or texture_u texture_v) and `face` (vertex_indices or
+//! vertex_index); all others are skipped.
+//!
+//! Not modelled: triangle strips, colours, materials.
+//!
+//! # Source
+//! Greg Turk, The PLY Polygon File Format, 1994.
+
+mod header;
+mod table;
+
+use glam::{DVec2, DVec3};
+
+use self::header::{Element, Header, Property};
+use self::table::{Binary, Table, Text};
+use super::file::{MAX_COUNT, fan};
+use super::{Fault, Mesh, Problem};
+
+/// The encoding of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Encoding {
+    Text,
+    LittleEndian,
+    BigEndian,
+}
+
+/// A number type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+/// Understands a PLY file.
+pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let header = header::parse(bytes)?;
+    let body = &bytes[header.bytes..];
+    match header.encoding {
+        Encoding::Text => tables(&header, Text::new(body, header.lines)),
+        Encoding::LittleEndian => tables(&header, Binary::new(body, header.bytes, false)),
+        Encoding::BigEndian => tables(&header, Binary::new(body, header.bytes, true)),
+    }
+}
+
+fn tables<T: Table>(header: &Header, mut table: T) -> Result<Mesh, Fault> {
+    let mut content = Content::default();
+    for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
+        check_count(element, &table)?;
+        match element.name.as_str() {
+            "vertex" => content.read_vertices(element, &mut table)?,
+            "face" => content.read_faces(element, &mut table)?,
+            _ => skip(element, &mut table)?,
+        }
+    }
+    content.into_mesh(&table)
+}
+
+/// Refuses a count that the rest of the file cannot hold, before anything is reserved for it.
+fn check_count<T: Table>(element: &Element, table: &T) -> Result<(), Fault> {
+    let row = element.properties.iter().map(|property| table.least_bytes(property)).sum::<u64>();
+    let limit = (table.bytes_left() / row.max(1)).min(MAX_COUNT as u64);
+    if element.count > limit {
+        let problem = Problem::TooMany { what: "rows announced", count: element.count, limit };
+        return Err(table.place().fault(problem));
+    }
+    Ok(())
+}
+
+fn skip<T: Table>(element: &Element, table: &mut T) -> Result<(), Fault> {
+    for _ in 0..element.count {
+        for property in &element.properties {
+            table.skip(property)?;
+        }
+    }
+    Ok(())
+}
+
+#[derive(Default)]
+struct Content {
+    positions: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    parameters: Vec<DVec2>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Content {
+    fn read_vertices<T: Table>(&mut self, element: &Element, table: &mut T) -> Result<(), Fault> {
+        let slot = |names: &[&str]| {
+            let is_named = |property: &Property| names.contains(&property.name.as_str()) && property.length.is_none();
+            element.properties.iter().position(is_named)
+        };
+        let all = |slots: [Option<usize>; 3]| slots.into_iter().collect::<Option<Vec<_>>>();
+        let missing = || table.place().fault(Problem::Ends("the vertex properties x, y and z"));
+        let position = all([slot(&["x"]), slot(&["y"]), slot(&["z"])]).ok_or_else(missing)?;
+        let normal = all([slot(&["nx"]), slot(&["ny"]), slot(&["nz"])]);
+        let (s, t) = (slot(&["s", "u", "texture_u"]), slot(&["t", "v", "texture_v"]));
+        let mut row = vec![0.0; element.properties.len()];
+        for _ in 0..element.count {
+            let place = table.place();
+            for (value, property) in row.iter_mut().zip(&element.properties) {
+                match property.length {
+                    None => *value = table.number(property.scalar)?,
+                    Some(_) => table.skip(property)?,
+                }
+            }
+            let point = |slots: &[usize]| DVec3::new(row[slots[0]], row[slots[1]], row[slots[2]]);
+            let point_here = point(&position);
+            if !point_here.is_finite() {
+                return Err(place.fault(Problem::NotFinite));
+            }
+            self.positions.push(point_here);
+            self.normals.extend(normal.as_deref().map(|slots| point(slots).normalize_or_zero()));
+            self.parameters.extend(s.zip(t).map(|(s, t)| DVec2::new(row[s], row[t])));
+        }
+        Ok(())
+    }
+
+    fn read_faces<T: Table>(&mut self, element: &Element, table: &mut T) -> Result<(), Fault> {
+        let is_indices = |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
+        let mut polygon: Vec<u32> = Vec::new();
+        for _ in 0..element.count {
+            for property in &element.properties {
+                let (true, Some(length)) = (is_indices(property), property.length) else {
+                    table.skip(property)?;
+                    continue;
+                };
+                let place = table.place();
+                let corners = table.count(length)?;
+                if corners < 3 {
+                    return Err(place.fault(Problem::FewCorners(corners as usize)));
+                }
+                polygon.clear();
+                for _ in 0..corners {
+                    let place = table.place();
+                    let index = table.number(property.scalar)?;
+                    if !(0.0..=f64::from(u32::MAX)).contains(&index) || index.fract() != 0.0 {
+                        let problem =
+                            Problem::Index { index: index as i64, count: self.positions.len(), table: "vertices" };
+                        return Err(place.fault(problem));
+                    }
+                    polygon.push(index as u32);
+                }
+                self.triangles.extend(fan(&polygon));
+            }
+        }
+        Ok(())
+    }
+
+    fn into_mesh<T: Table>(self, table: &T) -> Result<Mesh, Fault> {
+        let count = self.positions.len();
+        // Faces may stand before the vertices, so that indices can only be checked here.
+        if let Some(&index) = self.triangles.iter().flatten().find(|&&index| index as usize >= count) {
+            return Err(table.place().fault(Problem::Index { index: index.into(), count, table: "vertices" }));
+        }
+        let parameters_are_finite = self.parameters.iter().all(|parameter| parameter.is_finite());
+        let parameters = if parameters_are_finite { self.parameters } else { Vec::new() };
+        Ok(Mesh {
+            corner_normals: per_corner(&self.triangles, &self.normals, count),
+            corner_parameters: per_corner(&self.triangles, &parameters, count),
+            vertices: self.positions,
+            triangles: self.triangles,
+            surfaces: Vec::new(),
+        })
+    }
+}
+
+/// A table per vertex as a table per corner; empty unless all `vertices` have an entry.
+fn per_corner<T: Copy>(triangles: &[[u32; 3]], per_vertex: &[T], vertices: usize) -> Vec<[T; 3]> {
+    if per_vertex.len() != vertices {
+        return Vec::new();
+    }
+    triangles.iter().map(|triangle| triangle.map(|vertex| per_vertex[vertex as usize])).collect()
+}
+
+/// The little-endian form of the positions and triangles of `mesh`, in double precision.
+pub(super) fn print(mesh: &Mesh) -> Vec<u8> {
+    let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\ncomment by PERIS\n\
+         element vertex {vertices}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {triangles}\nproperty list uchar uint vertex_indices\nend_header\n"
+    );
+    let mut bytes = header.into_bytes();
+    bytes.reserve(vertices * 24 + triangles * 13);
+    for value in mesh.vertices.iter().flat_map(|position| position.to_array()) {
+        bytes.extend_from_slice(&value.to_le_bytes());
+    }
+    for triangle in &mesh.triangles {
+        bytes.push(3);
+        triangle.iter().for_each(|vertex| bytes.extend_from_slice(&vertex.to_le_bytes()));
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::check::tests::tetrahedron;
+    use super::*;
+
+    const TEXT: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property list uchar int extra\nproperty float confidence\nelement face 2\nproperty uchar flags\n\
+        property list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n\
+        0 0 0 0 9\n1 0 0 2 7 7 9\n1 1 0 0 9\n0 1 0 1 5 9\n1 4 0 1 2 3\n1 3 0 1 2\n5\n";
+
+    #[test]
+    fn text_with_lists_polygons_and_foreign_elements_is_read() {
+        let mesh = parse(TEXT.as_bytes()).unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
+        assert_eq!(mesh.vertices[2], DVec3::new(1.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn both_byte_orders_give_the_same_mesh() {
+        let little = print(&tetrahedron());
+        let header = little.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+        let mut big = String::from_utf8(little[..header].to_vec()).unwrap().replace("little", "big").into_bytes();
+        for value in little[header..header + 96].chunks(8) {
+            big.extend(value.iter().rev());
+        }
+        for face in little[header + 96..].chunks(13) {
+            big.push(face[0]);
+            face[1..].chunks(4).for_each(|index| big.extend(index.iter().rev()));
+        }
+        assert_eq!(parse(&little).unwrap(), tetrahedron());
+        assert_eq!(parse(&big).unwrap(), tetrahedron());
+    }
+
+    #[test]
+    fn normals_and_texture_coordinates_go_to_the_corners() {
+        let text = "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nproperty float nx\r\n\
+            property float ny\r\nproperty float nz\r\nproperty float s\r\nproperty float t\r\nelement face 1\r\n\
+            property list uchar int vertex_index\r\nend_header\r\n0 0 0 0 0 2 0 0\r\n1 0 0 0 0 1 1 0\r\n0 1 0 0 0 1 0 1\r\n3 0 1 2\r\n";
+        let mesh = parse(text.as_bytes()).unwrap();
+        assert_eq!(mesh.corner_normals, [[DVec3::Z; 3]]);
+        assert_eq!(mesh.corner_parameters, [[DVec2::ZERO, DVec2::X, DVec2::Y]]);
+    }
+
+    #[test]
+    fn faults_name_line_or_byte() {
+        let fault = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
+        assert_eq!(fault("plx\n"), "line 1: expected ply, found `plx`");
+        assert_eq!(fault(&TEXT.replace("float y", "quad y")), "line 6: expected a number type, found `quad`");
+        assert_eq!(
+            fault(&TEXT.replace("property float z\n", "")),
+            "line 15: ends where the vertex properties x, y and z is expected"
+        );
+        assert_eq!(
+            fault(&TEXT.replace("1 0 0 2 7 7 9", "1 zero 0 2 7 7 9")),
+            "line 17: expected a number, found `zero`"
+        );
+        assert_eq!(
+            fault(&TEXT.replace("1 3 0 1 2\n", "1 2 0 1\n")),
+            "line 21: a face needs at least 3 corners, this one has 2"
+        );
+        assert_eq!(fault(&TEXT.replace("1 3 0 1 2\n", "1 3 0 1 -2\n")), "line 21: index -2 is outside the 4 vertices");
+        assert_eq!(fault("ply\nformat ascii 1.0\nelement vertex 3\n"), "line 4: ends where end_header is expected");
+        let short = print(&tetrahedron());
+        let fault = parse(&short[..short.len() - 1]).unwrap_err();
+        assert_eq!(fault.to_string(), format!("byte {}: ends where a number is expected", short.len() - 4));
+    }
+
+    #[test]
+    fn absurd_counts_are_refused_before_anything_is_reserved() {
+        for absurd in ["4294967295", "18446744073709551615"] {
+            let fault = parse(TEXT.replace("vertex 4", &format!("vertex {absurd}")).as_bytes()).unwrap_err();
+            assert!(matches!(fault.problem, Problem::TooMany { .. }), "{fault}");
+        }
+    }
+}

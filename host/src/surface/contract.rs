@@ -1,0 +1,93 @@
+//! What every surface must keep, checked for one of each kind.
+
+use glam::{DAffine3, DVec2, DVec3};
+
+use super::*;
+
+fn members() -> Vec<(&'static str, Box<dyn Surface>)> {
+    let sphere = Sphere::new(DVec3::new(1.0, -2.0, 0.5), 3.0);
+    let skewed = DAffine3::from_cols_array(&[1.0, 0.2, 0.0, -0.3, 0.8, 0.1, 0.0, 0.5, 1.3, 4.0, 5.0, 6.0]);
+    let mirrored = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 2.0));
+    let mut members: Vec<(&'static str, Box<dyn Surface>)> = vec![
+        ("sphere", Box::new(sphere.clone())),
+        ("skewed sphere", Box::new(Placed::new(sphere.clone(), skewed))),
+        ("mirrored sphere", Box::new(Placed::new(sphere, mirrored))),
+        (
+            "parallelogram",
+            Box::new(Parallelogram::new(DVec3::ONE, DVec3::new(2.0, 0.1, 0.0), DVec3::new(0.3, 1.0, 0.4))),
+        ),
+    ];
+    for patch in teapot() {
+        members.push(("patch of the teapot", Box::new(patch)));
+    }
+    members
+}
+
+fn samples(surface: &dyn Surface, count: usize) -> Vec<DVec2> {
+    let [low, high] = surface.domain();
+    let at = |k: usize| k as f64 / (count - 1) as f64;
+    let grid = (0..count * count).map(|k| DVec2::new(at(k % count), at(k / count)));
+    grid.map(|f| DVec2::new(between(low.x, high.x, f.x), between(low.y, high.y, f.y))).collect()
+}
+
+#[test]
+fn derivatives_agree_with_differences_of_points() {
+    for (name, surface) in members() {
+        for uv in samples(&surface, 7) {
+            let [low, high] = surface.domain();
+            for (axis, derivative) in [DVec2::X, DVec2::Y].into_iter().zip(surface.derivatives(uv)) {
+                let h = (high - low) * axis * 1e-5;
+                let (from, to) = ((uv - h).max(low), (uv + h).min(high));
+                let middle = surface.derivatives((from + to) * 0.5);
+                let expected = (surface.point(to) - surface.point(from)) / (to - from).dot(axis);
+                let derivative = if from == uv || to == uv { middle[axis.y as usize] } else { derivative };
+                assert!((derivative - expected).length() < 1e-6, "{name} at {uv}: {derivative} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn normals_are_unit_perpendicular_and_on_the_side_of_du_x_dv() {
+    for (name, surface) in members() {
+        for uv in samples(&surface, 9) {
+            let normal = surface.normal(uv);
+            let [du, dv] = surface.derivatives(uv);
+            assert!((normal.length() - 1.0).abs() < 1e-14, "{name} at {uv}: {normal}");
+            assert!(
+                normal.dot(du).abs() <= 1e-12 * du.length() && normal.dot(dv).abs() <= 1e-12 * dv.length(),
+                "{name} at {uv}"
+            );
+            assert!(du.cross(dv).dot(normal) >= 0.0, "{name} at {uv}");
+        }
+    }
+}
+
+#[test]
+fn normals_at_the_rim_of_the_domain_are_limits_of_inner_ones() {
+    for (name, surface) in members() {
+        let [low, high] = surface.domain();
+        for uv in samples(&surface, 9) {
+            let inward = uv + ((low + high) * 0.5 - uv) * 1e-7;
+            let gap = (surface.normal(uv) - surface.normal(inward)).length();
+            assert!(gap < 1e-4, "{name} at {uv}: {} {}", surface.normal(uv), surface.normal(inward));
+        }
+    }
+}
+
+#[test]
+fn the_nearest_point_of_a_point_just_off_the_surface_is_where_it_came_from() {
+    for (name, surface) in members() {
+        let [low, high] = surface.domain();
+        for uv in samples(&surface, 6) {
+            for height in [-1e-3, 0.0, 1e-3] {
+                let point = surface.point(uv) + surface.normal(uv) * height;
+                let guess = (uv + (high - low) * 0.01).min(high);
+                let found = surface.nearest(point, guess);
+                assert!(found.cmpge(low).all() && found.cmple(high).all(), "{name}: {found}");
+                let distance = surface.point(found).distance(point);
+                assert!(distance <= height.abs() + 1e-9, "{name} at {uv}: {distance} for {height}");
+            }
+        }
+    }
+}

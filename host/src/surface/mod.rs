@@ -1,0 +1,97 @@
+//! Surfaces that are known exactly, and the meshes that approximate them to a tolerance.
+
+mod accuracy;
+mod bezier;
+mod border;
+mod nearest;
+mod parallelogram;
+mod patches;
+mod placed;
+mod sphere;
+mod teapot;
+mod tessellation;
+
+pub use accuracy::{Accuracy, chord_error};
+pub use bezier::BezierPatch;
+pub use nearest::nearest_from;
+pub use parallelogram::{Parallelogram, box_faces, ground};
+pub use patches::{PatchError, PatchProblem, PatchSet};
+pub use placed::Placed;
+pub use sphere::Sphere;
+pub use teapot::{teapot, teapot_parts};
+pub use tessellation::{TessellationError, Tolerance, tessellate};
+
+use glam::{DVec2, DVec3};
+
+/// A piece of a surface over a rectangle of parameters (u, v), with du x dv pointing outwards.
+///
+/// Pieces that meet must agree bit by bit on the points of the common side at 0, 1/4, 1/2, 3/4 and 1 of its length in
+/// parameters: that is how [`tessellate`] knows that they meet.
+pub trait Surface: Sync {
+    /// The lowest and the highest parameters, `[(u0, v0), (u1, v1)]`.
+    fn domain(&self) -> [DVec2; 2];
+
+    /// The point at `uv`, which is in the domain; model units.
+    fn point(&self, uv: DVec2) -> DVec3;
+
+    /// The derivatives of the point by u and by v; either may vanish.
+    fn derivatives(&self, uv: DVec2) -> [DVec3; 2];
+
+    /// The outward unit normal; where the derivatives do not determine it, its limit from the inside of the domain.
+    fn normal(&self, uv: DVec2) -> DVec3;
+
+    /// The parameters of a point of the surface that is nearest to `point`, near `guess` if there are several.
+    fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2;
+}
+
+impl<S: Surface + ?Sized> Surface for &S {
+    fn domain(&self) -> [DVec2; 2] {
+        (**self).domain()
+    }
+
+    fn point(&self, uv: DVec2) -> DVec3 {
+        (**self).point(uv)
+    }
+
+    fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
+        (**self).derivatives(uv)
+    }
+
+    fn normal(&self, uv: DVec2) -> DVec3 {
+        (**self).normal(uv)
+    }
+
+    fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
+        (**self).nearest(point, guess)
+    }
+}
+
+impl<S: Surface + ?Sized> Surface for Box<S> {
+    fn domain(&self) -> [DVec2; 2] {
+        (**self).domain()
+    }
+
+    fn point(&self, uv: DVec2) -> DVec3 {
+        (**self).point(uv)
+    }
+
+    fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
+        (**self).derivatives(uv)
+    }
+
+    fn normal(&self, uv: DVec2) -> DVec3 {
+        (**self).normal(uv)
+    }
+
+    fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
+        (**self).nearest(point, guess)
+    }
+}
+
+/// The parameter at `fraction` of the way from `low` to `high`; exact at both ends, and the same from either end.
+fn between(low: f64, high: f64, fraction: f64) -> f64 {
+    low * (1.0 - fraction) + high * fraction
+}
+
+#[cfg(test)]
+mod contract;
