@@ -1,11 +1,11 @@
 //! The process `ps340`: arguments, log and exit codes around the shell.
 
-use clap::Parser;
 use crate::{
     line::Address,
     machine::{PlainText, Settings},
     shell::{Clock, End, Operator, Options, run},
 };
+use clap::Parser;
 use std::{
     io::{IsTerminal, Write},
     process::ExitCode,
@@ -16,10 +16,13 @@ use std::{
 /// Hosts attach to the host line and send command text or packets; see PROTOCOL.md. An operator turns dials,
 /// presses keys and takes pictures by text lines; give 'help' to the operator line for the list.
 #[derive(Parser, Debug)]
-#[command(version, after_help = "Exit codes: 0 ended by 'quit' or with the operator on standard input, 1 cannot listen,\n\
+#[command(
+    version,
+    after_help = "Exit codes: 0 ended by 'quit' or with the operator on standard input, 1 cannot listen,\n\
                                  2 usage, 130 interrupted by a signal.\n\
                                  The environment variable PS340_LOG sets what is logged on standard error \
-                                 (e.g. 'debug', 'warn').")]
+                                 (e.g. 'debug', 'warn')."
+)]
 struct Arguments {
     /// Where hosts attach: tcp:HOST:PORT (port 0 takes a free one) or unix:PATH. May be given several times.
     #[arg(long, value_name = "ADDRESS", default_value = "tcp:127.0.0.1:3400")]

@@ -207,4 +207,3 @@ fn wait(child: &mut Child) -> Option<i32> {
     }
     panic!("the process did not end within {PATIENCE:?}");
 }
-

@@ -58,8 +58,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !(arguments.tolerance > 0.0 && arguments.tolerance <= 1.0) {
         return usage("--tolerance is a part of the diagonal, above 0 and at most 1");
     }
-    let drawing =
-        Drawing { lines: arguments.lines, crease_degrees: arguments.crease, tolerance: arguments.tolerance };
+    let drawing = Drawing { lines: arguments.lines, crease_degrees: arguments.crease, tolerance: arguments.tolerance };
     let scene = load(&arguments.script)?.scene;
     let mut emulator = if arguments.to.is_none() { Some(Emulator::start()?) } else { None };
     let line = match (&arguments.to, &emulator) {

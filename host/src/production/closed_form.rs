@@ -34,5 +34,8 @@ pub fn view_of_dials(camera: &Camera, center: DVec3, diagonal: f64, turns: &[f64
 
 /// The largest difference between two matrices in rows x, y and w, relative to the largest element of each row.
 pub fn difference(a: &DMat4, b: &DMat4) -> f64 {
-    [0, 1, 3].map(|row| (a.row(row) - b.row(row)).abs().max_element() / b.row(row).abs().max_element()).into_iter().fold(0.0, f64::max)
+    [0, 1, 3]
+        .map(|row| (a.row(row) - b.row(row)).abs().max_element() / b.row(row).abs().max_element())
+        .into_iter()
+        .fold(0.0, f64::max)
 }

@@ -89,7 +89,7 @@ impl Shape {
     ///
     /// # Errors
     /// [`ShapeError`] if the file cannot be read, or the tolerance asks for too many triangles.
-    pub(super) fn mesh(&self, chord: f64) -> Result<Mesh, ShapeError> {
+    pub fn mesh(&self, chord: f64) -> Result<Mesh, ShapeError> {
         let tolerance = Tolerance::new(chord, LARGEST_TURN_DEGREES);
         match self {
             Shape::Bunny => Ok(mesh::bunny()),

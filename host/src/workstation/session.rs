@@ -8,7 +8,9 @@ use protocol::{
     command::Command,
     raster::RasterCommand,
     record::EncodeError,
-    wire::{MessageError, MessageForm, MessageReader, PREFERRED_PAYLOAD, Route, write_commands, write_packet, write_raster},
+    wire::{
+        MessageError, MessageForm, MessageReader, PREFERRED_PAYLOAD, Route, write_commands, write_packet, write_raster,
+    },
 };
 use std::{
     collections::VecDeque,

@@ -141,7 +141,10 @@ fn vectors(
     shown: &mut Shown,
 ) -> Result<VectorList, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
-    let coarse = object.shape.mesh(drawing.tolerance * object.shape.extent().unwrap_or(1.0)).map_err(|e| failed(e.to_string()))?;
+    let coarse = object
+        .shape
+        .mesh(drawing.tolerance * object.shape.extent().unwrap_or(1.0))
+        .map_err(|e| failed(e.to_string()))?;
     let mesh = placed(coarse, &object.transform);
     let selection = match drawing.lines {
         Lines::Grid => Selection::grid(drawing.crease_degrees),

@@ -91,13 +91,23 @@ impl Draft {
         }
     }
 
-    fn define(self, names: &HashSet<Name>, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<ObjectId, Message> {
+    fn define(
+        self,
+        names: &HashSet<Name>,
+        memory: &mut MassMemory,
+        messages: &mut Vec<Message>,
+    ) -> Result<ObjectId, Message> {
         let path = self.path.clone();
         let group = self.group(names, memory, messages)?;
         Ok(memory.define_node(&path, group)?)
     }
 
-    fn group(self, names: &HashSet<Name>, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<Node, Message> {
+    fn group(
+        self,
+        names: &HashSet<Name>,
+        memory: &mut MassMemory,
+        messages: &mut Vec<Message>,
+    ) -> Result<Node, Message> {
         let mut members = Vec::with_capacity(self.members.len());
         for item in self.members {
             let member = match item {
@@ -106,7 +116,9 @@ impl Draft {
                 Item::Object(name, object) => {
                     let made = node(object, &mut |reference| memory.object(&scoped(&self.path, reference, names)));
                     match (made, name) {
-                        (Ok(node), Some(name)) => memory.define_node(&name, node).map(Member::Named).map_err(Message::from),
+                        (Ok(node), Some(name)) => {
+                            memory.define_node(&name, node).map(Member::Named).map_err(Message::from)
+                        }
                         (made, _) => made.map(Member::Unnamed),
                     }
                 }

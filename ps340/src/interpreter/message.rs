@@ -1,11 +1,7 @@
 //! The numbered messages of the machine.
 
 use crate::{memory::Refusal, port::Fault, structure::NodeFault, traversal::Trouble};
-use protocol::{
-    Name,
-    command::CommandError,
-    record::BinaryError,
-};
+use protocol::{Name, command::CommandError, record::BinaryError};
 
 /// Which of the three instances ERROR, WARNING and INFORMATION passes a message on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -55,7 +55,10 @@ impl Interpreter {
         match command {
             Command::Define { name, object } => self.define(name, object, memory, messages)?,
             Command::EndStructure => {
-                let done = self.open.pop().ok_or_else(|| Message::Structure("END_STRUCTURE without BEGIN_STRUCTURE".into()))?;
+                let done = self
+                    .open
+                    .pop()
+                    .ok_or_else(|| Message::Structure("END_STRUCTURE without BEGIN_STRUCTURE".into()))?;
                 match self.open.last_mut() {
                     Some(outer) => outer.push_structure(done),
                     None => done.commit(memory, messages)?,
@@ -78,7 +81,9 @@ impl Interpreter {
             }
             Command::RemoveFrom { name, from } => {
                 // Removing what is not there is normal for the clients of the time.
-                if let (Some(member), Some(group)) = (memory.objects.find(name.as_str()), memory.objects.find(from.as_str())) {
+                if let (Some(member), Some(group)) =
+                    (memory.objects.find(name.as_str()), memory.objects.find(from.as_str()))
+                {
                     memory.structures.exclude(member, group);
                 }
             }

@@ -3,9 +3,9 @@
 mod host;
 mod operator;
 
-pub use protocol::address::{Address, AddressError};
 pub use host::{MAX_WAITING_BYTES, Writer, serve_hosts};
 pub use operator::{OperatorLine, serve_operators, serve_stdio};
+pub use protocol::address::{Address, AddressError};
 
 use std::io;
 use tokio::{

@@ -1,8 +1,8 @@
 //! One host line: bytes into commands, raster operations and terminal text.
 
 use super::Machine;
-use crate::line::LineId;
 use crate::interpreter::{Interpreter, Message};
+use crate::line::LineId;
 use protocol::{
     command::{BinaryDecoder, CommandReader},
     raster,

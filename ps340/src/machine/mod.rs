@@ -15,8 +15,8 @@ use crate::{
     calligraphic::Beam,
     functions::devices::initial,
     interpreter::{Class, Message},
-    memory::MassMemory,
     line::LineId,
+    memory::MassMemory,
     picture::Picture,
     port::{Effect, ObjectId},
     raster::FrameBuffer,
@@ -164,7 +164,9 @@ impl Machine {
         self.frame += 1;
         self.work_left = WORK_PER_FRAME;
         if self.reports_left == 0 {
-            tracing::warn!("more than {REPORTS_PER_FRAME} messages in one frame: the rest did not reach ERROR and WARNING");
+            tracing::warn!(
+                "more than {REPORTS_PER_FRAME} messages in one frame: the rest did not reach ERROR and WARNING"
+            );
         }
         self.reports_left = REPORTS_PER_FRAME;
         let emissions = self.devices.frame();

@@ -135,7 +135,8 @@ fn a_reference_inside_a_structure_means_what_is_named_there_first() {
 
 #[test]
 fn send_inside_an_open_structure_acts_at_once_on_a_full_path() {
-    let mut machine = told("A := BEGIN_STRUCTURE T := TRANSLATE BY 0,0,0; VECTOR_LIST DOTS 0,0,0; END_STRUCTURE; DISPLAY A;");
+    let mut machine =
+        told("A := BEGIN_STRUCTURE T := TRANSLATE BY 0,0,0; VECTOR_LIST DOTS 0,0,0; END_STRUCTURE; DISPLAY A;");
     tell(&mut machine, "B := BEGIN_STRUCTURE ROTATE IN X 10; SEND V3D(0.25,0,0) TO <1>A.T;");
     assert_eq!(strokes(&mut machine)[0].start, [0.25, 0.0]);
     tell(&mut machine, "END_STRUCTURE;");

@@ -126,12 +126,8 @@ fn text(characters: &mut Characters, input: Input, value: Value) -> Result<(), N
         (Input::Position, Value::Vector2(v)) => Ok(characters.position = v.extend(0.0)),
         (Input::Step, Value::Vector2(v)) => Ok(characters.step = v),
         (Input::Clear, _) => Ok(text.clear()),
-        (Input::Delete, Value::Integer(n)) => {
-            Ok(text.truncate(end.saturating_sub(usize::try_from(n).unwrap_or(0))))
-        }
-        (Input::Substitute, Value::String(new)) => {
-            splice(&mut text, 0, &new, input).map(|()| text.truncate(new.len()))
-        }
+        (Input::Delete, Value::Integer(n)) => Ok(text.truncate(end.saturating_sub(usize::try_from(n).unwrap_or(0)))),
+        (Input::Substitute, Value::String(new)) => splice(&mut text, 0, &new, input).map(|()| text.truncate(new.len())),
         (Input::Append, Value::String(new)) => splice(&mut text, end, &new, input),
         (Input::Last, Value::String(new)) => splice(&mut text, end.saturating_sub(1), &new, input),
         (Input::Number(n), Value::String(new)) => match (n as usize).checked_sub(1).filter(|i| *i <= end) {
@@ -153,4 +149,3 @@ fn splice(text: &mut Vec<u8>, at: usize, new: &[u8], input: Input) -> Result<(),
     text.splice(at..end, new.iter().copied());
     Ok(())
 }
-

@@ -102,7 +102,8 @@ impl Operation {
             Operate::Matrix4x3(m) => Operation::Affine(m),
             Operate::Matrix4(m) => Operation::Projective(m),
             Operate::Look { at, from, up } => Operation::Affine(
-                matrices::look(at, from, up.unwrap_or(at + DVec3::Y)).ok_or("LOOK needs FROM and AT apart, and UP across the line of sight")?,
+                matrices::look(at, from, up.unwrap_or(at + DVec3::Y))
+                    .ok_or("LOOK needs FROM and AT apart, and UP across the line of sight")?,
             ),
             Operate::Window { x, y, boundaries } => {
                 let b = boundaries.unwrap_or(DEFAULT_BOUNDARIES);
@@ -112,7 +113,9 @@ impl Operation {
             Operate::FieldOfView { angle, boundaries } => {
                 let b = boundaries.unwrap_or(DEFAULT_BOUNDARIES);
                 let view = matrices::field_of_view(angle, [b.front, b.back]);
-                Operation::Projective(view.ok_or("FIELD_OF_VIEW needs an angle between 0 and 180 and FRONT before BACK")?)
+                Operation::Projective(
+                    view.ok_or("FIELD_OF_VIEW needs an angle between 0 and 180 and FRONT before BACK")?,
+                )
             }
             Operate::Viewport { horizontal, vertical, intensity } => {
                 Operation::Viewport { horizontal, vertical, intensity }
@@ -132,10 +135,9 @@ impl Node {
             + match self {
                 Node::Nil | Node::Operate { .. } => 0,
                 Node::Instance(members) => members.len() * MEMBER_BYTES,
-                Node::Group(members) => members
-                    .iter()
-                    .map(|m| MEMBER_BYTES + if let Member::Unnamed(n) = m { n.bytes() } else { 0 })
-                    .sum(),
+                Node::Group(members) => {
+                    members.iter().map(|m| MEMBER_BYTES + if let Member::Unnamed(n) = m { n.bytes() } else { 0 }).sum()
+                }
                 Node::Vectors(list) => list.points.len() * size_of::<[f32; 4]>() + list.lines.len(),
                 Node::Characters(characters) => characters.text.len(),
             }

@@ -205,10 +205,8 @@ fn an_operate_node_with_a_descendant_spares_its_siblings() {
     let data = list(VectorClass::Dots, &[[0.0; 3]]);
     structures.define(below, data.clone());
     let shift = Operation::Translate(DVec3::new(0.5, 0.0, 0.0));
-    let members = vec![
-        Member::Unnamed(Node::Operate { operation: shift, descendant: Some(below) }),
-        Member::Unnamed(data),
-    ];
+    let members =
+        vec![Member::Unnamed(Node::Operate { operation: shift, descendant: Some(below) }), Member::Unnamed(data)];
     structures.define(group, Node::Group(members));
     structures.display(group);
     let strokes = update(&structures, &[]).strokes;
@@ -225,7 +223,8 @@ fn the_matrix_of_an_xform_node_is_the_product_of_what_is_above() {
     let members = vec![operate(fov(60.0, 1.0, 9.0)), operate(turn), Member::Named(node)];
     structures.define(group, Node::Group(members));
     structures.display(group);
-    let expected = matrices::field_of_view(60.0, [1.0, 9.0]).unwrap() * DMat4::from_mat3(matrices::rotation(Axis::Y, 30.0));
+    let expected =
+        matrices::field_of_view(60.0, [1.0, 9.0]).unwrap() * DMat4::from_mat3(matrices::rotation(Axis::Y, 30.0));
     let found = update(&structures, &[node]).transforms[&node];
     assert!(found.abs_diff_eq(expected, 1e-15));
 }
