@@ -154,9 +154,10 @@ impl Division<'_> {
         for reference in references {
             // Bit `axis` is set where the part reaches below, or above, the middle plane.
             let (mut below, mut above) = (0, 0);
-            for axis in 0..3 {
-                below |= usize::from(f64::from(reference.bounds.low[axis]) <= middle[axis] + FAT) << axis;
-                above |= usize::from(f64::from(reference.bounds.high[axis]) >= middle[axis] - FAT) << axis;
+            let sides = reference.bounds.low.iter().zip(&reference.bounds.high).zip(&middle);
+            for (axis, ((&low, &high), &middle)) in sides.enumerate() {
+                below |= usize::from(f64::from(low) <= middle + FAT) << axis;
+                above |= usize::from(f64::from(high) >= middle - FAT) << axis;
             }
             if below & above == 0 {
                 eighths[above].push(*reference);
