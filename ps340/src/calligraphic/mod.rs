@@ -86,8 +86,9 @@ impl Beam {
     fn screen(&self) -> Screen {
         let size = self.size.clamp(1, MAX_SIZE);
         let half = f64::from(size) / 2.0;
-        // `max` and `min` pass over a NaN.
-        let spot = (f64::from(self.spot_radius).min(SPOT_CEILING) * half).max(SPOT_FLOOR);
+        let radius = if self.spot_radius.is_nan() { 0.0 } else { f64::from(self.spot_radius) };
+        // The floor comes last: it wins on a screen of a few pixels.
+        let spot = (radius.clamp(0.0, SPOT_CEILING) * half).max(SPOT_FLOOR);
         let dwell = (f64::from(self.dot_length) * half / spot).clamp(0.0, 1e6);
         Screen { size: size as usize, half, spot, dwell: if dwell.is_nan() { 0.0 } else { dwell } }
     }
