@@ -7,7 +7,7 @@
 /// crossings get brighter and never change their hue; red light upon green light is yellow.
 ///
 /// With the default gain the centre of one vector of full intensity reaches 0.67 (byte 213 of sRGB), of two
-/// 0.89 (241), of three 0.96 (250), of one at half the intensity 0.42 (174).
+/// 0.89 (242), of three 0.96 (251), of one at half the intensity 0.42 (174).
 ///
 /// # Source
 /// The exponential response is that of film and of many tone reproductions; holding the ratios is ours.

@@ -86,8 +86,9 @@ impl Beam {
     fn screen(&self) -> Screen {
         let size = self.size.clamp(1, MAX_SIZE);
         let half = f64::from(size) / 2.0;
-        // `max` and `min` pass over a NaN.
-        let spot = (f64::from(self.spot_radius).min(SPOT_CEILING) * half).max(SPOT_FLOOR);
+        let radius = if self.spot_radius.is_nan() { 0.0 } else { f64::from(self.spot_radius) };
+        // The floor comes last: it wins on a screen of a few pixels.
+        let spot = (radius.clamp(0.0, SPOT_CEILING) * half).max(SPOT_FLOOR);
         let dwell = (f64::from(self.dot_length) * half / spot).clamp(0.0, 1e6);
         Screen { size: size as usize, half, spot, dwell: if dwell.is_nan() { 0.0 } else { dwell } }
     }
@@ -96,7 +97,8 @@ impl Beam {
 /// Draws `strokes` in their order and returns the light of every pixel.
 ///
 /// A stroke with a number that is not finite, or farther than [`FAR`] from the screen, is left out.
-/// Strokes that leave the square -1..=1 are cut at its edge together with their glow. Negative intensities and colours count as 0.
+/// Strokes that leave the square -1..=1 are cut at its edge together with their glow. Negative intensities
+/// and colours count as 0.
 ///
 /// The light is the same for any number of threads: each pixel belongs to one task, which adds the strokes
 /// in their order.
@@ -115,8 +117,8 @@ pub fn draw(beam: &Beam, strokes: &[Stroke]) -> Light {
 
 /// Adds the light of some strokes to a band of rows, with the widest instructions of the processor.
 ///
-/// Measured: twice as fast as without AVX2. The bits of the result are the same, because no instruction
-/// fuses or reorders the operations.
+/// Measured: 1.2 times as fast with AVX2 for strokes of 10 pixels, 1.4 for 3. The bits of the result are the
+/// same, because no operation is fused or reordered.
 fn write_band(screen: &Screen, strokes: &[Stroke], members: &[u32], rows: &mut [f32], row: usize, top: usize) {
     #[cfg(target_arch = "x86_64")]
     {

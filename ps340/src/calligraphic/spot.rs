@@ -21,11 +21,11 @@ pub(super) const REACH: f32 = 4.5;
 /// Part of a whole Gaussian that lies beyond [`REACH`] on one side.
 const TAIL: f32 = 3.397_673e-6;
 /// Density of a whole Gaussian at [`REACH`].
-const EDGE: f32 = 1.598_374_1e-5;
+const EDGE: f32 = 1.598_374e-5;
 /// One over the integral of a whole Gaussian between -[`REACH`] and [`REACH`].
 const WHOLE: f32 = 1.0 + 2.0 * TAIL;
 /// 1 / sqrt(2 pi).
-const DENSITY: f32 = 0.398_942_28;
+const DENSITY: f32 = 0.398_942_3;
 
 /// Light across a long stroke of intensity 1 at distance `v` from it: 1 at the centre, 0 beyond the reach.
 #[inline(always)]
