@@ -65,7 +65,7 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluate
     drop(engine);
     outcome.map_err(|e| error::place(&e, text, name))?;
     let scene = state.borrow().scene.clone();
-    scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source })?;
+    scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
     let printed = printed.borrow().clone();
     Ok(Evaluated { scene, name: name.to_owned(), printed })
 }

@@ -32,7 +32,7 @@ pub enum ScriptError {
         /// The script.
         file: String,
         /// What is wrong.
-        source: SceneError,
+        source: Box<SceneError>,
     },
 }
 

@@ -167,19 +167,22 @@ impl Study {
 
     /// The study as a plot of the errors against the run time.
     pub fn plot(&self, title: &str) -> Plot {
+        // All curves have their points at the same run times: one row of labels serves them all.
+        let label =
+            |i: usize, row: &Row| if i + 1 == self.error_names.len() { short(row.setting) } else { String::new() };
         let series = self.error_names.iter().enumerate().map(|(i, name)| Series {
             name: name.clone(),
             points: self
                 .rows
                 .iter()
-                .map(|row| Point { x: row.seconds, y: row.errors[i], label: short(row.setting) })
+                .map(|row| Point { x: row.seconds, y: row.errors[i], label: label(i, row) })
                 .collect(),
         });
         Plot {
             title: title.to_owned(),
             x_label: "run time (s)".into(),
             y_label: "error".into(),
-            note: format!("each point is labelled with its {}", self.setting),
+            note: format!("numbers at the last curve, for the points above too: {}", self.setting),
             series: series.collect(),
         }
     }

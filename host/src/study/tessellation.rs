@@ -9,13 +9,13 @@ use crate::scene::{Prepared, Scene};
 use std::time::Instant;
 
 /// The coarsest tolerance, as a fraction of the diagonal of the largest curved object.
-const COARSEST: f64 = 1.0 / 20.0;
+const COARSEST: f64 = 1.0 / 60.0;
 /// How much finer the next setting is.
-const STEP: f64 = 3.0;
+const STEP: f64 = 2.0;
 /// How much finer the reference is than the finest setting.
-const REFERENCE_STEP: f64 = 9.0;
+const REFERENCE_STEP: f64 = 8.0;
 
-/// Tessellation tolerance: each a third of the one before, against a ninth of the last.
+/// Tessellation tolerance: each a half of the one before, against an eighth of the last.
 struct Tessellation {
     scene: Scene,
     options: Options,
