@@ -1,4 +1,8 @@
 //! Rays per second: the octree, its two walks, and others on the same rays in the same run.
+//!
+//! First proves that the hits agree, then takes the times: processor seconds of one thread, median of five passes that
+//! alternate between the rivals. `RAYS_SIDE` sets the width of the picture (512); `RAYS_MESHES` names OBJ files,
+//! separated by colons, to measure beside the meshes made here.
 
 #[path = "rays/rivals.rs"]
 mod rivals;
@@ -8,7 +12,7 @@ mod sets;
 mod shapes;
 
 use std::hint::black_box;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use host::octree::{Octree, Settings, Walk};
 use rayon::prelude::*;
@@ -19,97 +23,168 @@ use shapes::Shape;
 /// Passes over each set; the median counts.
 const PASSES: usize = 5;
 
+/// One ray in so many is walked from cell to cell, which is slow.
+const STRIDE: usize = 8;
+
 fn main() {
-    let side = std::env::var("RAYS_SIDE").ok().and_then(|s| s.parse().ok()).unwrap_or(512);
-    let large = std::env::var("RAYS_LARGE").is_ok();
-    let mut list = vec![shapes::torus(70_000.0), shapes::bumpy(6)];
-    if large {
-        list.push(shapes::bumpy(8));
+    let side = std::env::var("RAYS_SIDE").ok().and_then(|text| text.parse().ok()).unwrap_or(512_usize).max(16);
+    let mut list = vec![shapes::torus(70_000.0), shapes::bumpy(6), shapes::sphere(6)];
+    for path in std::env::var("RAYS_MESHES").unwrap_or_default().split(':').filter(|path| !path.is_empty()) {
+        match shapes::obj(path) {
+            Ok(shape) => list.push(shape),
+            Err(error) => println!("{path}: {error}"),
+        }
     }
-    for shape in list {
-        report(&shape, side);
-    }
+    list.push(shapes::bumpy(8));
+    println!("Mrays/s, one thread except `all`; {} rays a set\n", side * side);
+    list.iter().for_each(|shape| report(shape, side));
+    growth(side);
 }
 
+/// Everything about one mesh.
 fn report(shape: &Shape, side: usize) {
-    let start = Instant::now();
-    let octree = Octree::build(&shape.vertices, &shape.triangles, &Settings::default()).expect("a good mesh");
-    let built = start.elapsed();
-    let s = octree.statistics();
+    let (octree, built) = build(shape);
+    let statistics = octree.statistics();
+    let leading = octree.clone().with_walk(Walk::LeadingDirection);
+    let rivals = [Hierarchy::build(shape, false), Hierarchy::build(shape, true)];
+    println!("{}", shape.name);
     println!(
-        "{}: octree {built:.3?} {:.0} B/tri leaves {} refs {:.2} hist {:?}",
-        shape.name,
-        s.bytes_per_triangle,
-        s.leaves,
-        s.references as f64 / s.triangles as f64,
-        s.depth_histogram
+        "  build: octree {} ({} nodes, {:.2} references a triangle), obvhs BVH2 {}, CWBVH {} (one thread)",
+        cost(built, statistics.bytes, shape),
+        statistics.leaves,
+        statistics.references as f64 / statistics.triangles.max(1) as f64,
+        cost(rivals[0].build, rivals[0].bytes(), shape),
+        cost(rivals[1].build, rivals[1].bytes(), shape),
     );
-    let leading = Octree::build(
-        &shape.vertices,
-        &shape.triangles,
-        &Settings { walk: Walk::LeadingDirection, ..Settings::default() },
-    )
-    .expect("a good mesh");
-    let bvh2 = Hierarchy::build(shape, false);
-    let cwbvh = Hierarchy::build(shape, true);
-    println!(
-        "bvh2 {:.3?} {} B/tri, cwbvh {:.3?} {} B/tri",
-        bvh2.build,
-        bvh2.bytes() / shape.triangles.len(),
-        cwbvh.build,
-        cwbvh.bytes() / shape.triangles.len()
-    );
-    for set in sets::sets(shape, &octree, side) {
-        let singles = Hierarchy::prepare(&set);
-        let mut differ = 0;
-        let mut cells = 0;
-        let mut tris = 0;
-        for (ray, single) in set.rays.iter().zip(&singles) {
-            let (ours, c) = octree.closest_counted(ray, 0.0, set.t_max);
-            cells += c.cells;
-            tris += c.triangles;
-            let theirs = bvh2.closest(*single);
-            differ += usize::from(ours.map(|h| h.triangle) != theirs.map(|h| h.1));
-        }
-        let n = set.rays.len();
-        let fast = rate(n, || run(&octree, &set, 1));
-        let lead = rate(n / 16, || run(&leading, &set, 16));
-        let hier = |h: &Hierarchy| {
-            rate(n, || {
-                singles.iter().filter(|&&r| if set.any { h.occluded(r) } else { h.closest(r).is_some() }).count()
-            })
+    let sets = sets::sets(shape, &octree, side);
+    let embree = rivals::embree(shape, &sets);
+    if let Err(reason) = &embree {
+        println!("  Embree: {reason}");
+    }
+    println!("           octree     all leading    BVH2   CWBVH  Embree | octree/best obvhs, cells, triangles, differ");
+    for (index, set) in sets.iter().enumerate() {
+        let singles = Hierarchy::prepare(set);
+        let differ = disagreements(&octree, &leading, &rivals[0], set, &singles);
+        let count = set.rays.len();
+        let rival = |hierarchy: &Hierarchy| {
+            let hit = |&&ray: &&_| if set.any { hierarchy.occluded(ray) } else { hierarchy.closest(ray).is_some() };
+            singles.iter().filter(hit).count()
         };
-        let b2 = hier(&bvh2);
-        let cw = hier(&cwbvh);
-        let all = rate(n, || set.rays.par_iter().filter(|r| hit(&octree, r, &set)).count());
+        let [fast, slow, binary, wide] = rates(
+            [count, count.div_ceil(STRIDE), count, count],
+            [&|| hits(&octree, set, 1), &|| hits(&leading, set, STRIDE), &|| rival(&rivals[0]), &|| rival(&rivals[1])],
+        );
+        let all = all_threads(&octree, set);
+        let other = embree.as_ref().map_or("-".to_owned(), |rates| format!("{:.2}", rates[index]));
+        let (cells, triangles) = work(&octree, set);
         println!(
-            "{:8} octree {fast:6.2} leading {lead:6.2} bvh2 {b2:6.2} cwbvh {cw:6.2} all {all:6.2} ratio {:.2} differ {differ} cells {:.1} tris {:.1}",
+            "  {:8} {fast:7.2} {all:7.2} {slow:7.2} {binary:7.2} {wide:7.2} {other:>7} | {:.2}, {cells:.1}, {triangles:.1}, {differ}",
             set.name,
-            fast / b2.max(cw),
-            cells as f64 / n as f64,
-            tris as f64 / n as f64
+            fast / binary.max(wide),
         );
     }
+    println!();
 }
 
-#[inline]
+/// How the cost of a ray grows with the number of triangles.
+fn growth(side: usize) {
+    println!(
+        "growth: primary and random rays of a bumpy sphere\n  triangles   build     Mrays/s primary  random   cells a ray"
+    );
+    for divisions in [2, 3, 4, 5, 6, 7, 8] {
+        let shape = shapes::bumpy(divisions);
+        let (octree, built) = build(&shape);
+        let sets = sets::sets(&shape, &octree, side.min(256));
+        let count = sets[0].rays.len();
+        let [primary, random] = rates([count; 2], [&|| hits(&octree, &sets[0], 1), &|| hits(&octree, &sets[3], 1)]);
+        let (cells, _) = work(&octree, &sets[3]);
+        println!("  {:9}  {built:8.3?}  {primary:15.2} {random:7.2}  {cells:12.1}", shape.triangles.len());
+    }
+}
+
+fn build(shape: &Shape) -> (Octree, Duration) {
+    let start = Instant::now();
+    let octree = Octree::build(&shape.vertices, &shape.triangles, &Settings::default()).expect("a sound mesh");
+    (octree, start.elapsed())
+}
+
+fn cost(time: Duration, bytes: usize, shape: &Shape) -> String {
+    format!("{time:.3?} {:.0} B/triangle", bytes as f64 / shape.triangles.len().max(1) as f64)
+}
+
 fn hit(octree: &Octree, ray: &host::octree::Ray, set: &RaySet) -> bool {
     if set.any { octree.occluded(ray, 0.0, set.t_max) } else { octree.closest(ray, 0.0, set.t_max).is_some() }
 }
 
-fn run(octree: &Octree, set: &RaySet, step: usize) -> usize {
-    set.rays.iter().step_by(step).filter(|ray| hit(octree, ray, set)).count()
+fn hits(octree: &Octree, set: &RaySet, stride: usize) -> usize {
+    set.rays.iter().step_by(stride).filter(|ray| hit(octree, ray, set)).count()
 }
 
-/// Millions of rays per second.
-fn rate(rays: usize, mut pass: impl FnMut() -> usize) -> f64 {
+/// Rays for which the octree and the binary hierarchy name different triangles; the two walks must not differ at all.
+fn disagreements(
+    octree: &Octree,
+    leading: &Octree,
+    rival: &Hierarchy,
+    set: &RaySet,
+    singles: &[obvhs::ray::Ray],
+) -> usize {
+    let differs = |(index, (ray, single)): (usize, (&host::octree::Ray, &obvhs::ray::Ray))| {
+        let ours = octree.closest(ray, 0.0, set.t_max);
+        if index % STRIDE == 0 {
+            assert_eq!(ours, leading.closest(ray, 0.0, set.t_max), "the walks disagree on {ray:?}");
+        }
+        ours.map(|hit| hit.triangle) != rival.closest(*single).map(|hit| hit.1)
+    };
+    let differ = set.rays.iter().zip(singles).enumerate().filter(|&pair| differs(pair)).count();
+    assert!(differ * 1000 <= set.rays.len(), "{differ} of {} {} rays differ", set.rays.len(), set.name);
+    differ
+}
+
+/// Nodes visited and triangles tested per ray.
+fn work(octree: &Octree, set: &RaySet) -> (f64, f64) {
+    let (mut cells, mut triangles) = (0, 0);
+    for ray in &set.rays {
+        let (_, count) = octree.closest_counted(ray, 0.0, set.t_max);
+        cells += count.cells;
+        triangles += count.triangles;
+    }
+    let rays = set.rays.len().max(1) as f64;
+    (cells as f64 / rays, triangles as f64 / rays)
+}
+
+/// Millions of rays per second of several rivals, which take turns.
+fn rates<const N: usize>(rays: [usize; N], rivals: [&dyn Fn() -> usize; N]) -> [f64; N] {
+    let mut seconds = [const { Vec::new() }; N];
+    for _ in 0..PASSES {
+        for (rival, seconds) in rivals.iter().zip(&mut seconds) {
+            let start = processor_seconds();
+            black_box(rival());
+            seconds.push(processor_seconds() - start);
+        }
+    }
+    std::array::from_fn(|i| {
+        seconds[i].sort_by(f64::total_cmp);
+        rays[i] as f64 / seconds[i][PASSES / 2].max(1e-9) / 1e6
+    })
+}
+
+/// Millions of rays per second of all threads, by the clock on the wall.
+fn all_threads(octree: &Octree, set: &RaySet) -> f64 {
     let mut seconds: Vec<f64> = (0..PASSES)
         .map(|_| {
             let start = Instant::now();
-            black_box(pass());
+            black_box(set.rays.par_iter().with_min_len(1024).filter(|ray| hit(octree, ray, set)).count());
             start.elapsed().as_secs_f64()
         })
         .collect();
     seconds.sort_by(f64::total_cmp);
-    rays as f64 / seconds[0] / 1e6
+    set.rays.len() as f64 / seconds[PASSES / 2] / 1e6
+}
+
+/// Processor time of this thread where the system tells it, else the time since some moment.
+fn processor_seconds() -> f64 {
+    static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
+    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    nanoseconds.map_or_else(|| START.elapsed().as_secs_f64(), |n| n * 1e-9)
 }

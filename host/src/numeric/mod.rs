@@ -2,4 +2,5 @@
 
 pub mod predicates;
 pub mod ray;
+pub mod sampling;
 pub mod triangle;

@@ -8,6 +8,9 @@ use super::ray::Ray;
 /// Largest magnitude of an origin or a direction component that is looked at; beyond it a ray misses.
 pub const MAX_MAGNITUDE: f64 = 1e150;
 
+/// Slopes below this count as zero, so that no product of slopes and lengths falls below the normal numbers.
+const LEAST_SLOPE: f64 = 1e-100;
+
 /// A ray made ready for many triangles: its longest axis, and the shear that makes it that axis.
 ///
 /// A vertex p becomes q = (p - origin) scaled, with q_x - (d_x/d_z) q_z and q_y - (d_y/d_z) q_z, where z is the
@@ -65,13 +68,17 @@ impl Shear {
             return None;
         }
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        let slope = |axis: usize| {
+            let slope = d[axis] / d[z];
+            if slope.abs() < LEAST_SLOPE { 0.0 } else { slope }
+        };
         Some(Self {
             origin: ray.origin.to_array(),
             scale,
             unscale: scale.recip(),
             axes: [x, y, z],
-            shear_x: d[x] / d[z],
-            shear_y: d[y] / d[z],
+            shear_x: slope(x),
+            shear_y: slope(y),
             length_z: d[z],
         })
     }
@@ -117,8 +124,55 @@ impl Shear {
             return None;
         }
         let whole = first + second + third;
-        let (u, v) = (second / whole, third / whole);
+        // Adding zero turns -0 into 0.
+        let (u, v) = (second / whole + 0.0, third / whole + 0.0);
         let z = (first * a[2] + second * b[2] + third * c[2]) / whole;
         Some(Crossing { t: z * self.unscale / self.length_z, u, v })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::sampling::{Stream, sphere, triangle};
+
+    #[test]
+    fn a_hit_lies_where_its_weights_say() {
+        let mut stream = Stream::new(5, 0);
+        for _ in 0..2000 {
+            let corners = [0; 3].map(|_: i32| sphere(stream.point()));
+            let [u, v] = triangle(stream.point());
+            let target = corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
+            let origin = sphere(stream.point()) * 3.0;
+            let ray = Ray { origin, direction: (target - origin) * 0.25 };
+            let edge = u.min(v).min(1.0 - u - v);
+            match Shear::new(&ray, 1.0).and_then(|shear| shear.crossing(corners)) {
+                Some(crossing) => {
+                    let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
+                    let tilt = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(ray.direction).abs() / area;
+                    let close = |a: f64, b: f64| (a - b).abs() < 1e-12 / (area * tilt);
+                    assert!(close(crossing.t, 4.0) && close(crossing.u, u) && close(crossing.v, v), "{crossing:?}");
+                }
+                None => assert!(edge < 1e-9, "lost a hit at {u} {v}"),
+            }
+        }
+    }
+
+    #[test]
+    fn an_edge_belongs_to_both_triangles() {
+        let [a, b, c, d] = [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), DVec3::X, DVec3::Z * 4.0];
+        let ray = Ray { origin: DVec3::new(0.5, 1.0, 9.5), direction: DVec3::NEG_Z };
+        let shear = Shear::new(&ray, 1.0).expect("a sound ray");
+        let one = shear.crossing([a, b, c]).expect("on the edge");
+        assert_eq!((one.t, one.u, one.v), (8.0, 0.5, 0.0));
+        assert_eq!(shear.crossing([c, a, b]).map(|hit| hit.t), Some(8.0));
+        assert_eq!(shear.crossing([d, a, a]), None);
+    }
+
+    #[test]
+    fn a_triangle_seen_edge_on_is_not_met() {
+        let ray = Ray { origin: DVec3::new(-1.0, 0.25, 0.0), direction: DVec3::X };
+        let shear = Shear::new(&ray, 1.0).expect("a sound ray");
+        assert_eq!(shear.crossing([DVec3::ZERO, DVec3::X, DVec3::Y]), None);
     }
 }

@@ -9,11 +9,16 @@ use super::code::{LocationalCode, MAX_DEPTH};
 /// A cell with more references than this shares the work on its eighths among threads.
 const PARALLEL_REFERENCES: usize = 4096;
 
+/// A cell is not divided if it and the cells around it have together multiplied their references by more than this.
+///
+/// Bounds the size of the octree where triangles coincide, so that no division parts them.
+const MOST_GROWTH: f32 = 10.0;
+
 /// How often in a row a cell may be divided without saving work, in the hope that its eighths do.
 const PATIENCE: u32 = 2;
 
 /// Price of a visit to a divided cell, in packets of four triangles.
-const VISIT_PRICE: f32 = 0.6;
+const VISIT_PRICE: f32 = 2.0;
 
 /// A triangle in a cell, with the bounds of its part there.
 #[derive(Clone, Copy)]
@@ -22,24 +27,33 @@ struct Reference {
     bounds: Bounds,
 }
 
+/// What the divisions so far have come to.
+#[derive(Clone, Copy)]
+struct Outlook {
+    /// How many more divisions may save nothing.
+    patience: u32,
+    /// References per reference of the modelling cube.
+    growth: f32,
+}
+
 /// Terminal nodes in the order of their codes.
 #[derive(Default)]
 pub struct Leaves {
     /// Their codes, sorted.
     pub codes: Vec<LocationalCode>,
-    /// Bounds of the surface inside each.
-    pub bounds: Vec<Bounds>,
     /// Where the triangles of each end in `triangles`; the next one begins there.
     pub ends: Vec<usize>,
     /// Triangles, leaf by leaf, ascending in each.
     pub triangles: Vec<u32>,
+    /// Bounds of the part of each of these triangles in its leaf.
+    pub bounds: Vec<Bounds>,
 }
 
 impl Leaves {
     fn push(&mut self, code: LocationalCode, references: &[Reference]) {
         self.codes.push(code);
-        self.bounds.push(references.iter().fold(Bounds::EMPTY, |all, r| all.union(&r.bounds)));
         self.triangles.extend(references.iter().map(|r| r.triangle));
+        self.bounds.extend(references.iter().map(|r| r.bounds));
         self.ends.push(self.triangles.len());
     }
 
@@ -51,10 +65,10 @@ impl Leaves {
         self.triangles.extend(other.triangles);
     }
 
-    /// Triangles of one leaf.
-    pub fn triangles_of(&self, leaf: usize) -> &[u32] {
+    /// Where the triangles of one leaf lie in `triangles`.
+    pub fn range(&self, leaf: usize) -> std::ops::Range<usize> {
         let start = if leaf == 0 { 0 } else { self.ends[leaf - 1] };
-        &self.triangles[start..self.ends[leaf]]
+        start..self.ends[leaf]
     }
 }
 
@@ -87,7 +101,7 @@ impl Division<'_> {
             .collect();
         let mut leaves = Leaves::default();
         if !references.is_empty() {
-            self.divide(LocationalCode::ROOT, references, PATIENCE, &mut leaves);
+            self.divide(LocationalCode::ROOT, references, Outlook { patience: PATIENCE, growth: 1.0 }, &mut leaves);
         }
         leaves
     }
@@ -96,21 +110,21 @@ impl Division<'_> {
         self.triangles[triangle as usize].map(|i| self.vertices[i as usize])
     }
 
-    fn divide(&self, cell: LocationalCode, references: Vec<Reference>, patience: u32, leaves: &mut Leaves) {
+    fn divide(&self, cell: LocationalCode, references: Vec<Reference>, outlook: Outlook, leaves: &mut Leaves) {
         let count = references.len();
         if cell.level() >= self.depth || count <= self.leaf_triangles {
             leaves.push(cell, &references);
             return;
         }
         let eighths = self.distribute(cell, &references);
-        let patience = match saving(&references, &eighths) {
-            saving if saving > 0.0 => PATIENCE,
-            _ if patience == 0 => {
-                leaves.push(cell, &references);
-                return;
-            }
-            _ => patience - 1,
-        };
+        let total: usize = eighths.iter().map(Vec::len).sum();
+        let growth = outlook.growth * total as f32 / count as f32;
+        let saves = saving(&references, &eighths) > 0.0;
+        if growth > MOST_GROWTH || !(saves || outlook.patience > 0) {
+            leaves.push(cell, &references);
+            return;
+        }
+        let outlook = Outlook { patience: if saves { PATIENCE } else { outlook.patience - 1 }, growth };
         drop(references);
         let children = eighths.into_iter().enumerate().filter(|(_, eighth)| !eighth.is_empty());
         let children = children.filter_map(|(digit, eighth)| Some((cell.child(digit as u8)?, eighth)));
@@ -120,13 +134,13 @@ impl Division<'_> {
                 .into_par_iter()
                 .map(|(child, eighth)| {
                     let mut part = Leaves::default();
-                    self.divide(child, eighth, patience, &mut part);
+                    self.divide(child, eighth, outlook, &mut part);
                     part
                 })
                 .collect();
             parts.into_iter().for_each(|part| leaves.append(part));
         } else {
-            children.for_each(|(child, eighth)| self.divide(child, eighth, patience, leaves));
+            children.for_each(|(child, eighth)| self.divide(child, eighth, outlook, leaves));
         }
     }
 
@@ -140,9 +154,10 @@ impl Division<'_> {
         for reference in references {
             // Bit `axis` is set where the part reaches below, or above, the middle plane.
             let (mut below, mut above) = (0, 0);
-            for axis in 0..3 {
-                below |= usize::from(f64::from(reference.bounds.low[axis]) <= middle[axis] + FAT) << axis;
-                above |= usize::from(f64::from(reference.bounds.high[axis]) >= middle[axis] - FAT) << axis;
+            let sides = reference.bounds.low.iter().zip(&reference.bounds.high).zip(&middle);
+            for (axis, ((&low, &high), &middle)) in sides.enumerate() {
+                below |= usize::from(f64::from(low) <= middle + FAT) << axis;
+                above |= usize::from(f64::from(high) >= middle - FAT) << axis;
             }
             if below & above == 0 {
                 eighths[above].push(*reference);

@@ -12,6 +12,9 @@ const SINGLE_TOLERANCE: f64 = 1.0 / (1_u32 << 22) as f64;
 /// Rounding of a point on the ray in double precision, as a share of the distance from origin to cube.
 const DOUBLE_TOLERANCE: f64 = 1.0 / (1_u64 << 48) as f64;
 
+/// A ray that begins farther from the cube than this many of its sides misses: rounding moves it by a quarter of one.
+pub const MAX_DISTANCE: f64 = (1_u64 << 46) as f64;
+
 /// Slopes below this count as this in the box test; the ray leaves its line by less than 1e-19 of the cube.
 const LEAST_SLOPE: f64 = 1e-20;
 
@@ -67,6 +70,11 @@ impl Frame {
         slopes[axes[2]] = sign_z;
         let origin = cube.local(ray.origin).to_array();
         let reach = origin.iter().fold(1.0_f64, |reach, x| reach.max(x.abs()));
+        // Written so that what is not a number ends here.
+        let near = reach <= MAX_DISTANCE;
+        if !near {
+            return None;
+        }
         let double_tolerance = reach * DOUBLE_TOLERANCE;
         let tolerance = SINGLE_TOLERANCE + double_tolerance;
 
@@ -81,7 +89,6 @@ impl Frame {
             enter = enter.max(to_low.min(to_high));
             exit = exit.min(to_low.max(to_high));
         }
-        // Written so that what is not a number ends here.
         let meets = enter <= exit + margin && enter.is_finite() && exit.is_finite();
         if !meets {
             return None;

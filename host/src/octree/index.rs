@@ -1,18 +1,20 @@
 //! The index: wide nodes over the sorted terminal nodes, for rays that start at the top.
 
+use glam::DVec3;
 use rayon::join;
 use wide::f32x4;
 
-use super::build::Leaves;
 use super::clip::Bounds;
-use super::code::LocationalCode;
 use super::frame::Frame;
+use super::items::Item;
+use super::packet::{LANES, Packet};
+use super::partition::divide;
 
 /// Children of a node.
 pub const WIDTH: usize = 4;
 
-/// More leaves than this are split between threads.
-const PARALLEL_LEAVES: usize = 4096;
+/// More items than this are split between threads.
+const PARALLEL_ITEMS: usize = 4096;
 
 /// What single-precision division of lengths may lose, relative.
 const LENGTH_ERROR: f32 = 1.0 + 4.0 * f32::EPSILON;
@@ -29,6 +31,12 @@ pub struct Node {
 }
 
 impl Node {
+    fn new(boxes: [Bounds; WIDTH]) -> Self {
+        let lanes = |number: &dyn Fn(&Bounds) -> f32| f32x4::new(std::array::from_fn(|lane| number(&boxes[lane])));
+        let bounds = std::array::from_fn(|axis| [lanes(&|b| b.low[axis]), lanes(&|b| b.high[axis])]);
+        Self { bounds, start: [0; WIDTH], packets: [0; WIDTH] }
+    }
+
     /// The children that the ray may meet up to a limit, one bit each, and where it enters them.
     #[inline]
     pub fn meets(&self, frame: &Frame, limit: f32) -> (u32, [f32; WIDTH]) {
@@ -49,93 +57,92 @@ impl Node {
     }
 }
 
-/// A node of the binary tree that the bits of the codes make; `right` is 0 for a leaf.
-#[derive(Clone, Copy)]
-struct Fork {
+/// Part of the binary tree that the nodes are gathered from.
+struct Branch {
     bounds: Bounds,
-    right: usize,
-    leaf: usize,
+    /// Number of items.
+    items: usize,
+    /// The two parts; none where the items fit into one packet.
+    parts: Option<Box<[Branch; 2]>>,
 }
 
-/// Derives the nodes from terminal nodes; the first is the top. None for none.
-///
-/// - `packet_starts`: where the packets of each leaf begin, and at last where they end.
-pub fn nodes(leaves: &Leaves, packet_starts: &[u32]) -> Vec<Node> {
-    let count = leaves.codes.len();
-    if count == 0 {
-        return Vec::new();
-    }
-    let blank = Fork { bounds: Bounds::EMPTY, right: 0, leaf: 0 };
-    let mut forks = vec![blank; 2 * count - 1];
-    grow(leaves, 0, count, 0, &mut forks);
-    let mut nodes = Vec::with_capacity(count / 2 + 1);
-    gather(&forks, packet_starts, 0, &mut nodes);
-    nodes
+/// The index over items: nodes, packets, and where each item went.
+pub struct Index {
+    /// The first is the top. None for no items.
+    pub nodes: Vec<Node>,
+    /// Triangles in the order of the leaves of the tree.
+    pub packets: Vec<Packet>,
+    /// For each item, by number, its packet.
+    pub packet_of_item: Vec<u32>,
 }
 
-/// Fills the tree over leaves `from..to`: the fork, all of its left part, all of its right part.
-///
-/// Splits where the first bit changes that not all codes share: across the middle of a cell.
-fn grow(leaves: &Leaves, from: usize, to: usize, place: usize, forks: &mut [Fork]) {
-    let [fork, parts @ ..] = forks else { return };
-    if to - from == 1 {
-        *fork = Fork { bounds: leaves.bounds[from], right: 0, leaf: from };
-        return;
-    }
-    let middle = split(&leaves.codes[from..to]) + from;
-    let left_size = 2 * (middle - from) - 1;
-    let right = place + 1 + left_size;
-    let (left_part, right_part) = parts.split_at_mut(left_size);
-    let mut grow_left = || {
-        grow(leaves, from, middle, place + 1, left_part);
-        left_part[0].bounds
-    };
-    let mut grow_right = || {
-        grow(leaves, middle, to, right, right_part);
-        right_part[0].bounds
-    };
-    let (a, b) = if to - from > PARALLEL_LEAVES { join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
-    *fork = Fork { bounds: a.union(&b), right, leaf: 0 };
-}
-
-fn split(codes: &[LocationalCode]) -> usize {
-    let (first, last) = (codes[0].bits(), codes[codes.len() - 1].bits());
-    let mask = 1 << (63 - (first ^ last).leading_zeros().min(63));
-    codes.partition_point(|code| code.bits() & mask == first & mask).clamp(1, codes.len() - 1)
-}
-
-/// Gathers a fork and what lies below it into nodes, opening the largest child until the node is full.
-fn gather(forks: &[Fork], packet_starts: &[u32], top: usize, nodes: &mut Vec<Node>) -> u32 {
-    let mut children = vec![top];
-    while children.len() < WIDTH {
-        let inner = children.iter().enumerate().filter(|(_, fork)| forks[**fork].right != 0);
-        let largest = inner.max_by(|a, b| {
-            let area = |fork: usize| forks[fork].bounds.half_area();
-            area(*a.1).total_cmp(&area(*b.1)).then(b.0.cmp(&a.0))
-        });
-        let Some((slot, &fork)) = largest else { break };
-        children[slot] = fork + 1;
-        children.push(forks[fork].right);
-    }
-    let place = nodes.len();
-    let mut bounds = [[[0.0; WIDTH]; 2]; 3];
-    for lane in 0..WIDTH {
-        let of = children.get(lane).map_or(Bounds::EMPTY, |&fork| forks[fork].bounds);
-        for axis in 0..3 {
-            bounds[axis][0][lane] = of.low[axis];
-            bounds[axis][1][lane] = of.high[axis];
+impl Index {
+    /// Builds it; `corners` gives the local coordinates of a triangle.
+    pub fn new(mut items: Vec<Item>, corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
+        let mut index = Self { nodes: Vec::new(), packets: Vec::new(), packet_of_item: vec![0; items.len()] };
+        if items.is_empty() {
+            return index;
         }
+        let tree = grow(&mut items);
+        index.gather(&tree, &items, &corners);
+        index
     }
-    let bounds = bounds.map(|axis| axis.map(f32x4::new));
-    nodes.push(Node { bounds, start: [0; WIDTH], packets: [0; WIDTH] });
-    for (lane, fork) in children.into_iter().enumerate() {
-        if forks[fork].right == 0 {
-            let leaf = forks[fork].leaf;
-            nodes[place].start[lane] = packet_starts[leaf];
-            nodes[place].packets[lane] = packet_starts[leaf + 1] - packet_starts[leaf];
-        } else {
-            nodes[place].start[lane] = gather(forks, packet_starts, fork, nodes);
+
+    /// Gathers a branch into nodes, opening the largest part until the node is full; returns the first node.
+    fn gather(&mut self, branch: &Branch, items: &[Item], corners: &impl Fn(u32) -> [DVec3; 3]) -> u32 {
+        // Each part with the place of its first item.
+        let mut parts = vec![(branch, 0)];
+        while parts.len() < WIDTH {
+            let open = parts.iter().enumerate().filter(|(_, (part, _))| part.parts.is_some());
+            let Some((slot, _)) = open.max_by(|(i, (a, _)), (j, (b, _))| {
+                a.bounds.half_area().total_cmp(&b.bounds.half_area()).then(j.cmp(i))
+            }) else {
+                break;
+            };
+            let (part, first) = parts[slot];
+            if let Some([left, right]) = part.parts.as_deref() {
+                parts[slot] = (left, first);
+                parts.insert(slot + 1, (right, first + left.items));
+            }
         }
+        let place = self.nodes.len();
+        let bounds = std::array::from_fn(|lane| parts.get(lane).map_or(Bounds::EMPTY, |(part, _)| part.bounds));
+        self.nodes.push(Node::new(bounds));
+        for (lane, (part, first)) in parts.into_iter().enumerate() {
+            let items = &items[first..first + part.items];
+            let (start, packets) = match part.parts {
+                Some(_) => (self.gather(part, items, corners), 0),
+                None => self.pack(items, corners),
+            };
+            self.nodes[place].start[lane] = start;
+            self.nodes[place].packets[lane] = packets;
+        }
+        place as u32
     }
-    place as u32
+
+    /// Packs items; returns the first packet and how many there are.
+    fn pack(&mut self, items: &[Item], corners: &impl Fn(u32) -> [DVec3; 3]) -> (u32, u32) {
+        let start = self.packets.len() as u32;
+        for chunk in items.chunks(LANES) {
+            for item in chunk {
+                self.packet_of_item[item.number as usize] = self.packets.len() as u32;
+            }
+            self.packets.push(Packet::new(chunk.iter().map(|item| item.triangle), corners));
+        }
+        (start, self.packets.len() as u32 - start)
+    }
+}
+
+/// Sorts items into a tree.
+fn grow(items: &mut [Item]) -> Branch {
+    let count = items.len();
+    let bounds = items.iter().fold(Bounds::EMPTY, |all, item| all.union(&item.bounds));
+    if count <= LANES {
+        return Branch { bounds, items: count, parts: None };
+    }
+    let middle = divide(items);
+    let (left, right) = items.split_at_mut(middle);
+    let (left, right) =
+        if count > PARALLEL_ITEMS { join(|| grow(left), || grow(right)) } else { (grow(left), grow(right)) };
+    Branch { bounds, items: count, parts: Some(Box::new([left, right])) }
 }

@@ -7,20 +7,27 @@ mod code;
 mod cube;
 mod frame;
 mod index;
+mod items;
 mod packet;
+mod partition;
 mod walk;
 
+#[cfg(test)]
+mod tests;
+
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 
 pub use crate::numeric::ray::{Hit, Ray};
 use crate::numeric::triangle::MAX_MAGNITUDE;
 use build::Division;
+use clip::Bounds;
 pub use code::{LocationalCode, MAX_DEPTH};
 use cube::Cube;
-use index::Node;
-use packet::{LANES, Packet};
+pub use frame::MAX_DISTANCE;
+use index::{Index, Node};
+use items::Items;
+use packet::Packet;
 
 /// Most triangles that one octree takes.
 pub const MAX_TRIANGLES: usize = 1 << 28;
@@ -38,7 +45,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { depth: 16, leaf_triangles: 4, walk: Walk::Index }
+        Self { depth: 16, leaf_triangles: 16, walk: Walk::Index }
     }
 }
 
@@ -144,8 +151,10 @@ pub struct Octree {
     triangles: Vec<[u32; 3]>,
     walk: Walk,
     codes: Vec<LocationalCode>,
-    /// Where the packets of each terminal node begin, and at last where they end.
-    packet_starts: Vec<u32>,
+    /// Where the packets of each terminal node begin in `leaf_packets`, and at last where they end.
+    leaf_starts: Vec<u32>,
+    /// Packets that hold the triangles of each terminal node.
+    leaf_packets: Vec<u32>,
     packets: Vec<Packet>,
     nodes: Vec<Node>,
     references: usize,
@@ -167,20 +176,29 @@ impl Octree {
         let local: Vec<DVec3> = vertices.iter().map(|&p| cube.local(p)).collect();
         let division = Division { vertices: &local, triangles, depth, leaf_triangles: settings.leaf_triangles };
         let leaves = division.leaves();
-        let packets: Vec<Packet> = (0..leaves.codes.len())
-            .into_par_iter()
-            .with_min_len(1024)
-            .flat_map_iter(|leaf| {
-                let corners = |triangle: u32| triangles[triangle as usize].map(|i| local[i as usize]);
-                leaves.triangles_of(leaf).chunks(LANES).map(move |chunk| Packet::new(chunk, corners))
-            })
-            .collect();
-        let mut packet_starts = vec![0];
-        packet_starts.extend((0..leaves.codes.len()).scan(0, |end, leaf| {
-            *end += leaves.triangles_of(leaf).len().div_ceil(LANES) as u32;
-            Some(*end)
-        }));
-        let nodes = index::nodes(&leaves, &packet_starts);
+        let corners = |triangle: u32| triangles[triangle as usize].map(|i| local[i as usize]);
+        let items = Items::new(&leaves, triangles.len(), |triangle| {
+            Bounds::of(&corners(triangle).map(|corner| corner.to_array()))
+        });
+        let index = Index::new(items.items, corners);
+        // The packets of each terminal node, each once.
+        let mut leaf_starts = vec![0];
+        let mut leaf_packets: Vec<u32> = Vec::new();
+        for leaf in 0..leaves.codes.len() {
+            let start = leaf_packets.len();
+            let items = &items.of_reference[leaves.range(leaf)];
+            leaf_packets.extend(items.iter().map(|&item| index.packet_of_item[item as usize]));
+            leaf_packets[start..].sort_unstable();
+            let mut kept = start;
+            for i in start..leaf_packets.len() {
+                if i == start || leaf_packets[i] != leaf_packets[kept - 1] {
+                    leaf_packets[kept] = leaf_packets[i];
+                    kept += 1;
+                }
+            }
+            leaf_packets.truncate(kept);
+            leaf_starts.push(kept as u32);
+        }
         Ok(Self {
             cube,
             depth,
@@ -189,17 +207,24 @@ impl Octree {
             walk: settings.walk,
             references: leaves.triangles.len(),
             codes: leaves.codes,
-            packet_starts,
-            packets,
-            nodes,
+            leaf_starts,
+            leaf_packets,
+            packets: index.packets,
+            nodes: index.nodes,
         })
+    }
+
+    /// The same octree, walked another way.
+    pub fn with_walk(self, walk: Walk) -> Self {
+        Self { walk, ..self }
     }
 
     /// Finds the nearest hit with `t_min < t < t_max`, both exclusive.
     ///
     /// Either side of a triangle is hit. Edges and corners belong to their triangles, so a closed mesh lets no ray
     /// through; of several hits with the same `t` the triangle with the lowest index counts. A triangle seen exactly
-    /// edge-on is not hit. A ray whose direction is zero, or that is not finite, hits nothing.
+    /// edge-on is not hit. A ray whose direction is zero, or that is not finite, or that begins farther away than
+    /// [`MAX_DISTANCE`] sides of the modelling cube, hits nothing.
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
         self.closest_counted(ray, t_min, t_max).0
     }
@@ -223,7 +248,8 @@ impl Octree {
         let bytes = size_of_val(self.vertices.as_slice())
             + size_of_val(self.triangles.as_slice())
             + size_of_val(self.codes.as_slice())
-            + size_of_val(self.packet_starts.as_slice())
+            + size_of_val(self.leaf_starts.as_slice())
+            + size_of_val(self.leaf_packets.as_slice())
             + size_of_val(self.packets.as_slice())
             + size_of_val(self.nodes.as_slice());
         let voxel_nodes = depth_histogram.last().copied().unwrap_or(0);

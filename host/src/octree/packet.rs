@@ -25,11 +25,11 @@ pub struct Packet {
 
 impl Packet {
     /// Packs up to four triangles; `corners` gives the local coordinates of one.
-    pub fn new(triangles: &[u32], corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
+    pub fn new(triangles: impl Iterator<Item = u32>, corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
         let mut coordinates = [[[NOWHERE; LANES]; 3]; 3];
         let mut size = [0.0; LANES];
         let mut indices = [u32::MAX; LANES];
-        for (lane, &triangle) in triangles.iter().take(LANES).enumerate() {
+        for (lane, triangle) in triangles.take(LANES).enumerate() {
             let points = corners(triangle);
             for (corner, point) in points.iter().enumerate() {
                 for axis in 0..3 {

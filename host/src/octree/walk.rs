@@ -4,6 +4,7 @@ use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::frame::Frame;
 use super::index::WIDTH;
+use super::packet::{LANES, Packet};
 use super::{Hit, Location, Octree, Ray, Walk, WalkCount};
 use crate::numeric::triangle::Shear;
 
@@ -47,19 +48,16 @@ pub fn search(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> 
 }
 
 impl Search<'_> {
-    /// Tests the packets of a terminal node; returns whether the search is over.
+    /// Tests a packet; returns whether the search is over.
     #[inline]
-    fn test(&mut self, start: u32, packets: u32) -> bool {
-        let octree = self.octree;
-        for packet in &octree.packets[start as usize..(start + packets) as usize] {
-            self.count.triangles += super::packet::LANES as u64;
-            let mut lanes = packet.candidates(&self.frame, self.limit);
-            while lanes != 0 {
-                let triangle = packet.triangles[lanes.trailing_zeros() as usize];
-                lanes &= lanes - 1;
-                if self.decide(triangle) && self.any {
-                    return true;
-                }
+    fn test(&mut self, packet: &Packet) -> bool {
+        self.count.triangles += LANES as u64;
+        let mut lanes = packet.candidates(&self.frame, self.limit);
+        while lanes != 0 {
+            let triangle = packet.triangles[lanes.trailing_zeros() as usize];
+            lanes &= lanes - 1;
+            if self.decide(triangle) && self.any {
+                return true;
             }
         }
         false
@@ -110,7 +108,8 @@ impl Search<'_> {
                     (start, packets) = (node.start[nearest], node.packets[nearest]);
                     continue;
                 }
-            } else if self.test(start, packets) {
+            } else if octree.packets[start as usize..(start + packets) as usize].iter().any(|packet| self.test(packet))
+            {
                 return;
             }
             loop {
@@ -195,8 +194,8 @@ impl Search<'_> {
                 Err(_) => return,
             };
             if let Some(leaf) = leaf {
-                let (start, end) = (octree.packet_starts[leaf], octree.packet_starts[leaf + 1]);
-                if self.test(start, end - start) {
+                let packets = octree.leaf_starts[leaf] as usize..octree.leaf_starts[leaf + 1] as usize;
+                if octree.leaf_packets[packets].iter().any(|&packet| self.test(&octree.packets[packet as usize])) {
                     return;
                 }
             }

@@ -1,5 +1,6 @@
-//! The others that run on the same rays: the hierarchies of the crate obvhs.
+//! The others that run on the same rays: the hierarchies of the crate obvhs, and Embree.
 
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3A};
@@ -87,4 +88,35 @@ impl Hierarchy {
             Tree::Wide(tree) => !tree.ray_traverse_miss(ray, |ray, i| self.triangles[i].intersect(ray)),
         }
     }
+}
+
+/// Millions of rays per second of Embree through the Python package `embreex`, one figure a set.
+///
+/// # Errors
+/// A line that says why there are none.
+pub fn embree(shape: &Shape, sets: &[RaySet]) -> Result<Vec<f64>, String> {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let installed = Command::new(&python).args(["-c", "import embreex, numpy"]).output();
+    if !installed.is_ok_and(|output| output.status.success()) {
+        return Err("not installed".to_owned());
+    }
+    let mut numbers: Vec<f64> = vec![shape.vertices.len() as f64, shape.triangles.len() as f64];
+    numbers.extend(sets.iter().map(|set| set.rays.len() as f64));
+    numbers.extend(shape.vertices.iter().flat_map(|p| p.to_array()));
+    numbers.extend(shape.triangles.iter().flatten().map(|&i| f64::from(i)));
+    let rays = sets.iter().flat_map(|set| &set.rays);
+    numbers.extend(rays.flat_map(|ray| [ray.origin.to_array(), ray.direction.to_array()]).flatten());
+    let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let file = tempfile::NamedTempFile::new().map_err(|error| error.to_string())?;
+    std::fs::write(file.path(), bytes).map_err(|error| error.to_string())?;
+    let script = include_str!("embree.py");
+    let output =
+        Command::new(&python).args(["-c", script]).arg(file.path()).output().map_err(|error| error.to_string())?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let rates: Vec<f64> = text.lines().filter_map(|line| line.split(' ').next()?.parse().ok()).collect();
+    if rates.len() == sets.len() {
+        return Ok(rates);
+    }
+    let errors = String::from_utf8_lossy(&output.stderr);
+    Err(errors.lines().last().unwrap_or("failed without a message").to_owned())
 }

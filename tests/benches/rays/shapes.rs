@@ -122,3 +122,39 @@ fn icosphere(divisions: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     }
     (vertices, triangles)
 }
+
+/// A mesh from an OBJ file: `v` and `f` lines, polygons as fans, the rest ignored.
+///
+/// # Errors
+/// What is wrong, with the line.
+pub fn obj(path: &str) -> Result<Shape, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    for (line, content) in text.lines().enumerate() {
+        let mut words = content.split_whitespace();
+        let wrong = || format!("line {}: {content}", line + 1);
+        match words.next() {
+            Some("v") => {
+                let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+                let [x, y, z, ..] = numbers[..] else { return Err(wrong()) };
+                vertices.push(DVec3::new(x, y, z));
+            }
+            Some("f") => {
+                let index = |word: &str| match word.split('/').next()?.parse::<i64>().ok()? {
+                    i if i > 0 => u32::try_from(i - 1).ok(),
+                    i => u32::try_from(vertices.len() as i64 + i).ok(),
+                };
+                let corners: Option<Vec<u32>> = words.map(index).collect();
+                let corners = corners.filter(|corners| corners.len() >= 3).ok_or_else(wrong)?;
+                triangles.extend(corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]]));
+            }
+            _ => {}
+        }
+    }
+    let name = std::path::Path::new(path).file_stem().and_then(|stem| stem.to_str()).unwrap_or(path);
+    if triangles.iter().flatten().any(|&i| i as usize >= vertices.len()) {
+        return Err("a face names a vertex that does not exist".to_owned());
+    }
+    Ok(Shape::new(name, vertices, triangles))
+}
