@@ -105,19 +105,11 @@ impl Mesh {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use glam::DVec3;
 
+    use super::super::samples::{cube, tetrahedron};
     use super::*;
-
-    /// The corner of the unit cube: volume 1/6, facing outwards.
-    pub(in super::super) fn tetrahedron() -> Mesh {
-        Mesh {
-            vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
-            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
-            ..Mesh::default()
-        }
-    }
 
     #[test]
     fn a_tetrahedron_is_closed_and_has_its_volume_and_area() {
@@ -163,13 +155,7 @@ pub(super) mod tests {
     #[test]
     fn vertex_normals_do_not_depend_on_how_faces_are_divided() {
         // A cube's corner: the angle weights make every corner normal the diagonal, however quads are cut.
-        let mut mesh = Mesh::default();
-        for corner in 0..8 {
-            mesh.vertices.push(DVec3::new(f64::from(corner & 1), f64::from(corner >> 1 & 1), f64::from(corner >> 2)));
-        }
-        for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
-            mesh.triangles.extend([[a, b, c], [a, c, d]]);
-        }
+        let mesh = cube();
         assert!(mesh.is_closed() && mesh.signed_volume() > 0.99);
         for (position, normal) in mesh.vertices.iter().zip(mesh.vertex_normals()) {
             let expected = (*position - DVec3::splat(0.5)).normalize();

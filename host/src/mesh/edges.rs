@@ -213,15 +213,13 @@ fn is_isoparametric(mesh: &Mesh, place: &EdgeUse) -> bool {
 mod tests {
     use std::collections::HashSet;
 
-    use super::super::check::tests::tetrahedron;
     use super::super::measure::bits;
+    use super::super::samples::{self, tetrahedron};
     use super::*;
-    use crate::surface::{self, Sphere, Tolerance};
 
-    /// The unit cube with four vertices of its own for each face, as many files have it.
+    /// The unit cube with vertices of its own for each triangle, as many files have it.
     fn cube() -> Mesh {
-        let faces = surface::box_faces(DVec3::ZERO, DVec3::ONE);
-        let joined = surface::tessellate(&faces, Tolerance::new(0.1, 10.0)).unwrap();
+        let joined = samples::cube();
         let mut mesh = Mesh::default();
         for triangle in 0..joined.triangles.len() {
             let first = mesh.vertices.len() as u32;
@@ -231,8 +229,11 @@ mod tests {
         mesh
     }
 
+    const SLICES: u32 = 64;
+    const STACKS: u32 = 32;
+
     fn ball() -> Mesh {
-        surface::tessellate(&[Sphere::new(DVec3::ZERO, 1.0)], Tolerance::new(0.002, 10.0)).unwrap()
+        samples::ball(SLICES, STACKS)
     }
 
     #[test]
@@ -259,18 +260,11 @@ mod tests {
 
     #[test]
     fn the_grid_of_a_sphere_is_its_edges_without_one_diagonal_a_quad() {
-        let mesh = ball();
-        let all = wire(&mesh, &Selection::ALL).len();
-        let grid = wire(&mesh, &Selection::grid(20.0)).len();
-        // A grid of m by n has 2m triangles at the poles and (n - 2) m quads between.
-        let m = mesh.triangles.iter().filter(|triangle| triangle.contains(&pole(&mesh))).count();
-        let n = (mesh.triangles.len() / m + 2) / 2;
-        assert_eq!(mesh.triangles.len(), 2 * m * (n - 1));
-        assert_eq!(all - grid, m * (n - 2));
-    }
-
-    fn pole(mesh: &Mesh) -> u32 {
-        mesh.vertices.iter().position(|vertex| vertex.y == 1.0).unwrap() as u32
+        let all = wire(&ball(), &Selection::ALL).len();
+        let grid = wire(&ball(), &Selection::grid(20.0)).len();
+        // Triangles at the two poles, quads between.
+        assert_eq!(all - grid, (SLICES * (STACKS - 2)) as usize);
+        assert_eq!(grid, (SLICES * (STACKS - 1) + SLICES * STACKS) as usize);
     }
 
     #[test]

@@ -69,4 +69,6 @@ pub fn bunny() -> Mesh {
 }
 
 #[cfg(test)]
+mod samples;
+#[cfg(test)]
 mod tests;

@@ -88,7 +88,7 @@ fn join<T: Clone>(table: &mut Vec<T>, more: &[T], here: usize, there: usize) {
 mod tests {
     use glam::{DAffine3, DMat3, DVec3};
 
-    use super::super::check::tests::tetrahedron;
+    use super::super::samples::tetrahedron;
 
     #[test]
     fn a_reflection_keeps_the_outside_outside() {

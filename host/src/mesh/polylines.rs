@@ -193,9 +193,9 @@ mod tests {
     use std::collections::HashMap;
 
     use super::super::measure::bits;
+    use super::super::samples::{ball, cube};
     use super::super::{Eye, wire};
     use super::*;
-    use crate::surface::{self, Sphere, Tolerance};
 
     type Key = ([u64; 3], [u64; 3]);
 
@@ -240,23 +240,22 @@ mod tests {
 
     #[test]
     fn the_twelve_edges_of_a_cube_take_four_runs() {
-        let faces = surface::box_faces(DVec3::ZERO, DVec3::ONE);
-        let cube = surface::tessellate(&faces, Tolerance::new(0.1, 10.0)).unwrap();
-        let runs = check(&cube, &Selection::creases(20.0));
+        let runs = check(&cube(), &Selection::creases(20.0));
         assert_eq!((runs.starts.len(), runs.points.len()), (4, 16));
     }
 
     #[test]
-    fn all_edges_of_a_teapot_come_once_in_the_fewest_runs() {
-        let pot = surface::tessellate(&surface::teapot(), Tolerance::new(0.05, 30.0)).unwrap();
-        check(&pot, &Selection::ALL);
-        check(&pot, &Selection::grid(30.0));
-        check(&pot, &Selection::drawing(30.0, Eye::Direction(DVec3::new(1.0, 2.0, 3.0))));
+    fn all_edges_of_bunny_and_sphere_come_once_in_the_fewest_runs() {
+        for mesh in [super::super::bunny(), ball(31, 17)] {
+            check(&mesh, &Selection::ALL);
+            check(&mesh, &Selection::grid(30.0));
+            check(&mesh, &Selection::drawing(30.0, Eye::Direction(DVec3::new(1.0, 2.0, 3.0))));
+        }
     }
 
     #[test]
     fn the_outline_of_a_sphere_is_one_run() {
-        let ball = surface::tessellate(&[Sphere::new(DVec3::ZERO, 1.0)], Tolerance::new(0.002, 10.0)).unwrap();
+        let ball = ball(64, 32);
         let selection = Selection::drawing(180.0, Eye::Point(DVec3::new(3.0, 2.0, 4.0)));
         let runs = check(&ball, &selection);
         assert_eq!(runs.starts.len(), 1);

@@ -139,7 +139,7 @@ pub(super) fn print(mesh: &Mesh) -> Result<Vec<u8>, Fault> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::check::tests::tetrahedron;
+    use super::super::samples::tetrahedron;
     use super::*;
 
     const TEXT: &str = "solid a b\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n  endloop\n endfacet\nendsolid a b\n";

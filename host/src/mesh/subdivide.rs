@@ -119,7 +119,7 @@ fn add((sum, count): &mut (DVec3, usize), position: DVec3) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::check::tests::tetrahedron;
+    use super::super::samples::tetrahedron;
     use super::*;
 
     #[test]
@@ -137,8 +137,8 @@ mod tests {
         assert!(smooth.is_closed());
         assert_eq!(smooth.triangles.len(), 64);
         assert!(smooth.signed_volume() > 0.0 && smooth.signed_volume() < tetrahedron().signed_volume());
-        let mut flat = Mesh::default();
-        flat.vertices = (0..25).map(|i| DVec3::new(f64::from(i % 5), f64::from(i / 5), 0.0)).collect();
+        let grid = (0..25).map(|i| DVec3::new(f64::from(i % 5), f64::from(i / 5), 0.0));
+        let mut flat = Mesh { vertices: grid.collect(), ..Mesh::default() };
         for i in (0..20).filter(|i| i % 5 < 4) {
             flat.triangles.extend([[i, i + 1, i + 6], [i, i + 6, i + 5]]);
         }

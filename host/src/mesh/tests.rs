@@ -1,16 +1,16 @@
 //! Files through every format and back, against other readers, and broken in every way.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use proptest::prelude::*;
 
+use super::samples::torus;
 use super::*;
-use crate::surface::{self, Sphere, Tolerance};
 
 const FORMATS: [(Format, &str); 4] =
     [(Format::Obj, "obj"), (Format::Stl, "stl"), (Format::Ply, "ply"), (Format::Compact, "cmesh")];
 
 fn ball() -> Mesh {
-    surface::tessellate(&[Sphere::new(DVec3::new(0.3, 0.2, 0.1), 1.0)], Tolerance::new(0.01, 30.0)).unwrap()
+    samples::ball(40, 20)
 }
 
 /// Positions of all corners of all triangles, in an order that does not depend on theirs.
@@ -124,21 +124,6 @@ fn the_compact_form_refuses_what_it_cannot_hold() {
     assert_eq!(back.edge_report().euler_characteristic(), 4);
 }
 
-fn torus(m: u32, n: u32) -> Mesh {
-    let mut mesh = Mesh::default();
-    for i in 0..m {
-        for j in 0..n {
-            let turn = |k: u32, count: u32| DVec2::from_angle(f64::from(k) / f64::from(count) * std::f64::consts::TAU);
-            let (a, b) = (turn(i, m), turn(j, n));
-            mesh.vertices.push(DVec3::new(a.x * (3.0 + b.x), a.y * (3.0 + b.x), b.y));
-            let at = |i: u32, j: u32| i % m * n + j % n;
-            let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            mesh.triangles.extend([[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]]);
-        }
-    }
-    mesh
-}
-
 #[test]
 fn the_bunny_is_closed_and_faces_outwards() {
     let mesh = bunny();
@@ -153,7 +138,7 @@ fn the_bunny_is_closed_and_faces_outwards() {
 
 /// A small file of each format, by name.
 fn small_files() -> Vec<(Format, Vec<u8>)> {
-    let mesh = surface::tessellate(&[Sphere::new(DVec3::ZERO, 1.0)], Tolerance::new(0.2, 60.0)).unwrap();
+    let mesh = samples::ball(6, 4);
     let mut files: Vec<_> = FORMATS.iter().map(|&(format, _)| (format, print(&mesh, format).unwrap())).collect();
     let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty double z\n\
         element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";

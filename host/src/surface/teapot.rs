@@ -95,11 +95,21 @@ mod tests {
     #[test]
     fn the_tip_of_the_lid_looks_up_and_the_centre_of_the_bottom_down() {
         let patches = teapot();
-        for k in 20..24 {
-            assert!((patches[k].normal(DVec2::new(0.3, 0.0)) - DVec3::Y).length() < 1e-14);
+        for patch in &patches[20..24] {
+            assert!((patch.normal(DVec2::new(0.3, 0.0)) - DVec3::Y).length() < 1e-14);
         }
-        for k in 28..32 {
-            assert!((patches[k].normal(DVec2::new(0.7, 0.0)) - DVec3::NEG_Y).length() < 1e-14);
+        for patch in &patches[28..32] {
+            assert!((patch.normal(DVec2::new(0.7, 0.0)) - DVec3::NEG_Y).length() < 1e-14);
         }
+    }
+
+    #[test]
+    fn its_six_open_loops_can_be_filled() {
+        let pot = tessellate(&teapot(), Tolerance::new(0.02, 20.0)).unwrap();
+        let closed = pot.with_holes_filled();
+        assert!(closed.is_closed());
+        assert_eq!(closed.vertices.len() - pot.vertices.len(), 6);
+        // Body, lid, handle and spout: four closed pieces, but the handle touches the body in one vertex.
+        assert_eq!(closed.edge_report().euler_characteristic(), 8 - 1);
     }
 }

@@ -72,6 +72,14 @@ pub enum TessellationError {
         /// Its segments along a side.
         segments: usize,
     },
+    /// A surface so uneven that more segments did not bring the mesh near enough.
+    #[error("the mesh stays {error} away from surface {surface}; raise the tolerance")]
+    NotReached {
+        /// The index of the surface.
+        surface: usize,
+        /// The distance that was reached, model units.
+        error: f64,
+    },
     /// A mesh that does not know its surfaces.
     #[error("the mesh has no corner parameters or no surface indices")]
     NoParameters,
@@ -172,7 +180,9 @@ impl Grids {
                 return Ok(());
             }
         }
-        Ok(())
+        let worst = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
+        let (surface, error) = known.iter().map(|known| known.1).enumerate().max_by(worst).unwrap_or_default();
+        Err(TessellationError::NotReached { surface, error })
     }
 
     /// The segments of a surface along u and v.

@@ -202,7 +202,7 @@ pub(super) fn print(mesh: &Mesh) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::check::tests::tetrahedron;
+    use super::super::samples::tetrahedron;
     use super::*;
 
     const TEXT: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
