@@ -1,6 +1,6 @@
 //! Triangle meshes, and what can be said of them without knowing their surfaces.
 //!
-//! Files come in through [`read`], go out through [`write`]; [`Mesh::validate`] and [`Mesh::edge_report`] tell whether
+//! Files come in through [`read`], go out through [`write()`]; [`Mesh::validate`] and [`Mesh::edge_report`] tell whether
 //! a mesh can be trusted; [`edges`] and [`Polylines`] turn it into vectors.
 
 mod check;

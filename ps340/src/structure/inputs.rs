@@ -122,11 +122,26 @@ fn text(characters: &mut Characters, input: Input, value: Value) -> Result<(), N
     let mut text = std::mem::take(&mut characters.text).into_vec();
     let end = text.len();
     let result = match (input, value) {
-        (Input::Position, Value::Vector3(v)) => Ok(characters.position = v),
-        (Input::Position, Value::Vector2(v)) => Ok(characters.position = v.extend(0.0)),
-        (Input::Step, Value::Vector2(v)) => Ok(characters.step = v),
-        (Input::Clear, _) => Ok(text.clear()),
-        (Input::Delete, Value::Integer(n)) => Ok(text.truncate(end.saturating_sub(usize::try_from(n).unwrap_or(0)))),
+        (Input::Position, Value::Vector3(v)) => {
+            characters.position = v;
+            Ok(())
+        }
+        (Input::Position, Value::Vector2(v)) => {
+            characters.position = v.extend(0.0);
+            Ok(())
+        }
+        (Input::Step, Value::Vector2(v)) => {
+            characters.step = v;
+            Ok(())
+        }
+        (Input::Clear, _) => {
+            text.clear();
+            Ok(())
+        }
+        (Input::Delete, Value::Integer(n)) => {
+            text.truncate(end.saturating_sub(usize::try_from(n).unwrap_or(0)));
+            Ok(())
+        }
         (Input::Substitute, Value::String(new)) => splice(&mut text, 0, &new, input).map(|()| text.truncate(new.len())),
         (Input::Append, Value::String(new)) => splice(&mut text, end, &new, input),
         (Input::Last, Value::String(new)) => splice(&mut text, end.saturating_sub(1), &new, input),

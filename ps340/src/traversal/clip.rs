@@ -19,9 +19,6 @@ pub struct Clipper {
     color: [f32; 3],
 }
 
-/// Outcode bits: x, y and w first, then front and back.
-const LATERAL: u8 = 0b0001_1111;
-
 impl Clipper {
     /// The clipper for data in a state.
     pub fn new(state: &State) -> Clipper {
@@ -85,15 +82,16 @@ impl Clipper {
         self.screen.stroke([a, a], [intensity; 2], self.color)
     }
 
+    /// A bit for each boundary that `p` lies outside of: sides, w > 0, front and back.
     fn outcode(&self, p: DVec4) -> u8 {
-        // Written so that a NaN counts as outside.
-        let lateral = u8::from(!(p.x >= -p.w))
-            | u8::from(!(p.x <= p.w)) << 1
-            | u8::from(!(p.y >= -p.w)) << 2
-            | u8::from(!(p.y <= p.w)) << 3
-            | u8::from(!(p.w > 0.0)) << 4;
-        let depth = if self.depth_clipping { u8::from(!(p.z >= 0.0)) << 5 | u8::from(!(p.z <= p.w)) << 6 } else { 0 };
-        (lateral & LATERAL) | depth
+        // Asked for inside, so that a NaN counts as outside.
+        let outside = |inside: bool, bit: u8| u8::from(!inside) << bit;
+        let lateral = outside(p.x >= -p.w, 0)
+            | outside(p.x <= p.w, 1)
+            | outside(p.y >= -p.w, 2)
+            | outside(p.y <= p.w, 3)
+            | outside(p.w > 0.0, 4);
+        if self.depth_clipping { lateral | outside(p.z >= 0.0, 5) | outside(p.z <= p.w, 6) } else { lateral }
     }
 }
 

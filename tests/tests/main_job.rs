@@ -1,0 +1,229 @@
+//! The main job with both processes: what is shown, set with dials, read back, rendered and shown again.
+
+use glam::DMat4;
+use host::{
+    picture::Picture,
+    production::{Production, difference, view_of_dials},
+    render::{Order, Watch},
+    script,
+    workstation::{Drawing, Lines},
+};
+use std::{collections::BTreeMap, fs, path::Path, time::Duration};
+use tests::{Ended, Machine, run};
+
+const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
+const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
+const LIMIT: Duration = Duration::from_secs(300);
+
+/// A teapot alone, so that it has a silhouette.
+const SCENE: &str = r#"
+    image(256, 256);
+    samples(16);
+    teapot().rotate("y", 20);
+    directional_light(#{ direction: [0, 0, -1], irradiance: 1 });
+    camera(#{ from: [0, 4, 14], at: [0, 1.5, 0], field_of_view: 34 });
+"#;
+
+fn peris(arguments: &[&str], folder: &Path) -> Ended {
+    run(PERIS, arguments, &[("PERIS_PS340", PS340)], folder, LIMIT)
+}
+
+fn begin(machine: &Machine, scene: &host::scene::Scene, drawing: &Drawing) -> Production {
+    let line = format!("tcp:{}", machine.line).parse().unwrap();
+    Production::begin(scene, &line, drawing).unwrap()
+}
+
+/// All pictures of a folder.
+fn pictures(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let pictures = entries.filter(|p| p.extension().is_some_and(|e| e == "png" || e == "exr"));
+    pictures.map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), fs::read(p).unwrap())).collect()
+}
+
+#[test]
+fn the_demo_leaves_its_files_and_makes_the_same_bytes_with_one_thread_and_with_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut made = Vec::new();
+    for threads in ["1", "2"] {
+        let ended = peris(&["demo", "--quick", "--samples", "2", "--threads", threads, "-o", threads], folder.path());
+        assert_eq!(ended.code, Some(0), "{}{}", ended.out, ended.errors);
+        assert!(ended.out.contains("workstation: process") && ended.out.contains("host: process"), "{}", ended.out);
+        let contents = fs::read_to_string(folder.path().join(threads).join("CONTENTS.txt")).unwrap();
+        for name in ["vector-before.png", "vector-after.png", "raytraced.png", "raytraced.exr", "raster.png"] {
+            assert!(contents.contains(name), "{contents}");
+        }
+        made.push(pictures(&folder.path().join(threads)));
+    }
+    assert_eq!(made[0].len(), 5);
+    assert!(made[0] == made[1], "the pictures differ");
+    assert!(made[0]["vector-before.png"] != made[0]["vector-after.png"]);
+    let raster = image::load_from_memory(&made[0]["raster.png"]).unwrap().to_rgb8();
+    let traced = image::load_from_memory(&made[0]["raytraced.png"]).unwrap().to_rgb8();
+    assert_eq!(raster.dimensions(), (640, 480));
+    assert!(raster == traced, "the raster screen shows the image to the byte");
+}
+
+#[test]
+fn a_study_leaves_table_and_plot() {
+    let folder = tempfile::tempdir().unwrap();
+    let ended = peris(&["study", "render", "--width", "32", "--samples", "16", "--settings", "3"], folder.path());
+    assert_eq!(ended.code, Some(0), "{}", ended.errors);
+    for name in ["teapot-render.csv", "teapot-render.svg", "teapot-render.png"] {
+        assert!(folder.path().join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn the_view_that_dials_set_reads_back_as_its_closed_form() {
+    let scene = script::evaluate(SCENE, "silhouette", Path::new("")).unwrap().scene;
+    let mut machine = Machine::start(PS340, &[]);
+    let mut production = begin(&machine, &scene, &Drawing::default());
+    let turns = [0.13, -0.37, 0.05, 0.4, 0.02, -0.01, 0.03];
+    for (dial, turn) in (1..).zip(turns) {
+        machine.order(&format!("dial {dial} {turn}"));
+    }
+    machine.order("idle");
+    let matrix = production.view().unwrap();
+    let (camera, center) = production.camera();
+    let diagonal = production.prepared().bounds.diagonal();
+    let expected = view_of_dials(&camera, center, diagonal, &turns).unwrap();
+    let off = difference(&matrix, &expected);
+    assert!(off < 1e-6, "off by {off}: {matrix:?} is not {expected:?}");
+    let before = view_of_dials(&camera, center, diagonal, &[0.0; 7]).unwrap();
+    assert!(difference(&matrix, &before) > 0.1, "the dials did something");
+    production.reset().unwrap();
+    machine.order("idle");
+    assert!(difference(&production.view().unwrap(), &before) < 1e-6, "the reset undoes it");
+}
+
+/// What a picture covers: pixels above a threshold, with gaps of up to `gap` pixels closed.
+struct Mask {
+    size: usize,
+    on: Vec<bool>,
+}
+
+impl Mask {
+    fn spread(&self, radius: isize, value: bool) -> Mask {
+        let at = |x: isize, y: isize| {
+            let inside = (0..self.size as isize).contains(&x) && (0..self.size as isize).contains(&y);
+            inside && self.on[y as usize * self.size + x as usize]
+        };
+        let pixel = |i: usize| {
+            let (x, y) = ((i % self.size) as isize, (i / self.size) as isize);
+            let disk = (-radius..=radius).flat_map(|dy| (-radius..=radius).map(move |dx| (dx, dy)));
+            let mut disk = disk.filter(|(dx, dy)| dx * dx + dy * dy <= radius * radius);
+            if disk.any(|(dx, dy)| at(x + dx, y + dy) == value) { value } else { !value }
+        };
+        Mask { size: self.size, on: (0..self.on.len()).map(pixel).collect() }
+    }
+
+    fn closed(&self, gap: isize) -> Mask {
+        self.spread(gap, true).spread(gap, false)
+    }
+
+    fn area(&self) -> usize {
+        self.on.iter().filter(|p| **p).count()
+    }
+
+    fn disagreement(&self, other: &Mask) -> f64 {
+        let differ = self.on.iter().zip(&other.on).filter(|(a, b)| a != b).count();
+        differ as f64 / self.area() as f64
+    }
+}
+
+#[test]
+fn the_render_of_the_view_has_the_silhouette_of_the_vector_screen() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = script::evaluate(SCENE, "silhouette", Path::new("")).unwrap().scene;
+    let mut machine = Machine::start(PS340, &[]);
+    let drawing = Drawing { lines: Lines::All, tolerance: 1.0 / 4000.0, ..Drawing::default() };
+    let mut production = begin(&machine, &scene, &drawing);
+    let size = 256;
+    let mut vector = |machine: &mut Machine, name: &str| {
+        let file = folder.path().join(name);
+        machine.order("idle");
+        machine.order(&format!("picture vector {} {size}", file.display()));
+        let image = image::open(file).unwrap().to_luma8();
+        Mask { size, on: image.pixels().map(|p| p.0[0] > 40).collect() }.closed(5)
+    };
+    let render = |production: &Production, matrix: &DMat4| {
+        let order = Order::of(&scene.settings);
+        let picture: Picture = production.render(matrix, &order, &Watch::NOBODY).unwrap().rendering.picture;
+        Mask { size, on: picture.coverage8().iter().map(|c| *c > 127).collect() }
+    };
+    let unturned = vector(&mut machine, "unturned.png");
+    machine.order("dial 1 0.15");
+    machine.order("dial 2 0.4");
+    machine.order("dial 5 0.05");
+    let turned = vector(&mut machine, "turned.png");
+    let matrix = production.view().unwrap();
+    let rendered = render(&production, &matrix);
+    assert!(rendered.area() > size * size / 10, "{} pixels", rendered.area());
+    let off = rendered.disagreement(&turned);
+    // The beam is 0.75 pixels wide at least, so that its outline lies a pixel farther out than that of the surface.
+    assert!(off < 0.05, "the silhouettes differ in {off} of the area");
+    let wrong = rendered.disagreement(&unturned);
+    assert!(wrong > 0.15, "the comparison would not see a wrong view: {wrong}");
+}
+
+#[test]
+fn killing_the_workstation_leaves_the_host_with_a_clear_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut machine = Machine::start(PS340, &[]);
+    let line = format!("tcp:{}", machine.line);
+    let path = folder.path().to_path_buf();
+    let shown = std::thread::spawn(move || peris(&["show", "teapot", "--to", &line], &path));
+    while !machine.reply("show PERIS.MATRIX").starts_with("ok") {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    machine.kill();
+    let ended = shown.join().unwrap();
+    assert_eq!(ended.code, Some(4), "{}", ended.errors);
+    assert!(ended.errors.contains("the workstation closed the line"), "{}", ended.errors);
+}
+
+#[test]
+fn a_key_of_the_workstation_makes_the_host_render_and_another_ends_it() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.rhai"), SCENE.replace("256, 256", "64, 48")).unwrap();
+    let mut machine = Machine::start(PS340, &[]);
+    let line = format!("tcp:{}", machine.line);
+    let path = folder.path().to_path_buf();
+    let shown = std::thread::spawn(move || peris(&["show", "small.rhai", "--to", &line], &path));
+    while !machine.order("panel").contains("key 1: RENDER") {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let file = folder.path().join("raster.png");
+    let lit = |machine: &mut Machine| {
+        machine.order(&format!("picture raster {}", file.display()));
+        image::open(&file).unwrap().to_luma8().pixels().any(|p| p.0[0] > 60)
+    };
+    assert!(!lit(&mut machine));
+    machine.order("key 1");
+    let end = std::time::Instant::now() + tests::PATIENCE;
+    while !lit(&mut machine) {
+        assert!(std::time::Instant::now() < end, "nothing appears on the raster screen");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    machine.order("key 12");
+    assert_eq!(shown.join().unwrap().code, Some(0));
+    assert!(machine.runs(), "the workstation outlives its host");
+}
+
+#[test]
+fn what_goes_wrong_has_its_exit_code_and_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bad.rhai"), "sphere(1);\nsphere(-2);\n").unwrap();
+    let ended = peris(&["render", "bad.rhai"], folder.path());
+    assert_eq!(ended.code, Some(3));
+    assert!(ended.errors.contains("bad.rhai") && ended.errors.contains('2'), "{}", ended.errors);
+    let ended = peris(&["show", "teapot", "--to", "tcp:127.0.0.1:1"], folder.path());
+    assert_eq!(ended.code, Some(4));
+    assert!(ended.errors.contains("tcp:127.0.0.1:1"), "{}", ended.errors);
+    assert_eq!(peris(&["show", "teapot", "--to", "nowhere"], folder.path()).code, Some(2));
+    assert_eq!(peris(&["paint"], folder.path()).code, Some(2));
+    let environment = [("PERIS_PS340", "/nonexistent/ps340")];
+    let ended = run(PERIS, &["demo"], &environment, folder.path(), LIMIT);
+    assert_eq!(ended.code, Some(4));
+    assert!(ended.errors.contains("/nonexistent/ps340"), "{}", ended.errors);
+}
