@@ -6,6 +6,7 @@ use std::{
     path::Path,
     process::{Child, ChildStdin, Command, Stdio},
     sync::mpsc,
+    thread::JoinHandle,
     time::{Duration, Instant},
 };
 
@@ -17,6 +18,7 @@ pub const PATIENCE: Duration = Duration::from_secs(60);
 pub struct Machine {
     child: Child,
     orders: Option<ChildStdin>,
+    errors: Option<JoinHandle<String>>,
     replies: mpsc::Receiver<String>,
     /// Where its host line is, as `HOST:PORT`.
     pub line: String,
@@ -37,6 +39,8 @@ impl Machine {
             .spawn()
             .expect("the program starts");
         let orders = child.stdin.take();
+        // Read all along, so that the machine never waits for room in the pipe.
+        let errors = child.stderr.take().map(|errors| std::thread::spawn(move || read_all(errors)));
         let out = child.stdout.take().expect("standard output is piped");
         let (sender, replies) = mpsc::channel();
         std::thread::spawn(move || {
@@ -46,7 +50,7 @@ impl Machine {
                 }
             }
         });
-        let mut machine = Machine { child, orders, replies, line: String::new() };
+        let mut machine = Machine { child, orders, errors, replies, line: String::new() };
         loop {
             let line = machine.replies.recv_timeout(PATIENCE).expect("the machine gets ready");
             match line.strip_prefix("ready line tcp:") {
@@ -104,7 +108,7 @@ impl Machine {
 
     /// What it wrote on standard error; after its end.
     pub fn errors(&mut self) -> String {
-        self.child.stderr.take().map(read_all).unwrap_or_default()
+        self.errors.take().and_then(|errors| errors.join().ok()).unwrap_or_default()
     }
 }
 

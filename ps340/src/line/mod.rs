@@ -1,9 +1,9 @@
 //! The shell that moves bytes: host lines over TCP and Unix sockets, and text lines for operators.
 
-mod host;
+mod hosts;
 mod operator;
 
-pub use host::{MAX_WAITING_BYTES, Writer, serve_hosts};
+pub use hosts::{MAX_WAITING_BYTES, Writer, serve_hosts};
 pub use operator::{OperatorLine, serve_operators, serve_stdio};
 pub use protocol::address::{Address, AddressError};
 

@@ -35,6 +35,8 @@ pub const WORK_PER_FRAME: u64 = 200_000;
 /// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames; the rest are logged and
 /// counted only, so that a message that causes messages ends.
 pub const REPORTS_PER_FRAME: u64 = 1000;
+/// Messages of the machine between two frames that are written to the log of the process one by one.
+const LOGGED_PER_FRAME: u64 = 20;
 /// Messages of the machine that [`Machine::log`] keeps.
 const LOG_LINES: usize = 1000;
 /// Messages to the host that wait for the operator.
@@ -85,7 +87,8 @@ pub struct Machine {
     frame_buffer: FrameBuffer,
     frame: u64,
     work_left: u64,
-    reports_left: u64,
+    /// Messages of the machine since the latest frame.
+    reported: u64,
     network_idle: bool,
     update: Update,
     /// Version of the structure that `update` shows; none before the first.
@@ -118,7 +121,7 @@ impl Machine {
             frame_buffer: FrameBuffer::default(),
             frame: 0,
             work_left: WORK_PER_FRAME,
-            reports_left: REPORTS_PER_FRAME,
+            reported: 0,
             network_idle: true,
             update: Update::default(),
             updated: None,
@@ -163,12 +166,7 @@ impl Machine {
     pub fn next_frame(&mut self) {
         self.frame += 1;
         self.work_left = WORK_PER_FRAME;
-        if self.reports_left == 0 {
-            tracing::warn!(
-                "more than {REPORTS_PER_FRAME} messages in one frame: the rest did not reach ERROR and WARNING"
-            );
-        }
-        self.reports_left = REPORTS_PER_FRAME;
+        self.account_for_reports();
         let emissions = self.devices.frame();
         self.emit(emissions);
         let centiseconds = self.frame * 100 / FRAMES_PER_SECOND;
@@ -342,11 +340,23 @@ impl Machine {
         if self.log.len() >= LOG_LINES {
             self.log.pop_front();
         }
-        tracing::info!("{text}");
+        self.reported += 1;
+        if self.reported <= LOGGED_PER_FRAME {
+            tracing::info!("{text}");
+        }
         self.log.push_back(text.clone());
-        if self.reports_left > 0 {
-            self.reports_left -= 1;
+        if self.reported <= REPORTS_PER_FRAME {
             self.emit(vec![(instance, 1, Value::string(&text))]);
+        }
+    }
+
+    /// Says how many messages were too many for the log and for ERROR and WARNING since the latest frame.
+    fn account_for_reports(&mut self) {
+        let reported = std::mem::take(&mut self.reported);
+        if reported > LOGGED_PER_FRAME {
+            let unheard = reported.saturating_sub(REPORTS_PER_FRAME);
+            let rest = reported - LOGGED_PER_FRAME;
+            tracing::warn!("{rest} more messages in one frame; {unheard} of them did not reach ERROR and WARNING");
         }
     }
 
