@@ -34,7 +34,7 @@ pub(super) const DEMO: Row = Row {
 };
 
 /// What the demo turns: about the upright axis, then a little towards the viewer.
-const DEMO_DIALS: [Turn; 2] = [Turn { dial: 2, turns: 0.22 }, Turn { dial: 1, turns: -0.06 }];
+const DEMO_DIALS: [Turn; 2] = [Turn { dial: 2, turns: 0.14 }, Turn { dial: 1, turns: -0.06 }];
 
 /// A dial and how far it is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
