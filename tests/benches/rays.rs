@@ -1,8 +1,8 @@
 //! Rays per second: the octree, its two walks, and others on the same rays in the same run.
 //!
 //! First proves that the hits agree, then takes the times: processor seconds of one thread, median of five passes that
-//! alternate between the rivals. `RAYS_SIDE` sets the width of the picture (512); `RAYS_MESHES` names OBJ files,
-//! separated by colons, to measure beside the meshes made here.
+//! alternate between the rivals. `RAYS_SIDE` sets the width of the picture (512); `RAYS_MESHES` names mesh files,
+//! separated by colons, to measure beside the teapot and the bunny.
 
 #[path = "rays/rivals.rs"]
 mod rivals;
@@ -28,14 +28,14 @@ const STRIDE: usize = 8;
 
 fn main() {
     let side = std::env::var("RAYS_SIDE").ok().and_then(|text| text.parse().ok()).unwrap_or(512_usize).max(16);
-    let mut list = vec![shapes::torus(70_000.0), shapes::bumpy(6), shapes::sphere(6)];
+    let mut list = vec![shapes::pot(0.001), shapes::rabbit(0)];
     for path in std::env::var("RAYS_MESHES").unwrap_or_default().split(':').filter(|path| !path.is_empty()) {
-        match shapes::obj(path) {
+        match shapes::file(path) {
             Ok(shape) => list.push(shape),
             Err(error) => println!("{path}: {error}"),
         }
     }
-    list.push(shapes::bumpy(8));
+    list.push(shapes::rabbit(2));
     println!("Mrays/s, one thread except `all`; {} rays a set\n", side * side);
     list.iter().for_each(|shape| report(shape, side));
     growth(side);
@@ -89,10 +89,10 @@ fn report(shape: &Shape, side: usize) {
 /// How the cost of a ray grows with the number of triangles.
 fn growth(side: usize) {
     println!(
-        "growth: primary and random rays of a bumpy sphere\n  triangles   build     Mrays/s primary  random   cells a ray"
+        "growth: primary and random rays of the teapot\n  triangles   build     Mrays/s primary  random   cells a ray"
     );
-    for divisions in [2, 3, 4, 5, 6, 7, 8] {
-        let shape = shapes::bumpy(divisions);
+    for chord in [0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001] {
+        let shape = shapes::pot(chord);
         let (octree, built) = build(&shape);
         let sets = sets::sets(&shape, &octree, side.min(256));
         let count = sets[0].rays.len();
