@@ -7,7 +7,7 @@ use protocol::{
     command::{Arc, Command, Destination, Input, Object},
 };
 
-/// Degrees that one turn of a dial rotates. [S]: what clients of the time used.
+/// Degrees that one turn of a dial rotates: what clients of the time used.
 pub const DEGREES_PER_TURN: f64 = 200.0;
 /// Scale that one turn of dial 4 adds.
 pub const SCALE_PER_TURN: f64 = 1.0;

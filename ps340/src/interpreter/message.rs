@@ -17,7 +17,7 @@ pub enum Class {
 /// A message of the machine: `E 1 *** Syntax error near 'FOO'`.
 ///
 /// # Source
-/// The form is [M]; numbers and texts are ours, since those of the machine are not known.
+/// The form is remembered from the manuals; numbers and texts are ours, since those of the machine are not known.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
     /// E 1: a command that cannot be read.

@@ -2,7 +2,8 @@
 //!
 //! # Source
 //! Outputs of TABLETIN: a press sends `<6>` exactly once and `<3>` with the new code, a release `<3>` = 0 and
-//! `<2>` = FALSE [S]; `<1>` and `<4>` are the position while in range and while pressed [M], [U].
+//! `<2>` = FALSE, as clients of the time rely on; `<1>` and `<4>` are the position while in range (remembered) and while
+//! pressed (uncertain).
 
 use glam::DVec2;
 use protocol::Value;
@@ -77,7 +78,7 @@ impl Devices {
         }
     }
 
-    /// What the dials send at a frame: one message a dial at most, with the sum of its turns. [C]
+    /// What the dials send at a frame: one message a dial at most, with the sum of its turns. Ours.
     pub(super) fn frame(&mut self) -> Vec<Emission> {
         let turned = std::mem::take(&mut self.dials);
         let moved = (1..).zip(turned).filter(|(_, turns)| *turns != 0.0);

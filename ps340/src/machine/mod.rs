@@ -27,7 +27,7 @@ use host_line::HostLine;
 use protocol::{Name, Value, wire::MessageWriter};
 use std::collections::{BTreeMap, VecDeque};
 
-/// Frames a second: the nominal refresh rate. [M]
+/// Frames a second: the nominal refresh rate, as remembered from the manuals.
 pub const FRAMES_PER_SECOND: u64 = 60;
 /// Messages that functions deliver between two frames (at least one a firing); what is left waits for the next frame,
 /// so that a network that never rests stops neither the display nor the lines. Ours.
