@@ -1,6 +1,6 @@
 //! No stream of bytes, however damaged, panics or stops the decoders.
 //!
-//! For a long run: `GARBLED_CASES=1000000 cargo test --release -p protocol --test garbled`.
+//! In the long lane, with `PERIS_LONG=1`, each property is tried on 250,000 streams.
 
 use proptest::{
     prelude::*,
@@ -60,7 +60,7 @@ fn decode(stream: &[u8], size: usize) -> String {
 
 /// How many streams of each kind.
 fn cases() -> u32 {
-    std::env::var("GARBLED_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(300)
+    if std::env::var("PERIS_LONG").is_ok_and(|value| value == "1") { 250_000 } else { 300 }
 }
 
 proptest! {

@@ -166,7 +166,7 @@ impl Network {
     /// Harmless for an object that is no function.
     pub fn undefine(&mut self, id: ObjectId) {
         self.undefine_instance(id);
-        self.outside.retain(|(source, _), _| *source != id);
+        self.drop_outside(id, |_| true);
     }
 
     fn undefine_instance(&mut self, id: ObjectId) {
@@ -223,6 +223,15 @@ impl Network {
         }
     }
 
+    /// Forgets the outputs of an object that is no function for which `goes` is true.
+    fn drop_outside(&mut self, source: ObjectId, goes: impl Fn(&Output) -> bool) {
+        let range = self.outside.range((source, 0)..=(source, u16::MAX));
+        let gone: Vec<(ObjectId, u16)> = range.filter(|(_, arcs)| goes(arcs)).map(|(key, _)| *key).collect();
+        for key in gone {
+            self.outside.remove(&key);
+        }
+    }
+
     fn retain_arcs_of(&mut self, source: ObjectId, mut keep: impl FnMut(u16, Destination) -> bool) {
         if let Some(instance) = self.instance(source) {
             let run = instance.outputs;
@@ -233,7 +242,7 @@ impl Network {
         for (&(_, output), arcs) in self.outside.range_mut((source, 0)..=(source, u16::MAX)) {
             arcs.retain(|arc| keep(output, arc));
         }
-        self.outside.retain(|(object, _), arcs| *object != source || arcs.single() != Err(0));
+        self.drop_outside(source, |arcs| arcs.single() == Err(0));
     }
 
     /// The arcs that leave an object, as output and destination, in order.
