@@ -20,7 +20,7 @@ fn the_teapot() -> Mesh {
 /// Half of the rays go through a pinhole in front of the mesh, half are chords of a sphere around it.
 fn rays(mesh: &Mesh, count: usize) -> Vec<Ray> {
     let bounds = mesh.bounds().expect("the mesh has vertices");
-    let (center, radius) = ((bounds.low + bounds.high) / 2.0, (bounds.high - bounds.low).length() / 2.0);
+    let (center, radius) = ((bounds.min + bounds.max) / 2.0, (bounds.max - bounds.min).length() / 2.0);
     let side = ((count / 2) as f64).sqrt();
     (0..count)
         .map(|i| {
@@ -75,7 +75,7 @@ fn no_ray_leaves_the_bunny_through_a_vertex_or_an_edge() {
     let octree = Octree::build(&mesh.vertices, &mesh.triangles, &Settings::default()).expect("the octree is built");
     let bounds = mesh.bounds().expect("the mesh has vertices");
     let inside = DVec3::new(-0.02, 0.09, 0.0);
-    assert!(inside.cmpgt(bounds.low).all() && inside.cmplt(bounds.high).all(), "{bounds:?}");
+    assert!(inside.cmpgt(bounds.min).all() && inside.cmplt(bounds.max).all(), "{bounds:?}");
     let mut crossings = 0;
     let mut from = 0.0;
     let probe = Ray { origin: inside, direction: DVec3::new(0.123, 0.456, 0.789) };

@@ -5,45 +5,13 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::Mesh;
-
-/// An axis-parallel box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// The corner of smallest coordinates.
-    pub low: DVec3,
-    /// The corner of largest coordinates.
-    pub high: DVec3,
-}
-
-impl Bounds {
-    /// The smallest box around `points`; `None` if there are none.
-    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Bounds> {
-        let mut points = points.into_iter();
-        let first = points.next()?;
-        let bounds = Bounds { low: first, high: first };
-        Some(points.fold(bounds, |b, point| Bounds { low: b.low.min(point), high: b.high.max(point) }))
-    }
-
-    /// Lengths of the sides.
-    pub fn size(&self) -> DVec3 {
-        self.high - self.low
-    }
-
-    /// The middle.
-    pub fn center(&self) -> DVec3 {
-        self.low * 0.5 + self.high * 0.5
-    }
-
-    /// Distance between opposite corners.
-    pub fn diagonal(&self) -> f64 {
-        self.size().length()
-    }
-}
+use crate::numeric::bounds::Bounds;
 
 impl Mesh {
     /// The smallest axis-parallel box around all vertices; `None` without vertices.
     pub fn bounds(&self) -> Option<Bounds> {
-        Bounds::of(self.vertices.iter().copied())
+        let bounds = Bounds::of(self.vertices.iter().copied());
+        (!bounds.is_empty()).then_some(bounds)
     }
 
     /// Half the cross product of two sides of a triangle: along its normal, as long as its area.

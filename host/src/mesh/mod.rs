@@ -21,7 +21,6 @@ pub use check::EdgeReport;
 pub use edges::{Eye, Interior, Selection, wire};
 pub use error::{Fault, MeshError, Place, Problem};
 pub use file::{Format, parse, print, read, write};
-pub use measure::Bounds;
 pub(crate) use measure::bits;
 pub(crate) use placement::normal_matrix;
 pub use polylines::{Polylines, polylines};

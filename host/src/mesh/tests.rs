@@ -49,7 +49,7 @@ fn files_come_back_as_they_were_written() {
                 assert!((back.signed_volume() - mesh.signed_volume()).abs() < 1e-4);
                 // Every triangle comes back, each corner moved by half a step in each direction at most.
                 let step = 2.0 / 65535.0;
-                let whole = |p: DVec3| ((p - mesh.bounds().unwrap().low) / step).round().as_i64vec3().to_array();
+                let whole = |p: DVec3| ((p - mesh.bounds().unwrap().min) / step).round().as_i64vec3().to_array();
                 let corners = |mesh: &Mesh| {
                     let one = |t: usize| {
                         let mut corners = mesh.corners(t).map(whole);

@@ -1,5 +1,6 @@
 //! Numbers: rays, exact predicates, seeded sampling.
 
+pub mod bounds;
 pub mod predicates;
 pub mod ray;
 pub mod sampling;

@@ -2,7 +2,8 @@
 
 use super::{Decision, stage::Facts};
 use crate::illumination::Light;
-use crate::scene::{Bounds, Prepared, View};
+use crate::numeric::bounds::Bounds;
+use crate::scene::{Prepared, View};
 use glam::DVec3;
 
 /// Decides for each object whether it can influence the picture.

@@ -2,13 +2,11 @@
 //!
 //! Modelling space is right-handed: x right, y up, z towards the viewer. Lengths are in scene units.
 
-mod bounds;
 mod error;
 mod prepared;
 mod shape;
 mod view;
 
-pub use bounds::Bounds;
 pub use error::SceneError;
 pub use prepared::{Prepared, PreparedObject};
 pub use shape::{Shape, ShapeError};

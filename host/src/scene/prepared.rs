@@ -1,8 +1,9 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
-use super::{Bounds, Camera, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
+use super::{Camera, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
+use crate::numeric::bounds::Bounds;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
 /// Most triangles in a scene.

@@ -1,6 +1,7 @@
 //! Facts about scenes.
 
 use super::*;
+use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 
 fn sphere(transform: DMat4) -> Scene {

@@ -1,6 +1,7 @@
 //! From where a scene is seen: a camera, or the matrix that a workstation reads back.
 
-use super::{Bounds, SceneError};
+use super::SceneError;
+use crate::numeric::bounds::Bounds;
 use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 

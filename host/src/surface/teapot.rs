@@ -36,16 +36,16 @@ mod tests {
 
     use super::super::{Surface, Tolerance, tessellate};
     use super::*;
-    use crate::mesh::Bounds;
+    use crate::numeric::bounds::Bounds;
 
     #[test]
     fn the_data_has_the_known_parts_and_bounds() {
         let parts = [("rim", 4), ("body", 8), ("handle", 4), ("spout", 4), ("lid", 8), ("bottom", 4)];
         assert_eq!(teapot_parts(), parts.map(|(name, count)| (name.to_owned(), count)));
         let points = teapot().into_iter().flat_map(|patch| patch.control().concat());
-        let bounds = Bounds::of(points).unwrap();
-        assert_eq!(bounds.low, DVec3::new(-3.0, 0.0, -2.0));
-        assert_eq!(bounds.high, DVec3::new(3.525, 3.15, 2.0));
+        let bounds = Bounds::of(points);
+        assert_eq!(bounds.min, DVec3::new(-3.0, 0.0, -2.0));
+        assert_eq!(bounds.max, DVec3::new(3.525, 3.15, 2.0));
     }
 
     #[test]

@@ -152,7 +152,7 @@ pub(super) fn print(mesh: &Mesh) -> Result<Vec<u8>, Fault> {
     }
     let bounds = mesh.bounds().ok_or_else(|| unsuited("the mesh is empty"))?;
     let step = bounds.size().max_element() / STEPS;
-    let quantised = |p: &DVec3| ((*p - bounds.low) / step).round().as_i64vec3();
+    let quantised = |p: &DVec3| ((*p - bounds.min) / step).round().as_i64vec3();
     let positions = mesh.vertices.iter().map(quantised).collect();
     let mut encoder = Encoder::new(mesh, positions);
     encoder
@@ -161,7 +161,7 @@ pub(super) fn print(mesh: &Mesh) -> Result<Vec<u8>, Fault> {
     let mut bytes = MAGIC.to_vec();
     bytes.extend_from_slice(&(report.vertices as u32).to_le_bytes());
     bytes.extend_from_slice(&(report.triangles as u32).to_le_bytes());
-    for value in bounds.low.to_array().into_iter().chain([step]) {
+    for value in bounds.min.to_array().into_iter().chain([step]) {
         bytes.extend_from_slice(&value.to_le_bytes());
     }
     bytes.extend(encoder.bits.into_bytes());

@@ -1,7 +1,8 @@
 //! From a point of the picture to a ray into the scene, for cameras and for matrices.
 
+use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
-use crate::scene::{Bounds, Camera, Projection, View};
+use crate::scene::{Camera, Projection, View};
 use glam::{DMat3, DVec3, DVec4};
 
 /// A ray with the part of it in which something can be seen.

@@ -35,9 +35,14 @@ impl Bounds {
         if self.is_empty() { DVec3::ZERO } else { self.min + (self.max - self.min) * 0.5 }
     }
 
+    /// Lengths of the sides; 0 for the empty box.
+    pub fn size(&self) -> DVec3 {
+        if self.is_empty() { DVec3::ZERO } else { self.max - self.min }
+    }
+
     /// Length of the diagonal; 0 for the empty box.
     pub fn diagonal(&self) -> f64 {
-        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+        self.size().length()
     }
 
     /// The eight corners.
