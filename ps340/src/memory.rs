@@ -8,9 +8,10 @@ use crate::{
     structure::{Node, NodeFault, Structures},
 };
 use protocol::{Name, Value, command::Input};
+use std::collections::HashSet;
 
-/// Bytes of user data that the machine holds. The real ones had 1 to 4 megabytes; ours, so that a hostile
-/// host cannot take all memory of the computer.
+/// Bytes of names, nodes and open structures that the machine holds. The real ones had 1 to 4 megabytes; ours, so that a
+/// hostile host cannot take all memory of the computer. Queues and lines have limits of their own.
 pub const MASS_MEMORY: usize = 2 << 30;
 
 /// What a name table, a function and its queues take, for the account of memory.
@@ -75,7 +76,7 @@ impl MassMemory {
         }
         let id = self.user_object(name)?;
         self.network.undefine(id);
-        let kept = node.own_members();
+        let kept: HashSet<ObjectId> = node.own_members().into_iter().collect();
         if let Some(before) = self.structures.define(id, node) {
             let orphans = before.own_members().into_iter().filter(|o| !kept.contains(o)).collect();
             self.undefine_all(orphans);
@@ -135,8 +136,32 @@ impl MassMemory {
             self.network.send(to, input, value, &mut self.effects);
             Ok(())
         } else {
-            self.structures.accept(to, input, value)
+            self.accept(to, input, value)
         }
+    }
+
+    /// A message for a node. Data nodes do not grow when the mass memory is full.
+    ///
+    /// # Errors
+    /// The fault of a node that does not take it.
+    pub fn accept(&mut self, node: ObjectId, input: Input, value: Value) -> Result<(), NodeFault> {
+        let grows = matches!(input, Input::Append | Input::Substitute) || matches!(value, Value::String(_));
+        if grows && self.bytes() > MASS_MEMORY {
+            return Err(NodeFault::Full { input });
+        }
+        self.structures.accept(node, input, value)
+    }
+
+    /// INCLUDE. Returns false if `into` is a node that holds no others.
+    ///
+    /// # Errors
+    /// [`Refusal::Full`].
+    pub fn include(&mut self, name: &Name, into: &Name) -> Result<bool, Refusal> {
+        let (member, group) = (self.object(name)?, self.object(into)?);
+        if self.bytes() > MASS_MEMORY {
+            return Err(Refusal::Full);
+        }
+        Ok(self.network.function(group).is_none() && self.structures.include(member, group))
     }
 
     /// INITIALIZE: user objects, all connections and the display list go.

@@ -2,7 +2,7 @@
 
 use crate::port::ObjectId;
 use protocol::Name;
-use std::collections::{BTreeMap, HashMap};
+use std::{collections::BTreeMap, ops::Bound};
 
 /// How many objects there may be; ours, so that a hostile host cannot fill the memory with names.
 pub const MAX_OBJECTS: usize = 1 << 22;
@@ -15,11 +15,10 @@ pub struct TooManyObjects;
 /// The table of names.
 #[derive(Debug, Default)]
 pub struct Objects {
-    ids: HashMap<Name, ObjectId>,
-    /// The name of each object; none if it was forgotten, or its place is free.
+    ids: BTreeMap<Name, ObjectId>,
+    /// The name of each object; none if it was forgotten.
     names: Vec<Option<Name>>,
     system: usize,
-    free: Vec<ObjectId>,
 }
 
 impl Objects {
@@ -31,15 +30,11 @@ impl Objects {
         if let Some(id) = self.ids.get(name) {
             return Ok(*id);
         }
-        let id = match self.free.pop() {
-            Some(id) => id,
-            None if self.names.len() >= MAX_OBJECTS => return Err(TooManyObjects),
-            None => {
-                self.names.push(None);
-                ObjectId::new(self.names.len() - 1)
-            }
-        };
-        self.names[id.index()] = Some(name.clone());
+        if self.names.len() >= MAX_OBJECTS {
+            return Err(TooManyObjects);
+        }
+        let id = ObjectId::new(self.names.len());
+        self.names.push(Some(name.clone()));
         self.ids.insert(name.clone(), id);
         Ok(id)
     }
@@ -64,7 +59,8 @@ impl Objects {
         id.index() < self.system
     }
 
-    /// Takes the name from an object; what refers to the object keeps it.
+    /// Takes the name from an object; what refers to the object keeps it. Its number is used again after
+    /// [`clear_user`](Self::clear_user) only.
     pub fn forget(&mut self, name: &str) -> Option<ObjectId> {
         let id = self.ids.remove(name)?;
         self.names[id.index()] = None;
@@ -73,28 +69,23 @@ impl Objects {
 
     /// The user's objects whose names begin with `prefix`, by name.
     pub fn user_objects(&self, prefix: &str) -> Vec<ObjectId> {
-        let found: BTreeMap<&Name, ObjectId> = self
-            .ids
-            .iter()
-            .filter(|(name, id)| !self.is_system(**id) && name.as_str().starts_with(prefix))
-            .map(|(name, id)| (name, *id))
-            .collect();
-        found.into_values().collect()
+        let from = self.ids.range::<str, _>((Bound::Included(prefix), Bound::Unbounded));
+        let matching = from.take_while(|(name, _)| name.as_str().starts_with(prefix));
+        matching.map(|(_, id)| *id).filter(|id| !self.is_system(*id)).collect()
     }
 
-    /// Gives up all user objects; their places are used again.
+    /// Gives up all user objects; their numbers are used again.
     pub fn clear_user(&mut self) -> impl Iterator<Item = ObjectId> + use<> {
         let system = self.system;
         self.ids.retain(|_, id| id.index() < system);
         let end = self.names.len();
         self.names.truncate(system);
-        self.free.clear();
         (system..end).map(ObjectId::new)
     }
 
     /// How many objects there are, the system's included.
     pub fn len(&self) -> usize {
-        self.names.len() - self.free.len()
+        self.names.len()
     }
 
     /// Whether there are none.

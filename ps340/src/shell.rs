@@ -125,6 +125,8 @@ struct Shell {
     epoch: Instant,
     writers: HashMap<LineId, (String, Writer)>,
     waits: Vec<(Wait, oneshot::Sender<String>)>,
+    /// Messages lost since the latest frame, by line.
+    lost: HashMap<LineId, u64>,
 }
 
 impl Shell {
@@ -137,26 +139,38 @@ impl Shell {
             epoch: Instant::now(),
             writers: HashMap::new(),
             waits: Vec::new(),
+            lost: HashMap::new(),
         })
     }
 
     fn run(mut self) -> End {
         loop {
             let mut event = self.next_event();
-            while let Some(next) = event {
+            // However much the hosts send, frames pass when they are due.
+            for _ in 0..WAITING_EVENTS {
+                let Some(next) = event else { break };
                 if let Some(end) = self.take(next) {
                     return end;
                 }
-                event = self.inbox.try_recv().ok();
+                event = if self.frame_is_due() { None } else { self.inbox.try_recv().ok() };
             }
-            let until = match self.clock {
-                Clock::Real => self.now(),
-                Clock::Virtual if self.waits.is_empty() => 0,
-                Clock::Virtual => time_of_frame(self.machine.frame() + 1),
-            };
+            if let Some(end) = event.and_then(|last| self.take(last)) {
+                return end;
+            }
             self.poll_waits();
+            // One frame a turn, so that events are seen between frames that are late.
+            let next = time_of_frame(self.machine.frame() + 1);
+            let until = if self.frame_is_due() { next } else { 0 };
             self.step(None, until);
             self.poll_waits();
+        }
+    }
+
+    /// Whether it is time for the next frame.
+    fn frame_is_due(&mut self) -> bool {
+        match self.clock {
+            Clock::Real => self.now() >= time_of_frame(self.machine.frame() + 1),
+            Clock::Virtual => !self.waits.is_empty(),
         }
     }
 
@@ -225,10 +239,16 @@ impl Shell {
 
     fn step(&mut self, input: Option<Input>, until: Micros) {
         for output in self.machine.step(input, until) {
-            if let Some((peer, writer)) = self.writers.get(&output.line)
+            if let Some((_, writer)) = self.writers.get(&output.line)
                 && !writer.send(output.bytes)
             {
-                tracing::warn!("host line {peer} does not read; a message to it is lost");
+                *self.lost.entry(output.line).or_default() += 1;
+            }
+        }
+        if until > 0 {
+            for (line, lost) in std::mem::take(&mut self.lost) {
+                let peer = self.writers.get(&line).map_or("that closed", |w| w.0.as_str());
+                tracing::warn!("host line {peer} does not read; {lost} messages to it are lost");
             }
         }
     }

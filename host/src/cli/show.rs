@@ -86,6 +86,7 @@ fn serve(
     threads: Option<NonZeroUsize>,
 ) -> Result<(), Failure> {
     let orders = emulator.as_ref().map(|_| read_orders());
+    let mut unanswered = 0_u64;
     loop {
         if interrupted() {
             return Err(Failure::new(Exit::Interrupted, anyhow::anyhow!("interrupted")));
@@ -93,13 +94,18 @@ fn serve(
         if let (Some(orders), Some(emulator)) = (&orders, emulator.as_mut()) {
             match orders.try_recv() {
                 Ok(order) if order == "quit" => return Ok(()),
-                Ok(order) => match emulator.order(&order) {
-                    Ok(reply) => println!("ok {}", reply.replace("\\n", "\n")),
-                    Err(WorkstationError::Order { reason, .. }) => println!("error {reason}"),
-                    Err(error) => return Err(error.into()),
-                },
+                Ok(order) => {
+                    emulator.give(&order)?;
+                    unanswered += 1;
+                }
                 Err(mpsc::TryRecvError::Empty) => {}
-                Err(mpsc::TryRecvError::Disconnected) => return Ok(()),
+                // The end of the orders is the end, once all are answered.
+                Err(mpsc::TryRecvError::Disconnected) if unanswered == 0 => return Ok(()),
+                Err(mpsc::TryRecvError::Disconnected) => {}
+            }
+            if let Some(reply) = emulator.reply()? {
+                unanswered -= 1;
+                println!("{}", reply.replace("\\n", "\n"));
             }
         }
         let message = match production.session().message(GLANCE, "a key") {

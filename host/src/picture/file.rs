@@ -2,6 +2,7 @@
 
 use super::{Picture, Pixel};
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use protocol::raster::linear_from_srgb;
 use std::path::{Path, PathBuf};
 
 /// Most bytes that reading a picture may allocate.
@@ -43,25 +44,6 @@ pub enum PictureError {
         /// Why.
         source: std::io::Error,
     },
-}
-
-/// Encodes linear light as an sRGB byte.
-///
-/// s = 12.92 l for l <= 0.0031308, else 1.055 l^(1/2.4) - 0.055; clipped to 0..=1, rounded to 255 steps.
-/// What is not a number becomes 0.
-///
-/// # Source
-/// IEC 61966-2-1.
-pub fn encode_srgb(linear: f32) -> u8 {
-    let l = f64::from(linear).clamp(0.0, 1.0);
-    let s = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
-    (s * 255.0).round() as u8
-}
-
-/// Decodes an sRGB byte to linear light, 0..=1; the inverse of [`encode_srgb`].
-pub fn decode_srgb(byte: u8) -> f32 {
-    let s = f64::from(byte) / 255.0;
-    (if s <= 0.040_45 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }) as f32
 }
 
 fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
@@ -108,17 +90,6 @@ impl Picture {
         .map_err(failed)
     }
 
-    /// Writes the coverage alone as a grey PNG; white is covered.
-    ///
-    /// # Errors
-    /// [`PictureError::File`] if the file cannot be written.
-    pub fn write_coverage(&self, path: &Path) -> Result<(), PictureError> {
-        let bytes = self.coverage8();
-        let kind = image::ColorType::L8;
-        image::save_buffer_with_format(path, &bytes, self.width, self.height, kind, ImageFormat::Png)
-            .map_err(|source| PictureError::File { path: path.into(), source })
-    }
-
     /// Reads a PNG or EXR file back into linear light. Without an alpha channel, everything counts as covered.
     ///
     /// # Errors
@@ -140,7 +111,7 @@ impl Picture {
             }
         } else {
             for (pixel, p) in picture.pixels.iter_mut().zip(decoded.to_rgba8().pixels()) {
-                let radiance = [p[0], p[1], p[2]].map(decode_srgb);
+                let radiance = [p[0], p[1], p[2]].map(linear_from_srgb);
                 *pixel = Pixel { radiance, coverage: f32::from(p[3]) / 255.0 };
             }
         }
@@ -159,19 +130,6 @@ mod tests {
             *pixel = Pixel { radiance: [x, 1.5 * x, 3.0 - x], coverage: x };
         }
         picture
-    }
-
-    #[test]
-    fn every_srgb_byte_survives_decoding_and_encoding() {
-        for byte in 0..=255u8 {
-            assert_eq!(encode_srgb(decode_srgb(byte)), byte);
-        }
-    }
-
-    #[test]
-    fn srgb_is_clipped_and_never_fails() {
-        assert_eq!([-1.0, 0.0, 1.0, 7.0, f32::NAN, f32::INFINITY].map(encode_srgb), [0, 0, 255, 255, 0, 255]);
-        assert_eq!(encode_srgb(0.215_860_5), 128, "((128 / 255 + 0.055) / 1.055)^2.4");
     }
 
     #[test]

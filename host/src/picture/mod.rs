@@ -4,7 +4,9 @@ mod difference;
 mod file;
 
 pub use difference::{Difference, difference};
-pub use file::{PictureError, decode_srgb, encode_srgb};
+pub use file::PictureError;
+
+use protocol::raster::srgb_from_linear;
 
 /// Most pixels that a picture may have (16384 x 16384).
 pub const MAX_PIXELS: u64 = 1 << 28;
@@ -71,7 +73,7 @@ impl Picture {
     ///
     /// Radiance 1 becomes 255; what is brighter is clipped.
     pub fn to_srgb8(&self) -> Vec<u8> {
-        self.pixels.iter().flat_map(|p| p.radiance.map(encode_srgb)).collect()
+        self.pixels.iter().flat_map(|p| p.radiance.map(srgb_from_linear)).collect()
     }
 
     /// The coverage as eight bits a pixel, from the top row on; 255 is full coverage.

@@ -70,7 +70,7 @@ impl Production {
         let prepared = Prepared::new(scene)?;
         let start = Instant::now();
         let mut session = Session::attach(line)?;
-        let shown = structure::commands(scene, &prepared.camera, prepared.bounds.center(), drawing)?;
+        let shown = structure::commands(scene, &prepared.camera, &prepared.bounds, drawing)?;
         session.show(&shown, prepared.bounds.diagonal().max(f64::MIN_POSITIVE))?;
         let sent = Sent { lines: shown.lines, points: shown.points, seconds: start.elapsed().as_secs_f64() };
         Ok(Production { prepared, session, depth_clipping: shown.depth_clipping, sent })

@@ -87,7 +87,7 @@ impl Camera {
     pub fn projection(&self) -> Option<Projection> {
         let [right, up, forward] = self.axes()?;
         let t = self.half_tangent();
-        let back = self.far.unwrap_or(10.0 * (self.at - self.from).length());
+        let back = self.far.unwrap_or(10.0 * (self.at - self.from).length().max(self.near));
         let row = |v: DVec3| v.extend(-v.dot(self.from));
         let depth = row(forward);
         let z = (depth - DVec4::new(0.0, 0.0, 0.0, self.near)) * (back / (back - self.near));

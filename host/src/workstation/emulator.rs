@@ -4,14 +4,20 @@ use super::WorkstationError;
 use protocol::address::Address;
 use std::{
     env,
-    io::{BufRead, BufReader, Write},
+    io::{BufRead, BufReader, Read, Write},
+    os::unix::process::CommandExt,
     path::PathBuf,
-    process::{Child, ChildStdin, ChildStdout, Command, Stdio},
+    process::{Child, ChildStdin, Command, Stdio},
+    sync::mpsc,
     time::{Duration, Instant},
 };
 
 /// The environment variable that says where the program `ps340` is.
 pub const PROGRAM_VARIABLE: &str = "PERIS_PS340";
+/// How long a process may take until it listens.
+const START_TIME: Duration = Duration::from_secs(30);
+/// How long an order may take.
+pub const ORDER_TIME: Duration = Duration::from_secs(120);
 /// How long a process that was told to quit may take before it is killed.
 const QUIT_TIME: Duration = Duration::from_secs(2);
 
@@ -20,7 +26,7 @@ const QUIT_TIME: Duration = Duration::from_secs(2);
 pub struct Emulator {
     child: Child,
     orders: Option<ChildStdin>,
-    replies: BufReader<ChildStdout>,
+    replies: mpsc::Receiver<String>,
     line: Address,
 }
 
@@ -35,6 +41,8 @@ impl Emulator {
         let error = |e: std::io::Error| WorkstationError::Start { program: program.clone(), reason: e.to_string() };
         let mut child = Command::new(&program)
             .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio"])
+            // A group of its own: Ctrl-C on the terminal is ours to answer, and ends it through us.
+            .process_group(0)
             .env("PS340_LOG", env::var("PS340_LOG").unwrap_or_else(|_| "warn".into()))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -43,14 +51,16 @@ impl Emulator {
         let (Some(orders), Some(replies)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(error(std::io::ErrorKind::BrokenPipe.into()));
         };
-        let mut replies = BufReader::new(replies);
+        let replies = read_lines(replies);
         let mut line = None;
         loop {
-            let mut text = String::new();
-            if replies.read_line(&mut text).map_err(error)? == 0 {
-                return Err(error(std::io::Error::other("it ended at once")));
-            }
-            match text.trim_end() {
+            let text = replies.recv_timeout(START_TIME).map_err(|e| {
+                error(std::io::Error::other(match e {
+                    mpsc::RecvTimeoutError::Timeout => "it does not get ready",
+                    mpsc::RecvTimeoutError::Disconnected => "it ended at once",
+                }))
+            })?;
+            match text.as_str() {
                 "ready" => break,
                 other => line = other.strip_prefix("ready line ").and_then(|a| a.parse().ok()).or(line),
             }
@@ -72,24 +82,63 @@ impl Emulator {
     /// Gives an order to the operator line, and returns the reply without its `ok`.
     ///
     /// # Errors
-    /// [`WorkstationError::Order`] if the order is refused, [`WorkstationError::Ended`] if the process is gone.
+    /// [`WorkstationError::Order`] if the order is refused, [`WorkstationError::Silent`] if there is no reply within
+    /// [`ORDER_TIME`], [`WorkstationError::Ended`] if the process is gone.
     pub fn order(&mut self, order: &str) -> Result<String, WorkstationError> {
-        let ended = |_| WorkstationError::Ended;
-        let orders = self.orders.as_mut().ok_or(WorkstationError::Ended)?;
-        writeln!(orders, "{order}").and_then(|()| orders.flush()).map_err(ended)?;
-        let mut reply = String::new();
-        if self.replies.read_line(&mut reply).map_err(ended)? == 0 {
-            return Err(WorkstationError::Ended);
-        }
-        let reply = reply.trim_end();
-        match reply.strip_prefix("ok") {
-            Some(text) => Ok(text.trim_start().to_string()),
-            None => {
-                let reason = reply.strip_prefix("error ").unwrap_or(reply).to_string();
-                Err(WorkstationError::Order { order: order.to_string(), reason })
+        self.give(order)?;
+        match self.replies.recv_timeout(ORDER_TIME) {
+            Ok(reply) => understood(order, &reply),
+            Err(mpsc::RecvTimeoutError::Disconnected) => Err(WorkstationError::Ended),
+            Err(mpsc::RecvTimeoutError::Timeout) => {
+                Err(WorkstationError::Silent { what: format!("the reply to '{order}'"), seconds: ORDER_TIME.as_secs() })
             }
         }
     }
+
+    /// Gives an order without waiting for the reply, which [`reply`](Self::reply) gets.
+    ///
+    /// # Errors
+    /// [`WorkstationError::Ended`] if the process is gone.
+    pub fn give(&mut self, order: &str) -> Result<(), WorkstationError> {
+        let orders = self.orders.as_mut().ok_or(WorkstationError::Ended)?;
+        writeln!(orders, "{order}").and_then(|()| orders.flush()).map_err(|_| WorkstationError::Ended)
+    }
+
+    /// The next reply line, if it is there.
+    ///
+    /// # Errors
+    /// [`WorkstationError::Ended`] if the process is gone.
+    pub fn reply(&mut self) -> Result<Option<String>, WorkstationError> {
+        match self.replies.try_recv() {
+            Ok(reply) => Ok(Some(reply)),
+            Err(mpsc::TryRecvError::Empty) => Ok(None),
+            Err(mpsc::TryRecvError::Disconnected) => Err(WorkstationError::Ended),
+        }
+    }
+}
+
+/// A reply without its `ok`.
+fn understood(order: &str, reply: &str) -> Result<String, WorkstationError> {
+    match reply.strip_prefix("ok") {
+        Some(text) => Ok(text.trim_start().to_string()),
+        None => {
+            let reason = reply.strip_prefix("error ").unwrap_or(reply).to_string();
+            Err(WorkstationError::Order { order: order.to_string(), reason })
+        }
+    }
+}
+
+/// Lines without their ends, read by a thread of their own, so that a wait for one can have an end.
+fn read_lines(from: impl Read + Send + 'static) -> mpsc::Receiver<String> {
+    let (sender, lines) = mpsc::channel();
+    std::thread::spawn(move || {
+        for line in BufReader::new(from).lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    lines
 }
 
 impl Drop for Emulator {

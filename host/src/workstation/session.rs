@@ -28,17 +28,26 @@ const BUFFER_BYTES: usize = 256 << 10;
 /// A byte stream in both directions.
 trait Line: Read + Write + Send {
     fn set_read_timeout(&self, time: Duration) -> io::Result<()>;
+    fn set_write_timeout(&self, time: Duration) -> io::Result<()>;
 }
 
 impl Line for TcpStream {
     fn set_read_timeout(&self, time: Duration) -> io::Result<()> {
         TcpStream::set_read_timeout(self, Some(time))
     }
+
+    fn set_write_timeout(&self, time: Duration) -> io::Result<()> {
+        TcpStream::set_write_timeout(self, Some(time))
+    }
 }
 
 impl Line for UnixStream {
     fn set_read_timeout(&self, time: Duration) -> io::Result<()> {
         UnixStream::set_read_timeout(self, Some(time))
+    }
+
+    fn set_write_timeout(&self, time: Duration) -> io::Result<()> {
+        UnixStream::set_write_timeout(self, Some(time))
     }
 }
 
@@ -72,6 +81,7 @@ impl Session {
             }
             Address::Unix(path) => Box::new(UnixStream::connect(path).map_err(failed)?),
         };
+        line.set_write_timeout(ANSWER_TIME).map_err(failed)?;
         let mut session =
             Session { line, out: Vec::new(), reader: MessageReader::default(), messages: VecDeque::new(), marks: 0 };
         MessageForm::Packets.write_request(&mut session.out);
@@ -155,7 +165,8 @@ impl Session {
     /// [`WorkstationError::Silent`], [`WorkstationError::Closed`].
     pub fn synchronize(&mut self) -> Result<(), WorkstationError> {
         self.marks += 1;
-        let mark = format!("PERIS MARK {}", self.marks);
+        // Every host gets every message: the process tells the marks of two hosts apart.
+        let mark = format!("PERIS MARK {} {}", std::process::id(), self.marks);
         self.commands(&[network::send(Value::string(&mark), 1, "HOST_MESSAGE")])?;
         let mut others = VecDeque::new();
         let result = loop {

@@ -7,6 +7,7 @@ use super::{WorkstationError, network::name};
 use crate::{
     illumination::Material,
     mesh::{Eye, Mesh, Selection, polylines},
+    numeric::bounds::Bounds,
     scene::{Camera, Object, Scene},
 };
 use glam::{DMat4, DVec3};
@@ -17,6 +18,10 @@ use protocol::{
 
 /// The name of the structure.
 pub const ROOT: &str = "PERIS";
+/// The front boundary is no nearer than this part of the back one, when the camera does not say where it is.
+const NEAREST_PART: f64 = 1e-3;
+/// How many times farther than the scene nothing is cut, when the camera cuts in front only.
+const FAR_REACHES: f64 = 1e6;
 /// Intensity at the back of the scene; 1 at its front.
 const BACK_INTENSITY: f64 = 0.25;
 
@@ -68,13 +73,13 @@ pub struct Shown {
 ///
 /// # Errors
 /// [`WorkstationError::Scene`], if the camera cannot see or an object cannot be tessellated.
-pub fn commands(scene: &Scene, camera: &Camera, center: DVec3, drawing: &Drawing) -> Result<Shown, WorkstationError> {
+pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawing) -> Result<Shown, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(e);
     camera.check().map_err(|e| failed(e.to_string()))?;
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
     shown.commands.push(Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())]));
     begin(&mut shown.commands, ROOT);
-    view(&mut shown.commands, camera, center, shown.depth_clipping)?;
+    view(&mut shown.commands, camera, bounds, shown.depth_clipping)?;
     for (index, object) in scene.objects.iter().enumerate() {
         let list = vectors(object, camera, drawing, &mut shown)?;
         begin(&mut shown.commands, &format!("O{}", index + 1));
@@ -106,18 +111,16 @@ fn mirrored(p: DVec3) -> DVec3 {
 fn view(
     commands: &mut Vec<Command>,
     camera: &Camera,
-    center: DVec3,
+    bounds: &Bounds,
     depth_clipping: bool,
 ) -> Result<(), WorkstationError> {
+    let center = bounds.center();
     let projection = camera.projection().ok_or_else(|| WorkstationError::Scene("the camera cannot see".into()))?;
     let (horizontal, vertical) = ([-1.0, 1.0], [-1.0, 1.0]);
     operate(commands, None, Operate::Viewport { horizontal, vertical, intensity: Some([BACK_INTENSITY, 1.0]) });
     operate(commands, Some("CLIP"), Operate::SetDepthClipping(depth_clipping));
-    // Depth cueing runs from the front to the back of what is looked at, unless the camera says where it ends.
-    let distance = projection.to_clip.row(3).dot(center.extend(1.0));
-    let far = camera.far.unwrap_or(distance * 1.8);
-    let near = if camera.near > 0.0 { camera.near } else { (distance * 0.4).min(far / 2.0) };
-    let boundaries = Some(Boundaries { front: near, back: far });
+    let depth = projection.to_clip.row(3).dot(bounds.center().extend(1.0));
+    let boundaries = Some(boundaries(camera, depth, bounds.diagonal() / 2.0));
     operate(commands, Some("VIEW"), Operate::FieldOfView { angle: camera.field_of_view, boundaries });
     let (at, from) = (mirrored(camera.at), mirrored(camera.from));
     // The workstation takes UP as a point above AT.
@@ -131,6 +134,20 @@ fn view(
     operate(commands, None, Operate::Translate(mirrored(-center)));
     operate(commands, Some("MATRIX"), Operate::XformMatrix);
     Ok(())
+}
+
+/// Front and back for a scene whose centre lies at `depth` from the eye, and which is no larger than a sphere of `radius`.
+///
+/// Where the camera does not say, the depth cue runs over that sphere, which the scene does not leave when dials turn it
+/// about its centre. A camera that cuts in front only gets a back so far away that nothing is cut there.
+fn boundaries(camera: &Camera, depth: f64, radius: f64) -> Boundaries {
+    let reach = (depth.abs() + radius).max(f64::MIN_POSITIVE.sqrt());
+    match (camera.near > 0.0, camera.far) {
+        (true, Some(back)) => Boundaries { front: camera.near, back },
+        (true, None) => Boundaries { front: camera.near, back: FAR_REACHES * reach.max(camera.near) },
+        (false, Some(back)) => Boundaries { front: back * NEAREST_PART, back },
+        (false, None) => Boundaries { front: (depth - radius).max(reach * NEAREST_PART), back: reach },
+    }
 }
 
 /// The lines of one object.

@@ -1,8 +1,10 @@
 //! What a host can do to the raster screen: the operations of a raster packet as plain data, and their bytes.
 
 mod binary;
+mod transfer;
 
 pub use binary::{MAX_LOOKUP_ENTRIES, MAX_RUNS, RasterOpcode, decode, encode, record};
+pub use transfer::{linear_from_srgb, srgb_from_linear};
 
 /// Width of the raster screen, in pixels. \[M\], size class \[S\].
 pub const RASTER_WIDTH: u32 = 640;

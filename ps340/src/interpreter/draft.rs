@@ -133,6 +133,17 @@ impl Draft {
     }
 }
 
+/// Bytes that an object takes while its structure is open.
+pub(super) fn bytes(object: &Object) -> usize {
+    size_of::<Item>()
+        + match object {
+            Object::VectorList(list) => list.points.len() * size_of::<[f32; 4]>() + list.lines.len(),
+            Object::Characters(characters) => characters.text.len(),
+            Object::Instance(names) => names.len() * size_of::<Name>(),
+            Object::Nil | Object::BeginStructure | Object::Operate { .. } | Object::Function { .. } => 0,
+        }
+}
+
 /// What a reference made inside the structure `path` means.
 fn scoped(path: &Name, reference: &Name, names: &HashSet<Name>) -> Name {
     let mut scope = Some(path.as_str());

@@ -6,7 +6,7 @@ mod message;
 pub use message::{Class, Message};
 
 use crate::{
-    memory::{MassMemory, Refusal},
+    memory::{MASS_MEMORY, MassMemory, Refusal},
     network::Destination,
     port::{Cause, ObjectId},
     structure::{Node, Operation},
@@ -24,18 +24,16 @@ pub const MAX_NESTING: usize = 64;
 #[derive(Debug, Default)]
 pub struct Interpreter {
     open: Vec<Draft>,
+    /// Bytes in the open structures.
+    open_bytes: usize,
 }
 
 impl Interpreter {
-    /// How many structures are open.
-    pub fn open_structures(&self) -> usize {
-        self.open.len()
-    }
-
     /// Gives up what is open, as when the line closes. Returns the name of the outermost open structure.
     pub fn abandon(&mut self) -> Option<String> {
         let name = self.open.first().map(|d| d.title());
         self.open.clear();
+        self.open_bytes = 0;
         name
     }
 
@@ -54,16 +52,7 @@ impl Interpreter {
     ) -> Result<(), Message> {
         match command {
             Command::Define { name, object } => self.define(name, object, memory, messages)?,
-            Command::EndStructure => {
-                let done = self
-                    .open
-                    .pop()
-                    .ok_or_else(|| Message::Structure("END_STRUCTURE without BEGIN_STRUCTURE".into()))?;
-                match self.open.last_mut() {
-                    Some(outer) => outer.push_structure(done),
-                    None => done.commit(memory, messages)?,
-                }
-            }
+            Command::EndStructure => self.end_structure(memory, messages)?,
             Command::Display(name) => {
                 let id = memory.object(&name)?;
                 memory.structures.display(id);
@@ -74,8 +63,7 @@ impl Interpreter {
                 }
             }
             Command::Include { name, into } => {
-                let (member, group) = (memory.object(&name)?, memory.object(&into)?);
-                if memory.network.function(group).is_some() || !memory.structures.include(member, group) {
+                if !memory.include(&name, &into)? {
                     return Err(Message::Structure(format!("{into} is no instance that could include {name}")));
                 }
             }
@@ -99,16 +87,7 @@ impl Interpreter {
             }
             Command::Connect(arc) => connect(&arc, memory)?,
             Command::Disconnect { source, output, destination } => {
-                if let Some(id) = memory.objects.find(source.as_str()) {
-                    let to = match &destination {
-                        Some(d) => match memory.objects.find(d.name.as_str()) {
-                            Some(object) => Some(Destination { object, input: d.input }),
-                            None => return Ok(()),
-                        },
-                        None => None,
-                    };
-                    memory.network.disconnect(id, output, to);
-                }
+                disconnect(&source, output, destination.as_ref(), memory);
             }
             Command::Send { value, destination } => {
                 let to = memory.objects.find(destination.name.as_str()).filter(|id| memory.is_defined(*id));
@@ -117,6 +96,19 @@ impl Interpreter {
                 sent.map_err(|fault| Message::Node { name: destination.name.to_string(), fault })?;
             }
             Command::Initialize(what) => self.initialize(what, memory),
+        }
+        Ok(())
+    }
+
+    fn end_structure(&mut self, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<(), Message> {
+        let without = || Message::Structure("END_STRUCTURE without BEGIN_STRUCTURE".into());
+        let done = self.open.pop().ok_or_else(without)?;
+        match self.open.last_mut() {
+            Some(outer) => outer.push_structure(done),
+            None => {
+                self.open_bytes = 0;
+                done.commit(memory, messages)?;
+            }
         }
         Ok(())
     }
@@ -155,6 +147,10 @@ impl Interpreter {
             return Ok(());
         }
         if let Some(draft) = self.open.last_mut() {
+            self.open_bytes += draft::bytes(&object);
+            if memory.bytes() + self.open_bytes > MASS_MEMORY {
+                return Err(Refusal::Full.into());
+            }
             return draft.push(name, object);
         }
         let name = name.ok_or_else(|| Message::Structure("only a structure holds objects without names".into()))?;
@@ -170,7 +166,7 @@ impl Interpreter {
     fn initialize(&mut self, what: Initialize, memory: &mut MassMemory) {
         match what {
             Initialize::All => {
-                self.open.clear();
+                self.abandon();
                 memory.initialize();
             }
             Initialize::Connections => memory.network.retain_arcs(|_, _, _| false),
@@ -220,6 +216,19 @@ fn delete(pattern: &NamePattern, memory: &mut MassMemory) -> Result<(), Message>
         }
     }
     Ok(())
+}
+
+/// Takes arcs away. Those that are not there are no matter: the clients of the time do that all along.
+fn disconnect(source: &Name, output: Option<u16>, destination: Option<&command::Destination>, memory: &mut MassMemory) {
+    let Some(id) = memory.objects.find(source.as_str()) else { return };
+    let to = match destination {
+        None => None,
+        Some(d) => match memory.objects.find(d.name.as_str()) {
+            Some(object) => Some(Destination { object, input: d.input }),
+            None => return,
+        },
+    };
+    memory.network.disconnect(id, output, to);
 }
 
 fn connect(arc: &command::Arc, memory: &mut MassMemory) -> Result<(), Message> {

@@ -7,11 +7,13 @@ use std::sync::{
 };
 use tokio::{
     io::{AsyncReadExt, AsyncWriteExt},
-    sync::mpsc,
+    sync::{Semaphore, mpsc},
 };
 
 /// Bytes that wait for a host that does not read; what comes on top is dropped and counted.
 pub const MAX_WAITING_BYTES: usize = 16 << 20;
+/// Hosts that may be attached at once; each may hold an open statement and an open vector list.
+pub const MAX_HOSTS: usize = 64;
 /// Bytes taken from a socket at a time.
 const READ_BYTES: usize = 256 << 10;
 
@@ -38,11 +40,19 @@ impl Writer {
 
 /// Takes hosts in from a listener until the machine's thread is gone.
 pub async fn serve_hosts(listener: Listener, events: Events) {
+    let places = Arc::new(Semaphore::new(MAX_HOSTS));
     loop {
         match listener.accept().await {
-            Ok((stream, peer)) => {
-                tokio::spawn(serve(stream, peer, events.clone()));
-            }
+            Ok((stream, peer)) => match places.clone().try_acquire_owned() {
+                Ok(place) => {
+                    let events = events.clone();
+                    tokio::spawn(async move {
+                        serve(stream, peer, events).await;
+                        drop(place);
+                    });
+                }
+                Err(_) => tracing::warn!("{peer} was turned away: {MAX_HOSTS} hosts are attached"),
+            },
             Err(error) => {
                 tracing::warn!("a host could not attach: {error}");
                 tokio::time::sleep(std::time::Duration::from_millis(100)).await;

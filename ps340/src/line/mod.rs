@@ -3,14 +3,14 @@
 mod hosts;
 mod operator;
 
-pub use hosts::{MAX_WAITING_BYTES, Writer, serve_hosts};
+pub use hosts::{MAX_HOSTS, MAX_WAITING_BYTES, Writer, serve_hosts};
 pub use operator::{OperatorLine, serve_operators, serve_stdio};
 pub use protocol::address::{Address, AddressError};
 
 use std::io;
 use tokio::{
     io::{AsyncRead, AsyncWrite},
-    net::{TcpListener, UnixListener},
+    net::{TcpListener, UnixListener, UnixStream},
     sync::mpsc,
 };
 
@@ -81,7 +81,17 @@ impl Listener {
     pub async fn bind(address: &Address) -> io::Result<Listener> {
         match address {
             Address::Tcp(at) => Ok(Listener::Tcp(TcpListener::bind(at.as_str()).await?)),
-            Address::Unix(path) => Ok(Listener::Unix(UnixListener::bind(path)?, SocketFile(path.clone()))),
+            Address::Unix(path) => {
+                let bound = match UnixListener::bind(path) {
+                    // A file that nobody listens at was left by a process that was killed.
+                    Err(e) if e.kind() == io::ErrorKind::AddrInUse && UnixStream::connect(path).await.is_err() => {
+                        std::fs::remove_file(path)?;
+                        UnixListener::bind(path)
+                    }
+                    bound => bound,
+                };
+                Ok(Listener::Unix(bound?, SocketFile(path.clone())))
+            }
         }
     }
 

@@ -3,12 +3,15 @@
 use super::{Events, LineEvent, Listener};
 use std::io::{BufRead, Write};
 use tokio::{
-    io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader},
+    io::{AsyncBufRead, AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader},
     sync::oneshot,
 };
 
 /// Longest order, in bytes.
 const MAX_ORDER: u64 = 64 << 10;
+
+/// The reply to an order that is longer.
+const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
 
 /// An order and the way back for its reply.
 #[derive(Debug)]
@@ -41,6 +44,13 @@ async fn serve(stream: Box<dyn super::Stream>, events: Events) {
         let mut line = Vec::new();
         match (&mut read).take(MAX_ORDER).read_until(b'\n', &mut line).await {
             Ok(0) | Err(_) => return,
+            Ok(n) if n as u64 == MAX_ORDER && !line.ends_with(b"\n") => {
+                // The rest of the line is not another order.
+                if skip_line(&mut read).await.is_err() || write.write_all(TOO_LONG.as_bytes()).await.is_err() {
+                    return;
+                }
+                continue;
+            }
             Ok(_) => {}
         }
         let (reply, answer) = oneshot::channel();
@@ -54,6 +64,21 @@ async fn serve(stream: Box<dyn super::Stream>, events: Events) {
         let Ok(answer) = answer.await else { return };
         if write.write_all(format!("{answer}\n").as_bytes()).await.is_err() {
             return;
+        }
+    }
+}
+
+/// Reads up to the end of the line.
+async fn skip_line(read: &mut (impl AsyncBufRead + Unpin)) -> std::io::Result<()> {
+    loop {
+        let buffer = read.fill_buf().await?;
+        let (length, end) = match buffer.iter().position(|b| *b == b'\n') {
+            Some(at) => (at + 1, true),
+            None => (buffer.len(), buffer.is_empty()),
+        };
+        read.consume(length);
+        if end {
+            return Ok(());
         }
     }
 }

@@ -74,7 +74,11 @@ impl Devices {
             Event::Key(key) => vec![("FKEYS", 1, Value::Integer(key.into()))],
             Event::Button(button) => vec![("BUTTONSIN", 1, Value::Integer(button.into()))],
             Event::Tablet(event) => self.tablet(event),
-            Event::Type(text) => text.iter().map(|c| ("KEYBOARD", 1, Value::string([*c]))).collect(),
+            Event::Type(text) => {
+                let places = [("KEYBOARD", 1), ("KBHANDLER", 4)];
+                let typed = text.iter().flat_map(|c| places.map(|(to, output)| (to, output, Value::string([*c]))));
+                typed.collect()
+            }
         }
     }
 

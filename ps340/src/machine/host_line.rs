@@ -120,7 +120,7 @@ impl Decoders {
         machine.network_idle = false;
         machine.carry_effects();
         // What a command sends into the network is carried out before the next one, as long as the share of this
-        // frame lasts: a host that streams commands fills no queues.
+        // step lasts; after that the queues fill, and what is too much for them is counted and reported.
         machine.settle();
     }
 }

@@ -24,14 +24,17 @@ use crate::{
 };
 use devices::Devices;
 use host_line::HostLine;
-use protocol::{Name, Value, wire::MessageWriter};
-use std::collections::{BTreeMap, VecDeque};
+use protocol::{
+    Name, Value,
+    wire::{MessageForm, MessageWriter},
+};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 /// Frames a second: the nominal refresh rate, as remembered from the manuals.
 pub const FRAMES_PER_SECOND: u64 = 60;
-/// Messages that functions deliver between two frames (at least one a firing); what is left waits for the next frame,
-/// so that a network that never rests stops neither the display nor the lines. Ours.
-pub const WORK_PER_FRAME: u64 = 200_000;
+/// Messages that functions deliver in one step of the machine: a frame, or some input (at least one a firing). What is
+/// left waits for the next step, so that a network that never rests stops neither the display nor the lines. Ours.
+pub const WORK_PER_STEP: u64 = 200_000;
 /// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames; the rest are logged and
 /// counted only, so that a message that causes messages ends.
 pub const REPORTS_PER_FRAME: u64 = 1000;
@@ -120,7 +123,7 @@ impl Machine {
             panel: Panel::default(),
             frame_buffer: FrameBuffer::default(),
             frame: 0,
-            work_left: WORK_PER_FRAME,
+            work_left: WORK_PER_STEP,
             reported: 0,
             network_idle: true,
             update: Update::default(),
@@ -137,6 +140,7 @@ impl Machine {
     /// Takes the inputs, in order, at the time of the machine; then lets time run to `until` (a time in the
     /// past changes nothing). Returns what goes to the hosts.
     pub fn step(&mut self, inputs: impl IntoIterator<Item = Input>, until: Micros) -> Vec<Output> {
+        self.work_left = WORK_PER_STEP;
         for input in inputs {
             match input {
                 Input::Attach(line) => {
@@ -157,6 +161,7 @@ impl Machine {
 
     /// Something that a person does. Dials speak at the next frame, everything else at once.
     pub fn event(&mut self, event: Event) {
+        self.work_left = WORK_PER_STEP;
         let emissions = self.devices.event(event);
         self.emit(emissions);
         self.settle();
@@ -165,7 +170,7 @@ impl Machine {
     /// Lets one frame pass: dials and clocks speak, the network runs, the picture is updated.
     pub fn next_frame(&mut self) {
         self.frame += 1;
-        self.work_left = WORK_PER_FRAME;
+        self.work_left = WORK_PER_STEP;
         self.account_for_reports();
         let emissions = self.devices.frame();
         self.emit(emissions);
@@ -294,7 +299,7 @@ impl Machine {
     fn carry(&mut self, effect: Effect) {
         match effect {
             Effect::Deliver { object, input, value } => {
-                if let Err(fault) = self.memory.structures.accept(object, input, value) {
+                if let Err(fault) = self.memory.accept(object, input, value) {
                     let name = self.memory.objects.name(object).to_string();
                     self.messages.push(Message::Node { name, fault });
                 }
@@ -308,13 +313,13 @@ impl Machine {
                 let text = format!("{:>8} bytes in use", self.memory.bytes());
                 self.memory.network.emit(function, 1, Value::string(text), &mut self.memory.effects);
             }
-            Effect::Host { bytes, .. } => self.send_to_host(&bytes),
+            Effect::Host { bytes, binary } => self.send_to_host(&bytes, binary),
             effect => self.panel.carry(effect),
         }
     }
 
-    /// A message to the host goes to every host that is attached.
-    fn send_to_host(&mut self, message: &[u8]) {
+    /// A message to the host goes to every host that is attached; a `binary` one without an end of line.
+    fn send_to_host(&mut self, message: &[u8], binary: bool) {
         self.counters.messages_out += 1;
         if self.to_host.len() >= KEPT_MESSAGES {
             self.to_host.pop_front();
@@ -322,7 +327,13 @@ impl Machine {
         self.to_host.push_back(message.to_vec());
         for (line, writer) in &self.writers {
             let mut bytes = Vec::new();
-            if writer.write(message, &mut bytes).is_ok() {
+            let written = if binary && writer.form() == MessageForm::Text {
+                bytes.extend_from_slice(message);
+                true
+            } else {
+                writer.write(message, &mut bytes).is_ok()
+            };
+            if written {
                 self.outputs.push(Output { line: *line, bytes });
             }
         }
@@ -366,7 +377,7 @@ impl Machine {
             return;
         }
         let requests = std::mem::take(&mut self.transforms);
-        let wanted: Vec<ObjectId> =
+        let wanted: BTreeSet<ObjectId> =
             requests.iter().filter_map(|(_, name)| self.memory.objects.find(name.as_str())).collect();
         let update = traversal::update(&self.memory.structures, &wanted);
         self.counters.updates += 1;
@@ -374,6 +385,10 @@ impl Machine {
             self.report(Message::Update(trouble));
         }
         for (function, name) in requests {
+            // The function may have gone since it asked, and its place may be another object's.
+            if self.memory.network.function(function).is_none_or(|row| row.name != "XFORMDATA") {
+                continue;
+            }
             let matrix = self.memory.objects.find(name.as_str()).and_then(|id| update.transforms.get(&id));
             match matrix {
                 Some(m) => {

@@ -51,7 +51,13 @@ impl Panel {
             }
             Effect::Message(text) => self.message = text.into_vec(),
             Effect::Terminal(text) => self.type_text(&text),
-            _ => {}
+            // There is no static picture yet that would have darkened the display.
+            Effect::TurnOnDisplay => {}
+            Effect::Deliver { .. }
+            | Effect::Fault { .. }
+            | Effect::Host { .. }
+            | Effect::RequestTransform { .. }
+            | Effect::ReportMemory { .. } => {}
         }
     }
 

@@ -172,12 +172,14 @@ impl Network {
     fn undefine_instance(&mut self, id: ObjectId) {
         let Some(slot) = self.slot(id) else { return };
         let instance = &mut self.instances[slot as usize];
-        let (ports, outputs) = (instance.ports, instance.outputs);
+        let (ports, outputs, clock) = (instance.ports, instance.outputs, instance.row.clock.is_some());
         *instance = Instance::vacant();
         self.string_bytes -= self.ports.get(ports).iter().map(Port::string_bytes).sum::<usize>();
         self.ports.release(ports, || Port::UNUSED);
         self.outputs.release(outputs, Output::default);
-        self.clocks.retain(|&clock| clock != slot);
+        if clock {
+            self.clocks.retain(|&clock| clock != slot);
+        }
         self.index[id.0 as usize] = NO_SLOT;
         self.free.push(slot);
     }

@@ -66,6 +66,8 @@ pub enum Order {
     Counters,
     /// Labels of dials and keys, lights, message line.
     Panel,
+    /// The text that the terminal emulator was sent.
+    Terminal,
     /// The latest numbered messages of the machine.
     Log,
     /// Lists the orders.
@@ -142,6 +144,12 @@ pub const ORDERS: &[OrderRow] = &[
         arguments: "",
         summary: "labels of dials and keys, lights, message line",
         read: |_| Ok(Order::Panel),
+    },
+    OrderRow {
+        word: "terminal",
+        arguments: "",
+        summary: "the text that the terminal emulator was sent",
+        read: |_| Ok(Order::Terminal),
     },
     OrderRow { word: "log", arguments: "", summary: "the latest messages of the machine", read: |_| Ok(Order::Log) },
     OrderRow { word: "help", arguments: "", summary: "this list", read: |_| Ok(Order::Help) },

@@ -64,6 +64,9 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
         Order::Panel => return Outcome::Done(Ok(machine.panel().to_string())),
+        Order::Terminal => {
+            return Outcome::Done(Ok(String::from_utf8_lossy(machine.panel().terminal()).into_owned()));
+        }
         Order::Log => return Outcome::Done(Ok(machine.log().collect::<Vec<_>>().join("\n"))),
         Order::Help => return Outcome::Done(Ok(help())),
         Order::Quit => return Outcome::Quit,

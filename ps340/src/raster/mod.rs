@@ -25,7 +25,8 @@ pub use fault::RasterFault;
 
 use protocol::raster::{LookupEntry, RASTER_HEIGHT, RASTER_WIDTH, RasterCommand, Run};
 
-use crate::picture::{Picture, linear_from_srgb};
+use crate::picture::Picture;
+use protocol::raster::linear_from_srgb;
 
 /// Width in pixels.
 const WIDTH: usize = RASTER_WIDTH as usize;

@@ -19,6 +19,12 @@ pub enum NodeFault {
         /// Which input.
         input: Input,
     },
+    /// The mass memory is full.
+    #[error("Insufficient memory at {input}")]
+    Full {
+        /// Which input.
+        input: Input,
+    },
     /// An index past the end, a number that is not finite or too large, a string that is too long.
     #[error("Value out of range at {input}")]
     Range {
@@ -33,6 +39,7 @@ impl NodeFault {
         match self {
             NodeFault::Kind { .. } => 5,
             NodeFault::Range { .. } => 6,
+            NodeFault::Full { .. } => 8,
             NodeFault::NoSuchInput { .. } => 9,
         }
     }
@@ -44,6 +51,7 @@ impl NodeFault {
         match self {
             NodeFault::Kind { input, kind } => format!("Bad message type at {input}{name}: {kind}"),
             NodeFault::NoSuchInput { input } => format!("No such input {input} of {name}"),
+            NodeFault::Full { input } => format!("Insufficient memory at {input}{name}"),
             NodeFault::Range { input } => format!("Value out of range at {input}{name}"),
         }
     }

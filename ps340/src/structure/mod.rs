@@ -9,12 +9,16 @@ pub use node::{Member, Node, Operation};
 
 use crate::port::ObjectId;
 use protocol::{Value, command::Input};
+use std::collections::{BTreeMap, HashMap};
 
 /// The nodes of all objects, and the display list.
 #[derive(Debug, Default)]
 pub struct Structures {
     nodes: Vec<Option<Node>>,
-    displayed: Vec<ObjectId>,
+    /// The displayed roots by the order of DISPLAY, and the place of each in that order.
+    displayed: BTreeMap<u64, ObjectId>,
+    places: HashMap<ObjectId, u64>,
+    next_place: u64,
     bytes: usize,
     version: u64,
 }
@@ -52,10 +56,14 @@ impl Structures {
     /// then keeps what it had.
     pub fn accept(&mut self, id: ObjectId, input: Input, value: Value) -> Result<(), NodeFault> {
         let node = self.nodes.get_mut(id.index()).and_then(Option::as_mut).ok_or(NodeFault::NoSuchInput { input })?;
-        let before = node.bytes();
+        // Only data grows or shrinks by messages.
+        let data = matches!(node, Node::Vectors(_) | Node::Characters(_));
+        let before = if data { node.bytes() } else { 0 };
         let result = inputs::accept(node, input, value);
-        self.bytes = self.bytes + node.bytes() - before;
-        self.version += 1;
+        if data {
+            self.bytes = self.bytes + node.bytes() - before;
+        }
+        self.version += u64::from(result.is_ok());
         result
     }
 
@@ -65,12 +73,12 @@ impl Structures {
         if self.node(into).is_none() {
             self.define(into, Node::Instance(Vec::new()));
         }
-        self.version += 1;
         match self.nodes.get_mut(into.index()) {
             Some(Some(Node::Instance(members))) => members.push(member),
             Some(Some(Node::Group(members))) => members.push(Member::Included(member)),
             _ => return false,
         }
+        self.version += 1;
         self.bytes += node::MEMBER_BYTES;
         true
     }
@@ -97,31 +105,34 @@ impl Structures {
 
     /// DISPLAY: adds a root; nothing happens if it is there already.
     pub fn display(&mut self, id: ObjectId) {
-        if !self.displayed.contains(&id) {
-            self.displayed.push(id);
+        if !self.places.contains_key(&id) {
+            self.places.insert(id, self.next_place);
+            self.displayed.insert(self.next_place, id);
+            self.next_place += 1;
             self.version += 1;
         }
     }
 
     /// REMOVE: takes a root away. Returns whether it was there.
     pub fn remove(&mut self, id: ObjectId) -> bool {
-        let at = self.displayed.iter().position(|d| *d == id);
-        if let Some(at) = at {
-            self.displayed.remove(at);
+        let place = self.places.remove(&id);
+        if let Some(place) = place {
+            self.displayed.remove(&place);
             self.version += 1;
         }
-        at.is_some()
+        place.is_some()
     }
 
     /// Empties the display list.
     pub fn clear_displayed(&mut self) {
         self.displayed.clear();
+        self.places.clear();
         self.version += 1;
     }
 
     /// The displayed roots, in the order of DISPLAY.
-    pub fn displayed(&self) -> &[ObjectId] {
-        &self.displayed
+    pub fn displayed(&self) -> impl Iterator<Item = ObjectId> {
+        self.displayed.values().copied()
     }
 
     /// Counts every change, so that a picture knows whether it is of now.

@@ -8,6 +8,7 @@ use crate::{
 };
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use protocol::command::{Axis, Characters, VectorClass, VectorList};
+use std::collections::BTreeSet;
 
 fn list(class: VectorClass, points: &[[f32; 3]]) -> Node {
     Node::Vectors(Box::new(VectorList {
@@ -31,7 +32,7 @@ fn draw(operations: &[Operation], data: Node) -> Vec<Stroke> {
     let mut structures = Structures::default();
     structures.define(ObjectId::new(0), Node::Group(members));
     structures.display(ObjectId::new(0));
-    update(&structures, &[]).strokes
+    update(&structures, &BTreeSet::new()).strokes
 }
 
 /// Where a dot at `p` appears.
@@ -173,9 +174,9 @@ fn an_object_included_twice_is_drawn_twice() {
     structures.define(line, list(VectorClass::Connected, &[[0.0; 3], [0.5; 3]]));
     assert!(structures.include(line, frame) && structures.include(line, frame));
     structures.display(frame);
-    assert_eq!(update(&structures, &[]).strokes.len(), 2);
+    assert_eq!(update(&structures, &BTreeSet::new()).strokes.len(), 2);
     assert!(structures.exclude(line, frame));
-    assert_eq!(update(&structures, &[]).strokes.len(), 1);
+    assert_eq!(update(&structures, &BTreeSet::new()).strokes.len(), 1);
 }
 
 #[test]
@@ -184,7 +185,7 @@ fn a_structure_that_contains_itself_ends() {
     let id = ObjectId::new(0);
     structures.define(id, Node::Instance(vec![id]));
     structures.display(id);
-    assert_eq!(update(&structures, &[]).trouble, Some(Trouble::TooDeep));
+    assert_eq!(update(&structures, &BTreeSet::new()).trouble, Some(Trouble::TooDeep));
 }
 
 #[test]
@@ -195,7 +196,7 @@ fn instances_of_instances_of_instances_end() {
     }
     structures.define(ObjectId::new(0), Node::Nil);
     structures.display(ObjectId::new(63));
-    assert_eq!(update(&structures, &[]).trouble, Some(Trouble::TooManyVisits));
+    assert_eq!(update(&structures, &BTreeSet::new()).trouble, Some(Trouble::TooManyVisits));
 }
 
 #[test]
@@ -209,7 +210,7 @@ fn an_operate_node_with_a_descendant_spares_its_siblings() {
         vec![Member::Unnamed(Node::Operate { operation: shift, descendant: Some(below) }), Member::Unnamed(data)];
     structures.define(group, Node::Group(members));
     structures.display(group);
-    let strokes = update(&structures, &[]).strokes;
+    let strokes = update(&structures, &BTreeSet::new()).strokes;
     near(strokes[0].start, [0.5, 0.0]);
     near(strokes[1].start, [0.0, 0.0]);
 }
@@ -225,7 +226,7 @@ fn the_matrix_of_an_xform_node_is_the_product_of_what_is_above() {
     structures.display(group);
     let expected =
         matrices::field_of_view(60.0, [1.0, 9.0]).unwrap() * DMat4::from_mat3(matrices::rotation(Axis::Y, 30.0));
-    let found = update(&structures, &[node]).transforms[&node];
+    let found = update(&structures, &BTreeSet::from([node])).transforms[&node];
     assert!(found.abs_diff_eq(expected, 1e-15));
 }
 
@@ -242,4 +243,16 @@ fn text_stands_on_its_lower_left_corner_and_follows_the_character_matrix() {
     let (low, high) = xs.fold((f32::MAX, f32::MIN), |(l, h), x| (l.min(x), h.max(x)));
     assert!(low >= -0.5 && high <= -0.3 + 1e-6, "two cells of 0.1: {low} to {high}");
     assert_eq!(strokes.len(), text(0.2).len());
+}
+
+#[test]
+fn text_under_instances_of_instances_ends() {
+    let mut structures = Structures::default();
+    let characters = Characters { position: DVec3::ZERO, step: DVec2::X, text: vec![b'#'; 60_000].into() };
+    structures.define(ObjectId::new(0), Node::Characters(Box::new(characters)));
+    for i in 1..4 {
+        structures.define(ObjectId::new(i), Node::Instance(vec![ObjectId::new(i - 1); 100]));
+    }
+    structures.display(ObjectId::new(3));
+    assert_eq!(update(&structures, &BTreeSet::new()).trouble, Some(Trouble::TooManyVectors));
 }

@@ -8,14 +8,14 @@ use crate::{
 use glam::{DMat4, DVec2, DVec4};
 use protocol::command::{Characters, VectorClass, VectorList};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How deep nodes may nest. The real stack held tens of levels; ours ends a structure that contains itself.
 pub const MAX_DEPTH: usize = 500;
 /// How many nodes one update visits, so that instances of instances of instances end.
 pub const MAX_VISITS: u64 = 20_000_000;
-/// How many vectors one update draws.
-pub const MAX_VECTORS: u64 = 100_000_000;
+/// How many vectors one update draws; their strokes take 36 bytes each.
+pub const MAX_VECTORS: u64 = 20_000_000;
 
 /// Vectors of one list that one thread takes at a time.
 const PIECE: usize = 1 << 14;
@@ -50,17 +50,17 @@ pub struct Update {
 }
 
 /// Walks everything that is displayed, and looks up the matrices of the nodes in `wanted`.
-pub fn update(structures: &Structures, wanted: &[ObjectId]) -> Update {
+pub fn update(structures: &Structures, wanted: &BTreeSet<ObjectId>) -> Update {
     let mut walk = Walk { structures, wanted, update: Update::default(), clip: Vec::new() };
     for root in structures.displayed() {
-        walk.object(*root, &mut State::default(), 0);
+        walk.object(root, &mut State::default(), 0);
     }
     walk.update
 }
 
 struct Walk<'a> {
     structures: &'a Structures,
-    wanted: &'a [ObjectId],
+    wanted: &'a BTreeSet<ObjectId>,
     update: Update,
     /// Clip-space points of the list at hand; kept to save allocations.
     clip: Vec<DVec4>,
@@ -123,10 +123,19 @@ impl Walk<'_> {
         }
     }
 
-    fn vectors(&mut self, list: &VectorList, state: &State) {
-        self.update.vectors += list.points.len() as u64;
-        if self.update.vectors > MAX_VECTORS {
+    /// Counts vectors; false if they are more than an update draws.
+    fn counted(&mut self, vectors: usize) -> bool {
+        let sum = self.update.vectors + vectors as u64;
+        if sum > MAX_VECTORS {
             self.update.trouble = Some(Trouble::TooManyVectors);
+            return false;
+        }
+        self.update.vectors = sum;
+        true
+    }
+
+    fn vectors(&mut self, list: &VectorList, state: &State) {
+        if !self.counted(list.points.len()) {
             return;
         }
         let clipper = Clipper::new(state);
@@ -158,7 +167,9 @@ impl Walk<'_> {
         };
         for (cell, code) in characters.text.iter().enumerate() {
             for line in font::glyph(*code) {
-                self.update.vectors += line.len() as u64;
+                if !self.counted(line.len()) {
+                    return;
+                }
                 if let [only] = line.as_slice() {
                     self.update.strokes.extend(clipper.dot(clip(cell, *only), 1.0));
                 }
