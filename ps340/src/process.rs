@@ -37,8 +37,8 @@ struct Arguments {
     #[arg(long, value_enum, default_value = "commands")]
     plain_text: PlainText,
     /// Threads that draw; all cores by default.
-    #[arg(long, value_name = "N")]
-    threads: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
 }
 
 /// Reads the arguments, runs the machine, and returns the exit code.
@@ -53,7 +53,7 @@ pub fn main() -> ExitCode {
         .without_time()
         .init();
     if let Some(threads) = arguments.threads
-        && let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()
+        && let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()
     {
         eprintln!("ps340: {error}");
         return ExitCode::from(1);

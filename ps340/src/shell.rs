@@ -14,6 +14,8 @@ use tokio::sync::{mpsc, oneshot};
 
 /// Events that wait for the machine; with [`LineEvent::Bytes`] of a quarter megabyte this bounds memory.
 const WAITING_EVENTS: usize = 16;
+/// Frames that a host which has closed its side still gets answers for, if the network is busy: a second.
+const GRACE_FRAMES: u64 = 60;
 /// How far the machine may lag behind the wall clock before it gives time up instead of catching up.
 const MAX_LAG: Micros = 250_000;
 
@@ -125,6 +127,8 @@ struct Shell {
     epoch: Instant,
     writers: HashMap<LineId, (String, Writer)>,
     waits: Vec<(Wait, oneshot::Sender<String>)>,
+    /// Hosts that have closed their side, and the frame at which they are let go at the latest.
+    leaving: Vec<(LineId, u64)>,
     /// Messages lost since the latest frame, by line.
     lost: HashMap<LineId, u64>,
 }
@@ -139,6 +143,7 @@ impl Shell {
             epoch: Instant::now(),
             writers: HashMap::new(),
             waits: Vec::new(),
+            leaving: Vec::new(),
             lost: HashMap::new(),
         })
     }
@@ -157,6 +162,7 @@ impl Shell {
             if let Some(end) = event.and_then(|last| self.take(last)) {
                 return end;
             }
+            self.let_go();
             self.poll_waits();
             // One frame a turn, so that events are seen between frames that are late.
             let next = time_of_frame(self.machine.frame() + 1);
@@ -207,13 +213,13 @@ impl Shell {
             }
             LineEvent::Bytes(line, bytes) => self.step(Some(Input::Bytes(line, bytes)), 0),
             LineEvent::Closed { line, error } => {
-                self.step(Some(Input::Detach(line)), 0);
-                if let Some((peer, _)) = self.writers.remove(&line) {
+                if let Some((peer, _)) = self.writers.get(&line) {
                     match error {
                         Some(error) => tracing::warn!("host line {peer} closed: {error}"),
                         None => tracing::info!("host line {peer} closed"),
                     }
                 }
+                self.leaving.push((line, self.machine.frame() + GRACE_FRAMES));
             }
             LineEvent::Operator(order) => {
                 let outcome = match parse(&order.text) {
@@ -249,6 +255,20 @@ impl Shell {
             for (line, lost) in std::mem::take(&mut self.lost) {
                 let peer = self.writers.get(&line).map_or("that closed", |w| w.0.as_str());
                 tracing::warn!("host line {peer} does not read; {lost} messages to it are lost");
+            }
+        }
+    }
+
+    /// Lets hosts go that have closed their side. What they asked for may still be on its way through the network, so a
+    /// host stays for a while if that is busy.
+    fn let_go(&mut self) {
+        for (line, until) in std::mem::take(&mut self.leaving) {
+            let time_stands = self.clock == Clock::Virtual && self.waits.is_empty();
+            if self.machine.network_rests() || self.machine.frame() >= until || time_stands {
+                self.step(Some(Input::Detach(line)), 0);
+                self.writers.remove(&line);
+            } else {
+                self.leaving.push((line, until));
             }
         }
     }

@@ -23,19 +23,32 @@ struct Arguments {
     /// The file to write: a mesh from a mesh or a scene, a picture from a picture
     #[arg(value_name = "OUT")]
     output: PathBuf,
+    /// Reports as JSON on standard output
+    #[arg(long)]
+    json: bool,
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { input, output } = arguments;
+    let Arguments { input, output, json } = arguments;
     if Picture::check_name(input).is_ok() {
         let picture = Picture::read(input)?;
         picture.write(output)?;
-        println!("{}: {} x {} pixels", output.display(), picture.width(), picture.height());
+        if *json {
+            let known = serde_json::json!({ "file": output, "width": picture.width(), "height": picture.height() });
+            say!("{known:#}");
+        } else {
+            say!("{}: {} x {} pixels", output.display(), picture.width(), picture.height());
+        }
         return Ok(());
     }
     let mesh = triangles(input)?;
     mesh::write(&mesh, output)?;
-    println!("{}: {} vertices, {} triangles", output.display(), mesh.vertices.len(), mesh.triangles.len());
+    let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    if *json {
+        say!("{:#}", serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));
+    } else {
+        say!("{}: {vertices} vertices, {triangles} triangles", output.display());
+    }
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! How the program ends.
 
+use crate::mesh::MeshError;
 use crate::picture::PictureError;
 use crate::production::ProductionError;
 use crate::render::RenderError;
@@ -87,14 +88,26 @@ failures! {
     clap::Error => Usage,
     std::io::Error => Failed,
     serde_json::Error => Failed,
-    crate::mesh::MeshError => Failed,
     crate::octree::OctreeError => Failed,
-    PictureError => Failed,
     PlotError => Failed,
     RenderError => Failed,
     SceneError => Scene,
     ScriptError => Scene,
     WorkstationError => Line,
+}
+
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Failure {
+        let exit = if let MeshError::Format { .. } = error { Exit::Usage } else { Exit::Failed };
+        Failure::new(exit, error)
+    }
+}
+
+impl From<PictureError> for Failure {
+    fn from(error: PictureError) -> Failure {
+        let exit = if let PictureError::Format { .. } = error { Exit::Usage } else { Exit::Failed };
+        Failure::new(exit, error)
+    }
 }
 
 impl From<ProductionError> for Failure {

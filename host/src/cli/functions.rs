@@ -22,16 +22,16 @@ struct Arguments {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.reference {
-        print!("{}", script::reference());
+        say_on!("{}", script::reference());
     } else if let Some(name) = &arguments.name {
         let function = FUNCTIONS.iter().find(|f| f.name == name);
         let function =
             function.ok_or_else(|| Failure::new(Exit::Usage, anyhow::anyhow!("there is no function {name}")))?;
-        println!("{}", function.help());
+        say!("{}", function.help());
     } else {
         let width = FUNCTIONS.iter().map(|f| f.name.len()).max().unwrap_or(0);
         for function in FUNCTIONS {
-            println!("{:<width$}  {}", function.name, function.summary);
+            say!("{:<width$}  {}", function.name, function.summary);
         }
     }
     Ok(())

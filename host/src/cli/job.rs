@@ -3,7 +3,7 @@
 use super::{Exit, Failure, Progress, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
 use crate::{
     picture::Picture,
-    production::{Production, difference, view_of_dials},
+    production::{Production, Sent, difference, view_of_dials},
     render::{Order, Watch},
     scene::Scene,
     study::{KNOBS, Options},
@@ -11,6 +11,7 @@ use crate::{
 };
 use clap::{Args, FromArgMatches};
 use protocol::address::Address;
+use serde_json::{Map, Value, json};
 use std::{
     fmt::Write as _,
     num::NonZeroUsize,
@@ -34,7 +35,7 @@ pub(super) const DEMO: Row = Row {
 };
 
 /// What the demo turns: about the upright axis, then a little towards the viewer.
-const DEMO_DIALS: [Turn; 2] = [Turn { dial: 2, turns: 0.14 }, Turn { dial: 1, turns: -0.06 }];
+const DEMO_DIALS: [Turn; 2] = [Turn { dial: 2, turns: 0.1 }, Turn { dial: 1, turns: -0.06 }];
 
 /// A dial and how far it is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,15 +58,18 @@ impl FromStr for Turn {
 
 #[derive(Args, Debug)]
 struct Common {
-    /// Folder for what is made; it is made if need be
-    #[arg(short, long, value_name = "DIR", default_value = "peris-demo")]
-    output: PathBuf,
+    /// Folder for what is made; it is made if need be [default: peris-demo for the demo, peris-run for a run]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
     /// Samples in each pixel, instead of those of the scene
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
     samples: Option<u32>,
     /// Threads [default: one for each core]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
+    /// Reports as JSON on standard output
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -99,30 +103,55 @@ struct Job<'a> {
     to: Option<&'a Address>,
     dials: &'a [Turn],
     study: bool,
+    folder: &'a str,
+    /// What was found out, for `--json`.
+    report: Map<String, Value>,
 }
 
 fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let evaluated = load(&arguments.script)?;
     let (common, to, dials) = (&arguments.common, arguments.to.as_ref(), arguments.dials.as_slice());
-    Job { title: &evaluated.name, scene: evaluated.scene, common, to, dials, study: false }.perform()
+    Job {
+        title: &evaluated.name,
+        scene: evaluated.scene,
+        common,
+        to,
+        dials,
+        study: false,
+        folder: "peris-run",
+        report: Map::new(),
+    }
+    .perform()
 }
 
 fn demo(arguments: &DemoArguments) -> Result<(), Failure> {
     let evaluated = load("teapot")?;
     let (common, study) = (&arguments.common, !arguments.quick);
-    Job { title: "the teapot", scene: evaluated.scene, common, to: None, dials: &DEMO_DIALS, study }.perform()
+    Job {
+        title: "the teapot",
+        scene: evaluated.scene,
+        common,
+        to: None,
+        dials: &DEMO_DIALS,
+        study,
+        folder: "peris-demo",
+        report: Map::new(),
+    }
+    .perform()
 }
 
 /// The files that were made, with what they are.
 struct Contents<'a> {
     folder: &'a Path,
     lines: String,
+    names: Vec<String>,
 }
 
 impl Contents<'_> {
     /// The path of a file in the folder, which is noted with what it is.
     fn file(&mut self, name: &str, what: &str) -> String {
         let _ = writeln!(self.lines, "{name:<24} {what}");
+        self.names.push(name.into());
         self.folder.join(name).display().to_string()
     }
 }
@@ -130,33 +159,34 @@ impl Contents<'_> {
 impl Job<'_> {
     fn perform(mut self) -> Result<(), Failure> {
         watch_interrupts();
-        let folder = &self.common.output;
-        std::fs::create_dir_all(folder)
+        let folder = self.common.output.clone().unwrap_or_else(|| self.folder.into());
+        std::fs::create_dir_all(&folder)
             .map_err(|e| Failure::new(Exit::Failed, anyhow::anyhow!("{}: {e}", folder.display())))?;
-        let folder = std::path::absolute(folder)?;
-        let mut contents = Contents { folder: &folder, lines: String::new() };
+        let folder = std::path::absolute(&folder)?;
+        let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
+        super::warn_of_darkness(&self.scene);
         let mut emulator = if self.to.is_none() { Some(Emulator::start()?) } else { None };
         let line = match (&emulator, self.to) {
             (Some(emulator), _) => {
-                println!("workstation: process {}, host line {}", emulator.process(), emulator.line());
-                emulator.line().clone()
+                let (process, line) = (emulator.process(), emulator.line().clone());
+                let known = json!({ "process": process, "line": line.to_string() });
+                self.note("workstation", known, format_args!("workstation: process {process}, host line {line}"));
+                line
             }
             (None, Some(line)) => line.clone(),
             (None, None) => unreachable!("either a line is given or a process is started"),
         };
-        println!("host: process {}", std::process::id());
+        let process = std::process::id();
+        self.note("host", json!({ "process": process }), format_args!("host: process {process}"));
         let mut production = Production::begin(&self.scene, &line, &Drawing::default())?;
-        let (prepared, sent) = (production.prepared(), production.sent());
-        println!(
-            "{}: {} objects, {} triangles; {} vectors ({} points) shown after {:.3} s",
-            self.title,
-            prepared.objects.len(),
-            prepared.triangles.len(),
-            sent.lines,
-            sent.points,
-            sent.seconds
+        let (prepared, Sent { lines, points, seconds }) = (production.prepared(), production.sent());
+        let (title, objects, triangles) = (self.title, prepared.objects.len(), prepared.triangles.len());
+        let known = json!({ "objects": objects, "triangles": triangles, "vectors": lines, "points": points, "seconds": seconds });
+        let text = format!(
+            "{title}: {objects} objects, {triangles} triangles; {lines} vectors ({points} points) shown after {seconds:.3} s"
         );
+        self.note("shown", known, format_args!("{text}"));
         if let Some(emulator) = &mut emulator {
             self.turn(emulator, &mut contents)?;
         }
@@ -172,9 +202,24 @@ impl Job<'_> {
         }
         let path = contents.folder.join("CONTENTS.txt");
         std::fs::write(&path, &contents.lines)?;
-        println!("\n{}", contents.folder.display());
-        print!("{}", contents.lines);
+        if self.common.json {
+            self.report.insert("folder".into(), json!(contents.folder));
+            self.report.insert("files".into(), json!(contents.names));
+            say!("{}", serde_json::to_string_pretty(&self.report)?);
+        } else {
+            say!("\n{}", contents.folder.display());
+            say_on!("{}", contents.lines);
+        }
         Ok(())
+    }
+
+    /// Tells what was found out: as text now, or for the report at the end.
+    fn note(&mut self, key: &str, known: Value, text: std::fmt::Arguments<'_>) {
+        if self.common.json {
+            self.report.insert(key.into(), known);
+        } else {
+            say!("{text}");
+        }
     }
 
     /// Takes a picture, turns the dials, and takes another.
@@ -192,7 +237,7 @@ impl Job<'_> {
     }
 
     /// Renders the view that is set on the workstation.
-    fn image(&self, production: &mut Production, contents: &mut Contents<'_>) -> Result<Picture, Failure> {
+    fn image(&mut self, production: &mut Production, contents: &mut Contents<'_>) -> Result<Picture, Failure> {
         let matrix = production.view()?;
         if self.to.is_none() {
             let mut turns = [0.0; 7];
@@ -201,29 +246,32 @@ impl Job<'_> {
             let diagonal = production.prepared().bounds.diagonal();
             if let Some(expected) = view_of_dials(&camera, center, diagonal, &turns) {
                 let off = difference(&matrix, &expected);
-                println!("the matrix that the dials set was read back; off the closed form by {off:.1e}");
+                let text =
+                    format_args!("the matrix that the dials set was read back; off the closed form by {off:.1e}");
+                self.note("matrix_error", json!(off), text);
             }
         }
         let order = Order { threads: self.common.threads, ..Order::of(&self.scene.settings) };
-        let progress = Progress::new("rendering", false);
+        let progress = Progress::new("rendering", self.common.json);
         let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
         let shot = production.render(&matrix, &order, &watch);
         progress.finish();
         let shot = shot?;
         let rendering = &shot.rendering;
         if let Some(octree) = &shot.octree {
-            println!(
-                "octree: {} terminal nodes, {:.1} bytes a triangle, built with all tables in {:.3} s",
-                octree.leaves, octree.bytes_per_triangle, shot.build_seconds
+            let (nodes, bytes, seconds) = (octree.leaves, octree.bytes_per_triangle, shot.build_seconds);
+            let known = json!({ "terminal_nodes": nodes, "bytes_per_triangle": bytes, "build_seconds": seconds });
+            let text = format!(
+                "octree: {nodes} terminal nodes, {bytes:.1} bytes a triangle, built with all tables in {seconds:.3} s"
             );
+            self.note("octree", known, format_args!("{text}"));
         }
-        println!(
-            "ray tracing: {} rays in {:.3} s, {:.2} million a second on {} threads",
-            rendering.rays.total(),
-            rendering.seconds,
-            rendering.mega_rays_per_second(),
-            rendering.threads
-        );
+        let (rays, seconds, threads) = (rendering.rays.total(), rendering.seconds, rendering.threads);
+        let rate = rendering.mega_rays_per_second();
+        let known = json!({ "rays": rendering.rays, "seconds": seconds, "threads": threads });
+        let text =
+            format!("ray tracing: {rays} rays in {seconds:.3} s, {rate:.2} million a second on {threads} threads");
+        self.note("ray_tracing", known, format_args!("{text}"));
         let what = "the ray-traced image of that view";
         for name in ["raytraced.png", "raytraced.exr"] {
             let form = if name.ends_with("exr") { " (linear light, coverage as alpha)" } else { "" };
@@ -233,17 +281,18 @@ impl Job<'_> {
         Ok(shot.rendering.picture)
     }
 
-    fn study(&self, contents: &mut Contents<'_>) -> Result<(), Failure> {
+    fn study(&mut self, contents: &mut Contents<'_>) -> Result<(), Failure> {
         let Some(knob) = KNOBS.iter().find(|k| k.name == "render") else { return Ok(()) };
         let options = Options { samples: 256, settings: 6, threads: self.common.threads, ..knob.options };
-        let progress = Progress::new("studying", false);
+        let progress = Progress::new("studying", self.common.json);
         let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
         let start = Instant::now();
         let study = (knob.run)(&self.scene, &options, &watch);
         progress.finish();
         let study = study?;
-        println!("\nerror against run time: {} (studied in {:.1} s)", knob.summary, start.elapsed().as_secs_f64());
-        print!("{}", study.table());
+        let (summary, seconds, table) = (knob.summary, start.elapsed().as_secs_f64(), study.table());
+        let text = format!("\nerror against run time: {summary} (studied in {seconds:.1} s)\n{}", table.trim_end());
+        self.note("study", serde_json::to_value(&study)?, format_args!("{text}"));
         std::fs::write(contents.file("study-render.txt", "error against run time, as a table"), study.table())?;
         std::fs::write(contents.file("study-render.csv", "the same for programs"), study.csv())?;
         contents.file("study-render.svg", "the same as a plot");

@@ -1,5 +1,7 @@
 //! The command line: one row for each sub-command, from which help and dispatch are derived.
 
+#[macro_use]
+mod say;
 mod convert;
 mod exit;
 mod functions;
@@ -16,8 +18,14 @@ pub use exit::{Exit, Failure};
 pub use progress::{Progress, interrupted, watch_interrupts};
 pub use source::{SCRIPT_HELP, load};
 
+use crate::illumination::Bands;
+use crate::scene::Scene;
 use clap::{ArgMatches, Command};
+use std::num::NonZeroUsize;
 use std::process::ExitCode;
+
+/// Most threads that a command takes.
+const MAX_THREADS: usize = 1024;
 
 /// A sub-command.
 pub struct Row {
@@ -65,10 +73,33 @@ pub fn main() -> ExitCode {
     match (row.run)(arguments) {
         Ok(()) => Exit::Done.into(),
         Err(failure) => {
-            eprintln!("peris {name}: {:#}", failure.error);
+            eprintln!("peris {name}: {}", story(&failure.error));
             failure.exit.into()
         }
     }
+}
+
+/// An error with its causes, without those that it tells itself.
+fn story(error: &anyhow::Error) -> String {
+    error.chain().skip(1).fold(error.to_string(), |text, cause| {
+        let cause = cause.to_string();
+        if text.contains(&cause) { text } else { format!("{text}: {cause}") }
+    })
+}
+
+/// Says on standard error what makes a picture empty or black.
+fn warn_of_darkness(scene: &Scene) {
+    if scene.objects.is_empty() {
+        eprintln!("warning: the scene has no objects; only its background will be seen");
+    } else if scene.lights.is_empty() && scene.ambient == Bands::ZERO {
+        eprintln!("warning: the scene has neither lights nor ambient light; its objects will be black");
+    }
+}
+
+/// Reads a number of threads.
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let count = text.parse().ok().filter(|n: &NonZeroUsize| n.get() <= MAX_THREADS);
+    count.ok_or_else(|| format!("give 1 to {MAX_THREADS}"))
 }
 
 /// Log lines go to standard error, if the variable PERIS_LOG asks for them (for instance `PERIS_LOG=info`).

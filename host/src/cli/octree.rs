@@ -47,14 +47,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let mut json = serde_json::to_value(&statistics)?;
         json["build_seconds"] = seconds.into();
         json["depth"] = settings.depth.into();
-        println!("{}", serde_json::to_string_pretty(&json)?);
+        say!("{}", serde_json::to_string_pretty(&json)?);
     } else {
-        println!(
+        say!(
             "{} triangles in {} terminal nodes, built in {seconds:.3} s, {:.1} bytes a triangle",
-            statistics.triangles, statistics.leaves, statistics.bytes_per_triangle
+            statistics.triangles,
+            statistics.leaves,
+            statistics.bytes_per_triangle
         );
         if arguments.stats {
-            print!("{}", details(&statistics, settings.depth));
+            say_on!("{}", details(&statistics, settings.depth));
         }
     }
     Ok(())

@@ -29,9 +29,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let view = prepared.view();
     let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&plan)?);
+        say!("{}", serde_json::to_string_pretty(&plan)?);
     } else {
-        print!("{}", plan.table());
+        say_on!("{}", plan.table());
     }
     Ok(())
 }

@@ -36,7 +36,7 @@ struct Arguments {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
     samples: Option<u32>,
     /// Threads [default: one for each core]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
     /// Seed of the sample positions, instead of that of the scene
     #[arg(long, value_name = "NUMBER")]
@@ -60,6 +60,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     outputs.iter().try_for_each(|path| Picture::check_name(path)).map_err(|e| Failure::new(Exit::Usage, e))?;
     let mut scene = load(&arguments.script)?.scene;
+    super::warn_of_darkness(&scene);
     let settings = &mut scene.settings;
     (settings.width, settings.height) = size(settings.width, settings.height, arguments.width, arguments.height);
     settings.samples = arguments.samples.unwrap_or(settings.samples);
@@ -123,20 +124,20 @@ fn report(
             "rays": rendering.rays,
             "complete": rendering.is_complete(),
         });
-        println!("{}", serde_json::to_string_pretty(&json)?);
+        say!("{}", serde_json::to_string_pretty(&json)?);
         return Ok(());
     }
     let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
     let rays = rendering.rays;
-    println!(
+    say!(
         "{}: {} x {} pixels, {} samples each",
         names.join(", "),
         picture.width(),
         picture.height(),
         prepared.settings.samples
     );
-    println!("{} triangles, built in {build_seconds:.3} s", prepared.triangles.len());
-    println!(
+    say!("{} triangles, built in {build_seconds:.3} s", prepared.triangles.len());
+    say!(
         "{} rays (primary {}, shadow {}, reflected {}) in {:.3} s on {} threads: {:.2} million a second",
         rays.total(),
         rays.primary,

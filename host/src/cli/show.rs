@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
 use crate::{
-    production::{Production, ProductionError},
+    production::{Production, ProductionError, Sent},
     render::{Order, Watch},
     scene::Scene,
     workstation::{
@@ -35,6 +35,9 @@ struct Arguments {
     /// Sends the scene and ends, without waiting for keys
     #[arg(long, requires = "to")]
     once: bool,
+    /// Reports what was sent as JSON on standard output
+    #[arg(long)]
+    json: bool,
     /// Which edges are sent
     #[arg(long, value_enum, default_value = "grid")]
     lines: Lines,
@@ -45,7 +48,7 @@ struct Arguments {
     #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance)]
     tolerance: f64,
     /// Threads that render [default: one for each core]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
 }
 
@@ -68,12 +71,19 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mut production = Production::begin(&scene, &line, &drawing)?;
     let sent = production.sent();
-    println!("{} vectors ({} points) shown on {line} after {:.3} s", sent.lines, sent.points, sent.seconds);
+    let Sent { lines, points, seconds } = sent;
+    if arguments.json {
+        let line = line.to_string();
+        let known = serde_json::json!({ "line": line, "vectors": lines, "points": points, "seconds": seconds });
+        say!("{known}");
+    } else {
+        say!("{lines} vectors ({points} points) shown on {line} after {seconds:.3} s");
+    }
     if arguments.once {
         return Ok(());
     }
-    for (number, label, _) in KEYS {
-        println!("key {number}: {label}");
+    for (number, label, _) in KEYS.iter().filter(|_| !arguments.json) {
+        say!("key {number}: {label}");
     }
     serve(&mut production, &mut emulator, &scene, arguments.threads)
 }
@@ -105,7 +115,7 @@ fn serve(
             }
             if let Some(reply) = emulator.reply()? {
                 unanswered -= 1;
-                println!("{}", reply.replace("\\n", "\n"));
+                say!("{}", reply.replace("\\n", "\n"));
             }
         }
         let message = match production.session().message(GLANCE, "a key") {
@@ -120,7 +130,7 @@ fn serve(
             Some(Key::Render) => render(production, scene, threads)?,
             Some(Key::Reset) => production.reset()?,
             Some(Key::End) => return Ok(()),
-            None => println!("message: {}", String::from_utf8_lossy(&message)),
+            None => say!("message: {}", String::from_utf8_lossy(&message)),
         }
     }
 }
@@ -132,10 +142,10 @@ fn render(production: &mut Production, scene: &Scene, threads: Option<NonZeroUsi
     match production.render(&matrix, &order, &watch) {
         Ok(shot) => {
             production.show_image(&shot.rendering.picture)?;
-            println!("rendered in {:.3} s", shot.rendering.seconds);
+            say!("rendered in {:.3} s", shot.rendering.seconds);
         }
         // The person at the dials may have set a view that shows nothing; that ends nothing.
-        Err(ProductionError::Render(error)) => println!("not rendered: {error}"),
+        Err(ProductionError::Render(error)) => say!("not rendered: {error}"),
         Err(error) => return Err(error.into()),
     }
     Ok(())

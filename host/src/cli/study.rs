@@ -32,7 +32,7 @@ struct Arguments {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=16))]
     settings: Option<u32>,
     /// Threads [default: one for each core]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
     /// Reports as JSON on standard output
     #[arg(long)]
@@ -76,10 +76,10 @@ fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
     std::fs::write(&csv, study.csv())?;
     let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&arguments.output, &name)?;
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&study)?);
+        say!("{}", serde_json::to_string_pretty(&study)?);
     } else {
-        print!("{}", study.table());
-        println!("{}, {}, {}", csv.display(), svg.display(), png.display());
+        say_on!("{}", study.table());
+        say!("{}, {}, {}", csv.display(), svg.display(), png.display());
     }
     Ok(())
 }

@@ -88,6 +88,9 @@ pub enum Problem {
         /// What stands there, shortened.
         found: String,
     },
+    /// A file in which no triangle was found.
+    #[error("holds no triangles")]
+    NoTriangles,
     /// A coordinate that is infinite or not a number.
     #[error("a coordinate is not finite")]
     NotFinite,

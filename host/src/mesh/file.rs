@@ -59,7 +59,9 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
         let problem = Problem::TooMany { what: "bytes", count: bytes.len() as u64, limit: MAX_BYTES };
         return Err(in_content(Place::Mesh.fault(problem)));
     }
-    parse(&bytes, format).map_err(in_content)
+    let mesh = parse(&bytes, format).map_err(in_content)?;
+    // Bytes of any kind can pass for an OBJ file without a face.
+    if mesh.triangles.is_empty() { Err(in_content(Place::Mesh.fault(Problem::NoTriangles))) } else { Ok(mesh) }
 }
 
 /// Writes a mesh; the extension of `path` names the format.

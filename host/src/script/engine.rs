@@ -20,7 +20,7 @@ pub const MAX_SCRIPT_BYTES: u64 = 4 << 20;
 /// Longest string in a script, bytes.
 const MAX_STRING: usize = 1 << 20;
 /// Most elements of an array or a map.
-const MAX_ELEMENTS: usize = 1 << 20;
+const MAX_ELEMENTS: usize = 1 << 14;
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 64;
 /// Deepest nesting of expressions, outside and inside functions.

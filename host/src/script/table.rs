@@ -324,7 +324,8 @@ fn set_camera(builder: &mut Builder, bound: &Bound) -> Done {
         near: bound.number("near").unwrap_or(0.0),
         far: bound.number("far"),
     };
-    camera.check().map_err(|e| e.to_string())?;
+    // The message names the function already.
+    camera.check().map_err(|e| e.to_string().trim_start_matches("camera: ").to_string())?;
     builder.scene.camera = Some(camera);
     Ok(None)
 }

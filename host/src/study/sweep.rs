@@ -101,9 +101,12 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
             if spent >= SHORT_SECONDS {
                 break;
             }
+            // The fastest trial counts, with all that was counted in it.
             let again = run(setting)?;
             spent += again.seconds;
-            trial.seconds = trial.seconds.min(again.seconds);
+            if again.seconds < trial.seconds {
+                trial = again;
+            }
         }
         let errors = knob.errors(&trial, &reference)?;
         count_names = trial.counts.iter().map(|c| c.0.to_owned()).collect();

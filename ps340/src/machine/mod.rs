@@ -188,10 +188,12 @@ impl Machine {
 
     /// Whether nothing is left to do until something comes in, or a clock ticks.
     pub fn is_idle(&self) -> bool {
-        self.network_idle
-            && self.transforms.is_empty()
-            && self.devices.is_quiet()
-            && self.updated == Some(self.memory.structures.version())
+        self.network_rests() && self.devices.is_quiet() && self.updated == Some(self.memory.structures.version())
+    }
+
+    /// Whether no function is ready to fire.
+    pub fn network_rests(&self) -> bool {
+        self.network_idle && self.transforms.is_empty()
     }
 
     /// What the vector screen shows now.
