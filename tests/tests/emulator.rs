@@ -1,6 +1,11 @@
 //! The emulator as its own process, driven as `nc` and an operator would.
 
-use std::{fs, io::Write, net::TcpStream, time::Duration};
+use std::{
+    fs,
+    io::{Read, Write},
+    net::TcpStream,
+    time::Duration,
+};
 use tests::{Host, Machine};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
@@ -154,4 +159,43 @@ fn pictures_are_the_same_with_one_thread_and_with_two() {
         }
     }
     assert!(pictures[0] == pictures[2] && pictures[1] == pictures[3]);
+}
+
+#[test]
+fn a_host_that_closes_its_side_still_gets_its_answer_from_a_busy_machine() {
+    let machine = Machine::start(PS340, &[]);
+    let mut busy = machine.attach();
+    busy.send("N := F:NOP; CONNECT N<1>:<1>N; SEND 1 TO <1>N; P := F:PRINT; CONNECT P<1>:<1>HOST_MESSAGE;");
+    busy.synchronize();
+    let mut stream = TcpStream::connect(&machine.line).unwrap();
+    stream.set_read_timeout(Some(tests::PATIENCE)).unwrap();
+    stream.write_all(b"SEND 2 TO <1>P;").unwrap();
+    stream.shutdown(std::net::Shutdown::Write).unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    assert_eq!(answer, "2\r\n");
+}
+
+#[test]
+fn frames_pass_and_operators_are_answered_while_a_host_floods_the_line() {
+    let mut machine = Machine::start(PS340, &[]);
+    let mut stream = TcpStream::connect(&machine.line).unwrap();
+    let (stop, stopped) = std::sync::mpsc::channel::<()>();
+    let flood = std::thread::spawn(move || {
+        let commands =
+            "A := VECTOR_LIST 0,0 1,1 0,1; NONSENSE; SEND 1 TO <1>B; B := F:ADDC; SEND 2 TO <2>B;".repeat(1000);
+        while let Err(std::sync::mpsc::TryRecvError::Empty) = stopped.try_recv() {
+            if stream.write_all(commands.as_bytes()).is_err() {
+                return;
+            }
+        }
+    });
+    for _ in 0..3 {
+        machine.order("frames 20");
+    }
+    machine.order("dial 1 0.5");
+    machine.order("counters");
+    drop(stop);
+    flood.join().unwrap();
+    assert!(machine.runs());
 }

@@ -1,6 +1,6 @@
 //! The main job with both processes: what is shown, set with dials, read back, rendered and shown again.
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use host::{
     picture::Picture,
     production::{Production, difference, view_of_dials},
@@ -84,12 +84,10 @@ fn the_view_that_dials_set_reads_back_as_its_closed_form() {
     }
     machine.order("idle");
     let matrix = production.view().unwrap();
-    let (camera, center) = production.camera();
-    let diagonal = production.prepared().bounds.diagonal();
-    let expected = view_of_dials(&camera, center, diagonal, &turns).unwrap();
+    let expected = view_of_dials(production.prepared(), &turns).unwrap();
     let off = difference(&matrix, &expected);
     assert!(off < 1e-6, "off by {off}: {matrix:?} is not {expected:?}");
-    let before = view_of_dials(&camera, center, diagonal, &[0.0; 7]).unwrap();
+    let before = view_of_dials(production.prepared(), &[0.0; 7]).unwrap();
     assert!(difference(&matrix, &before) > 0.1, "the dials did something");
     production.reset().unwrap();
     machine.order("idle");
@@ -134,6 +132,21 @@ impl Mask {
         let differ = self.on.iter().zip(&other.on).filter(|(a, b)| a != b).count();
         differ as f64 / self.area() as f64
     }
+}
+
+#[test]
+fn a_wide_picture_is_the_middle_band_of_the_vector_screen() {
+    let wide = SCENE.replace("512, 512", "200, 100");
+    let wide = script::evaluate(&wide, "wide", Path::new("")).unwrap().scene;
+    let square = script::evaluate(SCENE, "square", Path::new("")).unwrap().scene;
+    let machine = Machine::start(PS340, &[]);
+    let mut matrices = [&wide, &square].map(|scene| {
+        let mut production = begin(&machine, scene, &Drawing::default());
+        production.view().unwrap()
+    });
+    // Twice as wide as high: the screen shows twice as much, at half the size.
+    matrices[0] = DMat4::from_scale(DVec3::new(2.0, 2.0, 1.0)) * matrices[0];
+    assert!(difference(&matrices[0], &matrices[1]) < 1e-9, "{matrices:?}");
 }
 
 #[test]

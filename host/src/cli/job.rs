@@ -166,16 +166,15 @@ impl Job<'_> {
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
         super::warn_of_darkness(&self.scene);
-        let mut emulator = if self.to.is_none() { Some(Emulator::start()?) } else { None };
-        let line = match (&emulator, self.to) {
-            (Some(emulator), _) => {
+        let (mut emulator, line) = match self.to {
+            Some(line) => (None, line.clone()),
+            None => {
+                let emulator = Emulator::start()?;
                 let (process, line) = (emulator.process(), emulator.line().clone());
                 let known = json!({ "process": process, "line": line.to_string() });
                 self.note("workstation", known, format_args!("workstation: process {process}, host line {line}"));
-                line
+                (Some(emulator), line)
             }
-            (None, Some(line)) => line.clone(),
-            (None, None) => unreachable!("either a line is given or a process is started"),
         };
         let process = std::process::id();
         self.note("host", json!({ "process": process }), format_args!("host: process {process}"));
@@ -242,9 +241,7 @@ impl Job<'_> {
         if self.to.is_none() {
             let mut turns = [0.0; 7];
             self.dials.iter().for_each(|t| turns[t.dial - 1] += t.turns);
-            let (camera, center) = production.camera();
-            let diagonal = production.prepared().bounds.diagonal();
-            if let Some(expected) = view_of_dials(&camera, center, diagonal, &turns) {
+            if let Some(expected) = view_of_dials(production.prepared(), &turns) {
                 let off = difference(&matrix, &expected);
                 let text =
                     format_args!("the matrix that the dials set was read back; off the closed form by {off:.1e}");

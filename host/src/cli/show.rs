@@ -63,11 +63,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let drawing = Drawing { lines: arguments.lines, crease_degrees: arguments.crease, tolerance: arguments.tolerance };
     let scene = load(&arguments.script)?.scene;
-    let mut emulator = if arguments.to.is_none() { Some(Emulator::start()?) } else { None };
-    let line = match (&arguments.to, &emulator) {
-        (Some(line), _) => line.clone(),
-        (None, Some(emulator)) => emulator.line().clone(),
-        (None, None) => return Ok(()),
+    let (mut emulator, line) = match &arguments.to {
+        Some(line) => (None, line.clone()),
+        None => {
+            let emulator = Emulator::start()?;
+            let line = emulator.line().clone();
+            (Some(emulator), line)
+        }
     };
     let mut production = Production::begin(&scene, &line, &drawing)?;
     let sent = production.sent();

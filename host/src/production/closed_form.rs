@@ -1,8 +1,11 @@
 //! The view that dials make, in closed form: what is read back from the workstation is checked against it.
 
 use crate::{
-    scene::Camera,
-    workstation::network::{DEGREES_PER_TURN, DIAGONALS_PER_TURN, SCALE_LIMITS, SCALE_PER_TURN},
+    scene::Prepared,
+    workstation::{
+        network::{DEGREES_PER_TURN, DIAGONALS_PER_TURN, SCALE_LIMITS, SCALE_PER_TURN},
+        structure::elongation,
+    },
 };
 use glam::{DMat3, DMat4, DVec3};
 
@@ -13,13 +16,15 @@ use glam::{DMat3, DMat4, DVec3};
 /// moved, C the shift to the centre, R the rotations of dials 1 to 3 and S the scale of dial 4. Rows x, y and w
 /// of the result do not depend on front and back.
 ///
-/// - `turns`: of dials 1 to 7.
-/// - `diagonal`: of the scene, which sets how far dials 5 to 7 move.
+/// - `turns`: of dials 1 to 7. The scene's diagonal sets how far dials 5 to 7 move.
 ///
 /// Returns none for a camera that cannot see.
-pub fn view_of_dials(camera: &Camera, center: DVec3, diagonal: f64, turns: &[f64; 7]) -> Option<DMat4> {
+pub fn view_of_dials(prepared: &Prepared, turns: &[f64; 7]) -> Option<DMat4> {
+    let (center, diagonal) = (prepared.bounds.center(), prepared.bounds.diagonal());
     let mirror = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
-    let camera = camera.projection()?.to_clip * mirror;
+    let shrink = 1.0 / elongation(&prepared.settings);
+    let whole_picture = DMat4::from_scale(DVec3::new(shrink, shrink, 1.0));
+    let camera = whole_picture * prepared.camera.projection()?.to_clip * mirror;
     let center = DVec3::new(center.x, center.y, -center.z);
     let moved = DVec3::new(turns[4], turns[5], turns[6]) * diagonal * DIAGONALS_PER_TURN;
     let scale = (1.0 + turns[3] * SCALE_PER_TURN).clamp(SCALE_LIMITS[0], SCALE_LIMITS[1]);

@@ -9,7 +9,7 @@ use crate::{
     picture::Picture,
     plan::Plan,
     render::{Order, RenderError, Renderer, Rendering, Watch, ray_tracing::RayTracer},
-    scene::{Camera, Prepared, Projection, Scene, SceneError, View},
+    scene::{Prepared, Projection, Scene, SceneError, View},
     workstation::{Drawing, Session, WorkstationError, network, raster, structure},
 };
 use glam::{DMat4, DVec3};
@@ -91,11 +91,6 @@ impl Production {
         &mut self.session
     }
 
-    /// The camera that the scene began with, and the point that the dials turn it about.
-    pub fn camera(&self) -> (Camera, DVec3) {
-        (self.prepared.camera, self.prepared.bounds.center())
-    }
-
     /// Reads the matrix of the view back: scene coordinates (z negated) to clip space.
     ///
     /// # Errors
@@ -109,7 +104,10 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Render`]; a matrix that shows nothing is one.
     pub fn render(&self, matrix: &DMat4, order: &Order, watch: &Watch<'_>) -> Result<Shot, ProductionError> {
-        let view = View::Projection(Projection::from_workstation(matrix, self.depth_clipping));
+        // The screen's sides are those of the longer side of the picture, a view's those of the shorter one.
+        let zoom = structure::elongation(&self.prepared.settings);
+        let matrix = DMat4::from_scale(DVec3::new(zoom, zoom, 1.0)) * *matrix;
+        let view = View::Projection(Projection::from_workstation(&matrix, self.depth_clipping));
         let start = Instant::now();
         let plan = Plan::new(&self.prepared, &view);
         let tracer = RayTracer::new(&self.prepared, &plan)?;

@@ -8,7 +8,7 @@ use crate::{
     illumination::Material,
     mesh::{Eye, Mesh, Selection, polylines},
     numeric::bounds::Bounds,
-    scene::{Camera, Object, Scene},
+    scene::{Camera, Object, Scene, Settings},
 };
 use glam::{DMat4, DVec3};
 use protocol::{
@@ -66,6 +66,15 @@ pub struct Shown {
     pub depth_clipping: bool,
 }
 
+/// The longer side of a scene's picture over the shorter one.
+///
+/// The square screen of the workstation shows the whole picture: its sides are the longer side, and a wide picture
+/// takes a band across its middle. The field of view of a camera is that of the shorter side.
+pub fn elongation(settings: &Settings) -> f64 {
+    let (width, height) = (f64::from(settings.width), f64::from(settings.height));
+    width.max(height) / width.min(height)
+}
+
 /// The commands that build the structure [`ROOT`] and display it.
 ///
 /// Its nodes `CLIP`, `VIEW`, `LOOK`, `T`, `RX`, `RY`, `RZ`, `S` take values from networks; `MATRIX` is an XFORM
@@ -79,7 +88,7 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
     shown.commands.push(Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())]));
     begin(&mut shown.commands, ROOT);
-    view(&mut shown.commands, camera, bounds, shown.depth_clipping)?;
+    view(&mut shown.commands, camera, bounds, elongation(&scene.settings), shown.depth_clipping)?;
     for (index, object) in scene.objects.iter().enumerate() {
         let list = vectors(object, camera, drawing, &mut shown)?;
         begin(&mut shown.commands, &format!("O{}", index + 1));
@@ -112,6 +121,7 @@ fn view(
     commands: &mut Vec<Command>,
     camera: &Camera,
     bounds: &Bounds,
+    elongation: f64,
     depth_clipping: bool,
 ) -> Result<(), WorkstationError> {
     let center = bounds.center();
@@ -121,7 +131,8 @@ fn view(
     operate(commands, Some("CLIP"), Operate::SetDepthClipping(depth_clipping));
     let depth = projection.to_clip.row(3).dot(bounds.center().extend(1.0));
     let boundaries = Some(boundaries(camera, depth, bounds.diagonal() / 2.0));
-    operate(commands, Some("VIEW"), Operate::FieldOfView { angle: camera.field_of_view, boundaries });
+    let angle = 2.0 * (camera.half_tangent() * elongation).atan().to_degrees();
+    operate(commands, Some("VIEW"), Operate::FieldOfView { angle, boundaries });
     let (at, from) = (mirrored(camera.at), mirrored(camera.from));
     // The workstation takes UP as a point above AT.
     operate(commands, Some("LOOK"), Operate::Look { at, from, up: Some(at + mirrored(camera.up)) });
