@@ -10,8 +10,18 @@ use std::{
 const MAX_LINES: usize = 600;
 
 /// Top-level entries beside dot files and licences.
-const TOP_LEVEL: &[&str] =
-    &["Cargo.toml", "Cargo.lock", "README.md", "host", "ps340", "protocol", "tests", "target", "peris-demo", "peris-run"];
+const TOP_LEVEL: &[&str] = &[
+    "Cargo.toml",
+    "Cargo.lock",
+    "README.md",
+    "host",
+    "ps340",
+    "protocol",
+    "tests",
+    "target",
+    "peris-demo",
+    "peris-run",
+];
 
 /// The crates, and the crates of the workspace that each may name.
 const CRATES: &[(&str, &[&str])] =

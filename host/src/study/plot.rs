@@ -2,6 +2,7 @@
 
 use plotters::coord::combinators::IntoLogRange;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
 use std::path::{Path, PathBuf};
 use std::sync::Once;
@@ -118,12 +119,12 @@ impl Plot {
         series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0 && p.x.is_finite() && p.y.is_finite())
     }
 
-    /// Least and greatest value on an axis, with a margin; at least a factor of ten apart.
+    /// Least and greatest value on an axis, with a margin; at least a factor of four apart.
     fn range(&self, of: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
         let values = self.series.iter().flat_map(Plot::visible).map(of);
         let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v), h.max(v)));
         let middle = (low * high).sqrt();
-        let (low, high) = (low.min(middle / 3.0), high.max(middle * 3.0));
+        let (low, high) = (low.min(middle / 2.0), high.max(middle * 2.0));
         (low <= high).then_some((low / 1.5, high * 1.8))
     }
 
@@ -180,8 +181,10 @@ impl Plot {
             chart
                 .draw_series(line.iter().map(|p| Circle::new(*p, 4 * scale, color.filled())))
                 .map_err(|e| failed(&e))?;
-            let small = TextStyle::from((FONT, points(12))).color(&color);
-            let beside_point = (5 * scale as i32, -15 * scale as i32);
+            // Errors fall as time grows: below and to the left of the last curve there is room.
+            let place = Pos::new(HPos::Right, VPos::Top);
+            let small = TextStyle::from((FONT, points(12))).color(&color).pos(place);
+            let beside_point = (-6 * scale as i32, 3 * scale as i32);
             let beside =
                 |p: &Point| EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), beside_point, small.clone());
             chart.draw_series(Plot::visible(series).map(beside)).map_err(|e| failed(&e))?;
