@@ -19,6 +19,8 @@ fn list(count: usize) -> Command {
     let lines = (0..count).map(|i| i % 7 != 0).collect();
     let list = VectorList {
         block_normalized: false,
+        fourth: protocol::command::Fourth::Intensity,
+        internal_units: false,
         class: VectorClass::Itemized,
         dimension: 3,
         estimate: u32::try_from(count).ok(),

@@ -182,6 +182,8 @@ fn vectors(
     let runs = polylines(&mesh, &selection);
     let mut list = VectorList {
         block_normalized: false,
+        fourth: protocol::command::Fourth::Intensity,
+        internal_units: false,
         class: VectorClass::Itemized,
         dimension: 3,
         estimate: u32::try_from(runs.points.len()).ok(),

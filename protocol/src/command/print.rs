@@ -129,6 +129,7 @@ impl Printer<'_> {
                 Initialize::Displays => "INITIALIZE DISPLAYS",
                 Initialize::Names => "INITIALIZE NAMES",
             }),
+            _ => {}
         }
         self.text(";");
     }
@@ -198,6 +199,7 @@ impl Printer<'_> {
             }
             Object::Function { function, size: None } => self.put(format_args!("F:{function}")),
             Object::Function { function, size: Some(size) } => self.put(format_args!("F:{function}({size})")),
+            _ => {}
         }
     }
 
@@ -290,6 +292,7 @@ impl Printer<'_> {
             }
             Operate::SetDepthClipping(on) => self.put(format_args!("SET DEPTH_CLIPPING {}", on_or_off(*on))),
             Operate::XformMatrix => self.text("XFORM MATRIX"),
+            _ => {}
         }
     }
 

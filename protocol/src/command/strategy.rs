@@ -1,7 +1,7 @@
 //! Random commands for property tests.
 
 use super::syntax::{
-    Arc, Axis, Boundaries, Characters, Command, Destination, Initialize, Input, NamePattern, Object, Operate,
+    Arc, Axis, Boundaries, Characters, Command, Destination, Fourth, Initialize, Input, NamePattern, Object, Operate,
     VectorClass, VectorList,
 };
 use crate::{Name, Value};
@@ -134,7 +134,16 @@ pub fn vector_lists() -> impl Strategy<Value = VectorList> {
             let z = |z: f32| if dimension == 3 { z } else { 0.0 };
             let points = vectors.iter().map(|&(p, i, _)| [p[0], p[1], z(p[2]), i]).collect();
             let lines = vectors.iter().map(|v| v.2).filter(|_| class == VectorClass::Itemized).collect();
-            VectorList { block_normalized, class, dimension, estimate, points, lines }
+            VectorList {
+                block_normalized,
+                fourth: Fourth::Intensity,
+                internal_units: false,
+                class,
+                dimension,
+                estimate,
+                points,
+                lines,
+            }
         },
     )
 }

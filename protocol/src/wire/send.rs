@@ -185,6 +185,8 @@ mod tests {
         let points = (0..100_000).map(|i| [i as f32, 0.0, 1.0, 1.0]).collect();
         let list = VectorList {
             block_normalized: true,
+            fourth: crate::command::Fourth::Intensity,
+            internal_units: false,
             class: VectorClass::Separate,
             dimension: 3,
             estimate: None,

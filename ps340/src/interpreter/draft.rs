@@ -140,7 +140,7 @@ pub(super) fn bytes(object: &Object) -> usize {
             Object::VectorList(list) => list.points.len() * size_of::<[f32; 4]>() + list.lines.len(),
             Object::Characters(characters) => characters.text.len(),
             Object::Instance(names) => names.len() * size_of::<Name>(),
-            Object::Nil | Object::BeginStructure | Object::Operate { .. } | Object::Function { .. } => 0,
+            _ => 0,
         }
 }
 

@@ -96,6 +96,7 @@ impl Interpreter {
                 sent.map_err(|fault| Message::Node { name: destination.name.to_string(), fault })?;
             }
             Command::Initialize(what) => self.initialize(what, memory),
+            _ => return Err(Message::Structure("this command is not there yet".into())),
         }
         Ok(())
     }
@@ -184,13 +185,13 @@ fn node(object: Object, resolve: &mut dyn FnMut(&Name) -> Result<ObjectId, Refus
     Ok(match object {
         Object::Nil => Node::Nil,
         Object::Instance(names) => Node::Instance(names.iter().map(resolve).collect::<Result<_, _>>()?),
-        Object::VectorList(list) => Node::Vectors(Box::new(list)),
+        Object::VectorList(list) => Node::Vectors(Box::new(list.into())),
         Object::Characters(characters) => Node::Characters(Box::new(characters)),
         Object::Operate { operate, applied_to } => Node::Operate {
             operation: Operation::new(&operate).map_err(|e| Message::Structure(e.into()))?,
             descendant: applied_to.as_ref().map(resolve).transpose()?,
         },
-        Object::BeginStructure | Object::Function { .. } => {
+        _ => {
             return Err(Message::Structure("this object cannot stand here".into()));
         }
     })

@@ -34,7 +34,7 @@ fn of_node(memory: &MassMemory, node: &Node) -> String {
             }
             text
         }
-        Node::Vectors(list) => format!("VECTOR_LIST {:?}, {} vectors", list.class, list.points.len()),
+        Node::Vectors(v) => format!("VECTOR_LIST {:?}, {} vectors", v.list.class, v.list.points.len()),
         Node::Characters(c) => format!("CHARACTERS '{}'", String::from_utf8_lossy(&c.text)),
         Node::Operate { operation, descendant } => {
             let mut text = format!("{} {}", word(operation), values(operation));
@@ -43,6 +43,7 @@ fn of_node(memory: &MassMemory, node: &Node) -> String {
             }
             text
         }
+        _ => "a node".into(),
     }
 }
 
@@ -62,6 +63,7 @@ fn word(operation: &Operation) -> &'static str {
         Operation::Intensity { .. } => "SET INTENSITY",
         Operation::DepthClipping(_) => "SET DEPTH_CLIPPING",
         Operation::XformMatrix => "XFORM MATRIX",
+        _ => "operate node",
     }
 }
 
@@ -89,6 +91,6 @@ fn values(operation: &Operation) -> String {
         Operation::Color { hue, saturation } => rows(&[&[*hue, *saturation]]),
         Operation::Intensity { on, range } => format!("{} {}", if *on { "ON" } else { "OFF" }, rows(&[range])),
         Operation::DepthClipping(on) => if *on { "ON" } else { "OFF" }.into(),
-        Operation::XformMatrix => String::new(),
+        _ => String::new(),
     }
 }

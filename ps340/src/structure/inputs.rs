@@ -17,9 +17,9 @@ const SECOND: Input = Input::Number(2);
 pub(super) fn accept(node: &mut Node, input: Input, value: Value) -> Result<(), NodeFault> {
     match node {
         Node::Operate { operation, .. } => operate(operation, input, value),
-        Node::Vectors(list) => vectors(list, input, value),
+        Node::Vectors(node) => vectors(&mut node.list, input, value),
         Node::Characters(characters) => text(characters, input, value),
-        Node::Nil | Node::Instance(_) | Node::Group(_) => Err(NodeFault::NoSuchInput { input }),
+        _ => Err(NodeFault::NoSuchInput { input }),
     }
 }
 

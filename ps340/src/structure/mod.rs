@@ -5,7 +5,7 @@ mod inputs;
 mod node;
 
 pub use fault::NodeFault;
-pub use node::{Member, Node, Operation};
+pub use node::{Labels, Member, Node, Operation, Polygons, Vectors};
 
 use crate::port::ObjectId;
 use protocol::{Value, command::Input};

@@ -23,19 +23,21 @@ fn vectors(class: VectorClass, count: usize) -> Structures {
     let mut structures = Structures::default();
     let list = VectorList {
         block_normalized: false,
+        fourth: protocol::command::Fourth::Intensity,
+        internal_units: false,
         class,
         dimension: 3,
         estimate: None,
         points: vec![[0.0, 0.0, 0.0, 1.0]; count],
         lines: Vec::new(),
     };
-    structures.define(ID, Node::Vectors(Box::new(list)));
+    structures.define(ID, Node::Vectors(Box::new(list.into())));
     structures
 }
 
 fn the_list(structures: &Structures) -> &VectorList {
     match structures.node(ID) {
-        Some(Node::Vectors(list)) => list,
+        Some(Node::Vectors(vectors)) => &vectors.list,
         other => panic!("no vector list: {other:?}"),
     }
 }

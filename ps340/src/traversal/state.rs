@@ -66,7 +66,7 @@ impl State {
             }
             Operation::Intensity { on, range } => self.intensity = on.then_some(*range),
             Operation::DepthClipping(on) => self.depth_clipping = *on,
-            Operation::XformMatrix => {}
+            _ => {}
         }
     }
 

@@ -11,14 +11,17 @@ use protocol::command::{Axis, Characters, VectorClass, VectorList};
 use std::collections::BTreeSet;
 
 fn list(class: VectorClass, points: &[[f32; 3]]) -> Node {
-    Node::Vectors(Box::new(VectorList {
+    let list = VectorList {
         block_normalized: false,
+        fourth: protocol::command::Fourth::Intensity,
+        internal_units: false,
         class,
         dimension: 3,
         estimate: None,
         points: points.iter().map(|p| [p[0], p[1], p[2], 1.0]).collect(),
         lines: vec![true; if class == VectorClass::Itemized { points.len() } else { 0 }],
-    }))
+    };
+    Node::Vectors(Box::new(list.into()))
 }
 
 fn operate(operation: Operation) -> Member {

@@ -92,7 +92,7 @@ impl Walk<'_> {
                 }
             }
             Node::Group(members) => self.group(members, &mut state.clone(), depth + 1),
-            Node::Vectors(list) => self.vectors(list, state),
+            Node::Vectors(node) => self.vectors(node.drawn(), state),
             Node::Characters(characters) => self.characters(characters, state),
             Node::Operate { operation, descendant } => {
                 if let (Operation::XformMatrix, Some(id)) = (operation, id)
@@ -109,6 +109,7 @@ impl Walk<'_> {
                     None => state.apply(operation),
                 }
             }
+            _ => {}
         }
     }
 

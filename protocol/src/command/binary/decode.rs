@@ -6,8 +6,8 @@ use crate::{
     command::{
         MAX_POINTS,
         syntax::{
-            Arc, Axis, Boundaries, Characters, Command, Destination, Initialize, Input, NamePattern, Object, Operate,
-            VectorClass, VectorList,
+            Arc, Axis, Boundaries, Characters, Command, Destination, Fourth, Initialize, Input, NamePattern, Object,
+            Operate, VectorClass, VectorList,
         },
     },
     name::is_name_character,
@@ -164,6 +164,8 @@ fn begin_list<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<OpenList, Bi
     }
     let list = VectorList {
         block_normalized: flags & FLAG_BLOCK != 0,
+        fourth: Fourth::Intensity,
+        internal_units: false,
         class,
         dimension,
         estimate: (flags & FLAG_ESTIMATE != 0).then_some(estimate),

@@ -136,6 +136,7 @@ fn single(command: &Command, writer: &mut Writer<'_>) -> Result<(), EncodeError>
             destination(to, writer);
             send_value(value, writer)?;
         }
+        _ => {}
     }
     Ok(())
 }
@@ -184,6 +185,7 @@ fn definition(name: Option<&Name>, object: &Object, writer: &mut Writer<'_>) -> 
         Object::VectorList(_) => Opcode::VectorsBegin,
         Object::Function { .. } => Opcode::Function,
         Object::Operate { operate, .. } => operate_opcode(operate),
+        _ => Opcode::Nil,
     };
     writer.u8(opcode.code());
     writer.optional_name(name);
@@ -207,6 +209,7 @@ fn definition(name: Option<&Name>, object: &Object, writer: &mut Writer<'_>) -> 
             writer.optional_name(applied_to.as_ref());
             operate_fields(operate, writer);
         }
+        _ => {}
     }
     Ok(())
 }
@@ -228,6 +231,7 @@ fn operate_opcode(operate: &Operate) -> Opcode {
         Operate::SetIntensity { .. } => Opcode::SetIntensity,
         Operate::SetDepthClipping(_) => Opcode::SetDepthClipping,
         Operate::XformMatrix => Opcode::XformMatrix,
+        _ => Opcode::Nil,
     }
 }
 
@@ -272,6 +276,7 @@ fn operate_fields(operate: &Operate, writer: &mut Writer<'_>) {
         }
         Operate::SetDepthClipping(on) => writer.u8((*on).into()),
         Operate::XformMatrix => {}
+        _ => {}
     }
 }
 

@@ -20,7 +20,16 @@ fn name(text: &str) -> Name {
 fn list(class: VectorClass, count: usize) -> Command {
     let points: Vec<[f32; 4]> = (0..count).map(|i| [i as f32, -(i as f32), 0.5, 1.0]).collect();
     let lines = (0..count).filter(|_| class == VectorClass::Itemized).map(|i| i % 3 != 0).collect();
-    let list = VectorList { block_normalized: false, class, dimension: 3, estimate: Some(7), points, lines };
+    let list = VectorList {
+        block_normalized: false,
+        fourth: crate::command::Fourth::Intensity,
+        internal_units: false,
+        class,
+        dimension: 3,
+        estimate: Some(7),
+        points,
+        lines,
+    };
     Command::Define { name: Some(name("V")), object: Object::VectorList(list) }
 }
 

@@ -5,7 +5,7 @@ use crate::command::{
     MAX_POINTS,
     error::{Fault, Problem},
     number::Decimal,
-    syntax::{VectorClass, VectorList},
+    syntax::{Fourth, VectorClass, VectorList},
     token::{TokenKind, blanks},
     words::{self, Word},
 };
@@ -44,6 +44,8 @@ impl Parser<'_> {
     pub(super) fn vector_list(&mut self) -> Result<VectorList, Fault> {
         let mut list = VectorList {
             block_normalized: false,
+            fourth: Fourth::Intensity,
+            internal_units: false,
             class: VectorClass::Connected,
             dimension: 2,
             estimate: None,

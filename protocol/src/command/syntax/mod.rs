@@ -1,0 +1,15 @@
+//! Commands as plain data: what the parser and the binary decoder make, and the printer and encoder take.
+
+mod network;
+mod data;
+mod polygon;
+mod curve;
+mod operate;
+mod command;
+
+pub use command::{Command, Initialize, NamePattern, Object};
+pub use curve::{Bspline, Polynomial};
+pub use data::{Characters, FontCharacter, Fourth, Label, Labels, Pattern, VectorClass, VectorList};
+pub use network::{Arc, Destination, Input};
+pub use operate::{Axis, Boundaries, CharacterOrientation, Comparison, Operate, Rate, Scopes};
+pub use polygon::{Attributes, Illumination, Polygon, PolygonVertex, SurfaceColor};
