@@ -1,6 +1,7 @@
 //! B-spline curves and their rational form.
 
-use super::{Bspline, CurveFault, Expanded, MAX_CHORDS, MAX_ORDER, MAX_VERTICES, Projection, finite, parameter};
+use super::{CurveFault, Expanded, MAX_CHORDS, MAX_ORDER, MAX_VERTICES, Projection, finite, parameter};
+use protocol::command::Bspline;
 
 /// Evaluates a B-spline at equal steps over the range of its knots.
 ///

@@ -23,40 +23,6 @@ pub const MAX_VERTICES: usize = 1 << 20;
 /// Most chords of a curve; their points take 16 bytes each.
 pub const MAX_CHORDS: u32 = 1 << 20;
 
-/// `RATIONAL BSPLINE ORDER = k OPEN NONPERIODIC VERTICES = ... KNOTS = ... CHORDS = q`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bspline {
-    /// Whether the vertices have weights.
-    pub rational: bool,
-    /// Degree + 1, 1..=10.
-    pub order: u8,
-    /// Whether the last vertex joins the first.
-    pub closed: bool,
-    /// Whether the knots go on evenly at the ends, instead of being repeated there.
-    pub periodic: bool,
-    /// 2 or 3: components of a vertex without its weight.
-    pub dimension: u8,
-    /// x, y, z (0 if 2D) and the weight w (1 if not rational) of each vertex.
-    pub vertices: Vec<[f64; 4]>,
-    /// The knots that the client gave.
-    pub knots: Option<Vec<f64>>,
-    /// Number of straight strokes.
-    pub chords: u32,
-}
-
-/// `RATIONAL POLYNOMIAL COEFFICIENTS = ... CHORDS = q`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Polynomial {
-    /// Whether x, y and z are divided by the fourth polynomial.
-    pub rational: bool,
-    /// 2 or 3: components without the fourth.
-    pub dimension: u8,
-    /// Coefficients of x, y, z and w, those of the highest power first.
-    pub coefficients: Vec<[f64; 4]>,
-    /// Number of straight strokes.
-    pub chords: u32,
-}
-
 /// A curve as the points of its chords.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expanded {
@@ -75,6 +41,14 @@ pub enum CurveFault {
     /// A polynomial without coefficients, or of a degree above [`MAX_DEGREE`].
     #[error("a polynomial has 1 to {MAX_ROWS} rows of coefficients, not {0}")]
     Coefficients(usize),
+    /// Not one row of coefficients more than ORDER says.
+    #[error("a polynomial of order {order} has {} rows of coefficients, not {found}", u16::from(*order) + 1)]
+    Rows {
+        /// The degree.
+        order: u8,
+        /// The number of rows that were given.
+        found: usize,
+    },
     /// Chords outside of 1..=[`MAX_CHORDS`].
     #[error("a curve has 1 to {MAX_CHORDS} chords, not {0}")]
     Chords(u32),

@@ -1,6 +1,7 @@
 //! Polynomial curves and their rational form.
 
-use super::{CurveFault, Expanded, MAX_ROWS, Polynomial, Projection, finite, parameter};
+use super::{CurveFault, Expanded, MAX_ROWS, Projection, finite, parameter};
+use protocol::command::Polynomial;
 
 /// Evaluates a polynomial curve at equal steps of t = 0..=1.
 ///
@@ -18,6 +19,9 @@ pub fn polynomial(curve: &Polynomial) -> Result<Expanded, CurveFault> {
     let rows = curve.coefficients.len();
     if !(1..=MAX_ROWS).contains(&rows) {
         return Err(CurveFault::Coefficients(rows));
+    }
+    if let Some(order) = curve.order.filter(|order| usize::from(*order) + 1 != rows) {
+        return Err(CurveFault::Rows { order, found: rows });
     }
     finite(&curve.coefficients)?;
     let range = [0.0, 1.0];

@@ -1,7 +1,8 @@
 //! Curves against closed forms, invariants and an exact evaluation.
 
-use super::{Bspline, CurveFault, Expanded, MAX_CHORDS, MAX_ORDER, MAX_VERTICES, Polynomial, bspline, polynomial};
+use super::{CurveFault, Expanded, MAX_CHORDS, MAX_ORDER, MAX_VERTICES, bspline, polynomial};
 use proptest::prelude::*;
+use protocol::command::{Bspline, Polynomial};
 
 /// The greatest common divisor; `b` is not zero.
 fn divisor(a: i128, b: i128) -> i128 {
@@ -60,11 +61,11 @@ fn basis(knots: &[i128], index: usize, order: usize, t: Fraction) -> Fraction {
 fn spline(order: u8, vertices: &[[f64; 2]], chords: u32) -> Bspline {
     let vertices = vertices.iter().map(|[x, y]| [*x, *y, 0.0, 1.0]).collect();
     let (rational, closed, periodic, dimension) = (false, false, false, 2);
-    Bspline { rational, order, closed, periodic, dimension, vertices, knots: None, chords }
+    Bspline { rational, order, closed, periodic, dimension, estimate: None, vertices, knots: None, chords }
 }
 
 fn power(coefficients: &[[f64; 4]], rational: bool, chords: u32) -> Polynomial {
-    Polynomial { rational, dimension: 3, coefficients: coefficients.to_vec(), chords }
+    Polynomial { rational, order: None, dimension: 3, coefficients: coefficients.to_vec(), chords }
 }
 
 fn points(curve: &Bspline) -> Vec<[f32; 4]> {
@@ -73,7 +74,7 @@ fn points(curve: &Bspline) -> Vec<[f32; 4]> {
 
 /// A zigzag that no simple formula hides in.
 fn zigzag(count: usize) -> Vec<[f64; 2]> {
-    let digit = |i: usize, of: usize| ((i * i * i * 31 + i * 17 + of) * 2_654_435_761 >> 9) % 13;
+    let digit = |i: usize, of: usize| ((i * 31 + 17 * of) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) % 13;
     (0..count).map(|i| [digit(i, 1) as f64 - 6.0, digit(i, 5) as f64 - 6.0]).collect()
 }
 
@@ -450,6 +451,8 @@ fn wrong_counts_and_values_are_refused_with_their_place() {
     let rows = |count: usize| polynomial(&power(&vec![[1.0; 4]; count], false, 1)).map(|curve| curve.points.len());
     assert_eq!((rows(0), rows(1), rows(11)), (Err(CurveFault::Coefficients(0)), Ok(2), Ok(2)));
     assert_eq!(rows(12), Err(CurveFault::Coefficients(12)));
+    let ordered = |order| polynomial(&Polynomial { order: Some(order), ..power(&[[1.0; 4]; 4], false, 1) });
+    assert_eq!((ordered(3).is_ok(), ordered(4)), (true, Err(CurveFault::Rows { order: 4, found: 4 })));
 }
 
 #[test]
@@ -475,7 +478,7 @@ proptest! {
         };
         let knots = steps.iter().scan(0.0, |sum, step| { *sum += step; Some(*sum) }).take(needed).collect();
         let knots = own.then_some(knots);
-        let curve = Bspline { rational: true, order, closed, periodic, dimension: 3, vertices, knots, chords };
+        let curve = Bspline { rational: true, order, closed, periodic, dimension: 3, estimate: None, vertices, knots, chords };
         if let Ok(expanded) = bspline(&curve) {
             prop_assert_eq!(expanded.points.len(), chords as usize + 1);
             prop_assert!(expanded.parameters[0] < expanded.parameters[1]);

@@ -5,7 +5,7 @@
 //! entries does, which length MATCH takes, and what becomes of vectors of no length.
 //! Not modelled: the indices that picking of a dashed list gave; they are those of the dashes.
 
-use protocol::command::{VectorClass, VectorList};
+use protocol::command::{Pattern, VectorClass, VectorList};
 
 /// Most entries of a pattern.
 pub const MAX_SEGMENTS: usize = 32;
@@ -14,19 +14,6 @@ pub const MAX_DASHES: usize = 1 << 20;
 
 /// A dash or a gap shorter than this part of the pattern's length is a rounding.
 const TOLERANCE: f64 = 1e-9;
-
-/// `PATTERN i i ... AROUND_CORNERS MATCH LENGTH r`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pattern {
-    /// Relative lengths, the first and then every other one drawn, the others blank; 1..=32 entries.
-    pub segments: Vec<f64>,
-    /// Whether the pattern goes on from one vector to the next.
-    pub around_corners: bool,
-    /// Whether the length is adjusted so that the pattern comes out whole.
-    pub matched: bool,
-    /// Length of one repetition, in the coordinates of the list.
-    pub length: f64,
-}
 
 /// Why a pattern cannot be applied.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

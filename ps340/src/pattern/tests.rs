@@ -1,12 +1,21 @@
 //! Dashes against closed forms and invariants.
 
-use super::{MAX_DASHES, Pattern, PatternFault, dashed};
+use super::{MAX_DASHES, PatternFault, dashed};
 use proptest::prelude::*;
-use protocol::command::{VectorClass, VectorList};
+use protocol::command::{Fourth, Pattern, VectorClass, VectorList};
 
 fn list(class: VectorClass, points: &[[f32; 4]]) -> VectorList {
     let points = points.to_vec();
-    VectorList { block_normalized: true, class, dimension: 3, estimate: Some(3), points, lines: Vec::new() }
+    VectorList {
+        block_normalized: true,
+        class,
+        dimension: 3,
+        estimate: Some(3),
+        fourth: Fourth::Intensity,
+        internal_units: false,
+        points,
+        lines: Vec::new(),
+    }
 }
 
 fn connected(points: &[[f32; 2]]) -> VectorList {

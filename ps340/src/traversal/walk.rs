@@ -1,6 +1,9 @@
 //! The walk over the display structure.
 
-use super::{Clipper, State, Stroke, font};
+use super::{
+    Clipper, State, Stroke,
+    font::{self, Font},
+};
 use crate::{
     port::ObjectId,
     structure::{Member, Node, Operation, Structures},
@@ -167,16 +170,12 @@ impl Walk<'_> {
             state.ctm * (characters.position + (state.characters * at).extend(0.0)).extend(1.0)
         };
         for (cell, code) in characters.text.iter().enumerate() {
-            for line in font::glyph(*code) {
-                if !self.counted(line.len()) {
-                    return;
-                }
-                if let [only] = line.as_slice() {
-                    self.update.strokes.extend(clipper.dot(clip(cell, *only), 1.0));
-                }
-                let ends = line.windows(2).filter_map(|w| clipper.line(clip(cell, w[0]), clip(cell, w[1]), [1.0; 2]));
-                self.update.strokes.extend(ends);
+            let glyph = Font::Standard.glyph(*code);
+            if !self.counted(glyph.len()) {
+                return;
             }
+            let lines = font::strokes(glyph).filter_map(|[a, b]| clipper.line(clip(cell, a), clip(cell, b), [1.0; 2]));
+            self.update.strokes.extend(lines);
         }
     }
 }
