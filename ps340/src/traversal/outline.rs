@@ -1,14 +1,16 @@
 //! The straight pieces of a data node one by one, with what picking and colour blending need to know of each.
 
-use super::{State, font};
+use super::{
+    State,
+    font::{self, Font},
+};
 use crate::{
     hue,
-    port::ObjectId,
     structure::{Labels, Node, Polygons, Structures},
 };
-use glam::{DMat4, DVec2, DVec3, DVec4};
-use protocol::command::{CharacterOrientation, FontCharacter, Fourth, VectorClass, VectorList};
-use std::{collections::BTreeMap, ops::ControlFlow};
+use glam::{DVec2, DVec3, DVec4};
+use protocol::command::{CharacterOrientation, Fourth, VectorClass, VectorList};
+use std::ops::ControlFlow;
 
 /// Degrees of hue that one piece of a blended line covers at most.
 const BLEND_STEP: f64 = 6.0;
@@ -120,59 +122,37 @@ fn polygons(block: &Polygons, state: &State, sink: Sink) -> ControlFlow<()> {
 
 /// How text is written in one state.
 struct Text<'a> {
-    ctm: DMat4,
     state: &'a State,
-    font: Option<&'a BTreeMap<u8, FontCharacter>>,
-    /// A font that is named but not there draws nothing.
-    missing: bool,
+    /// None if the font is not there: then nothing is drawn.
+    font: Option<Font<'a>>,
 }
 
 impl<'a> Text<'a> {
     fn new(state: &'a State, structures: &'a Structures) -> Text<'a> {
-        let font = state.font.and_then(|id: ObjectId| match structures.node(id) {
-            Some(Node::Font(font)) => Some(&**font),
-            _ => None,
-        });
-        Text { ctm: state.ctm, state, font, missing: state.font.is_some() && font.is_none() }
+        let font = match state.font.map(|id| structures.node(id)) {
+            None => Some(Font::Standard),
+            Some(Some(Node::Font(font))) => Some(Font::User(font)),
+            Some(_) => None,
+        };
+        Text { state, font }
     }
 
     /// Strokes of character k lie at `position + (k step + stroke) M`, M the character matrix. All pieces have the
     /// number `index`, or that of their character.
     fn write(&self, position: DVec3, step: DVec2, text: &[u8], index: Option<u32>, sink: Sink) -> ControlFlow<()> {
-        if self.missing {
-            return ControlFlow::Continue(());
-        }
+        let Some(font) = self.font else { return ControlFlow::Continue(()) };
         for (cell, code) in text.iter().enumerate() {
             let index = index.unwrap_or(cell as u32 + 1);
             let origin = step * cell as f64;
-            let mut stroke = |from: [f32; 2], to: [f32; 2], dot: bool| {
-                let local = [from, to].map(|p| self.state.characters * (origin + DVec2::from_array(p.map(f64::from))));
+            for stroke in font::strokes(font.glyph(*code)) {
+                let local = stroke.map(|p| self.state.characters * (origin + DVec2::from_array(p.map(f64::from))));
                 let source = local.map(|l| position + l.extend(0.0));
                 let ends = match self.state.orientation {
-                    CharacterOrientation::World => source.map(|p| self.ctm * p.extend(1.0)),
+                    CharacterOrientation::World => source.map(|p| self.state.ctm * p.extend(1.0)),
                     _ => local.map(|l| self.on_screen(position, l)),
                 };
-                sink(Piece { index, ends, source, intensity: [1.0; 2], color: None, dot })
-            };
-            match self.font {
-                Some(font) => {
-                    let points = font.get(code).map_or(&[][..], |character| &character.points);
-                    for pair in points.windows(2) {
-                        if pair[1].1 {
-                            stroke(pair[0].0, pair[1].0, pair[0].0 == pair[1].0)?;
-                        }
-                    }
-                }
-                None => {
-                    for line in font::glyph(*code) {
-                        if let [only] = line.as_slice() {
-                            stroke(*only, *only, true)?;
-                        }
-                        for pair in line.windows(2) {
-                            stroke(pair[0], pair[1], false)?;
-                        }
-                    }
-                }
+                let dot = stroke[0] == stroke[1];
+                sink(Piece { index, ends, source, intensity: [1.0; 2], color: None, dot })?;
             }
         }
         ControlFlow::Continue(())
@@ -180,7 +160,7 @@ impl<'a> Text<'a> {
 
     /// A point of screen-oriented text in clip space: `local` beside the place of `anchor`, unrotated.
     fn on_screen(&self, anchor: DVec3, local: DVec2) -> DVec4 {
-        let at = self.ctm * anchor.extend(1.0);
+        let at = self.state.ctm * anchor.extend(1.0);
         let half = |[low, high]: [f64; 2]| (high - low) / 2.0;
         let frame = DVec2::new(half(self.state.horizontal), half(self.state.vertical));
         let offset = match self.state.orientation {
@@ -188,7 +168,7 @@ impl<'a> Text<'a> {
             CharacterOrientation::ScreenFixed => local / frame,
             // As large as in the world: the mean stretch of the three axes, which no rotation changes.
             _ => {
-                let rows = [self.ctm.row(0), self.ctm.row(1)];
+                let rows = [self.state.ctm.row(0), self.state.ctm.row(1)];
                 let stretch =
                     (rows[0].truncate() * frame.x).length_squared() + (rows[1].truncate() * frame.y).length_squared();
                 local / frame * (stretch / 2.0).sqrt() / at.w.abs()

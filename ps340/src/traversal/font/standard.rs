@@ -1,13 +1,11 @@
-//! The standard stroke font: polylines in the unit cell for every printable character of ASCII.
+//! The standard stroke font: every printable character of ASCII in the unit cell.
 //!
 //! Our own design. Capitals and digits stand on the line y = 0 and are 0.8 high, small letters
 //! 0.55, descenders reach -0.2; the width is at most 0.6 of the cell, which leaves the rest as
-//! the gap to the next character. Round strokes are parabolas, each drawn as four straight ones.
+//! the gap to the next character. Round strokes are parabolas, each drawn as straight ones.
 
+use super::Point;
 use std::sync::OnceLock;
-
-/// One movement of the pen without lifting it: points in cell units, x right and y up.
-pub type Polyline = Vec<[f32; 2]>;
 
 /// Straight strokes that stand for a parabola.
 const PARTS: usize = 4;
@@ -16,36 +14,36 @@ const GRID: f32 = 20.0;
 /// The first character of the table.
 const FIRST: u8 = b'!';
 
-/// The polylines of a character; none for a space and for codes that the font does not have.
+/// The points of a character; none for a space and for codes that the font does not have.
 ///
 /// The first call builds the font, further calls return what is there.
-pub fn glyph(code: u8) -> &'static [Polyline] {
-    static FONT: OnceLock<Vec<Vec<Polyline>>> = OnceLock::new();
+pub(super) fn glyph(code: u8) -> &'static [Point] {
+    static FONT: OnceLock<Vec<Vec<Point>>> = OnceLock::new();
     let font = FONT.get_or_init(|| GLYPHS.iter().map(|row| draw(row)).collect());
     let index = code.checked_sub(FIRST).map(usize::from);
     index.and_then(|index| font.get(index)).map_or(&[], Vec::as_slice)
 }
 
 /// Draws a row of the table.
-fn draw(row: &str) -> Vec<Polyline> {
-    row.split(" / ").map(draw_polyline).collect()
-}
-
-/// Draws one polyline of a row: points, and control points of parabolas in parentheses.
-fn draw_polyline(text: &str) -> Polyline {
-    let mut line: Polyline = Vec::new();
-    let mut control = None;
-    for word in text.split_whitespace() {
-        let point = place(word.trim_matches(['(', ')']));
-        if word.starts_with('(') {
-            control = Some(point);
-        } else if let (Some(bend), Some(start)) = (control.take(), line.last().copied()) {
-            line.extend((1..=PARTS).map(|part| parabola(start, bend, point, part as f32 / PARTS as f32)));
-        } else {
-            line.push(point);
+fn draw(row: &str) -> Vec<Point> {
+    let mut points: Vec<Point> = Vec::new();
+    for polyline in row.split(" / ") {
+        let (mut control, mut drawn) = (None, false);
+        for word in polyline.split_whitespace() {
+            let point = place(word.trim_matches(['(', ')']));
+            if word.starts_with('(') {
+                control = Some(point);
+                continue;
+            }
+            if let (Some(bend), Some((start, _))) = (control.take(), points.last().copied()) {
+                let part = |part| (parabola(start, bend, point, part as f32 / PARTS as f32), true);
+                points.extend((1..PARTS).map(part));
+            }
+            points.push((point, drawn));
+            drawn = true;
         }
     }
-    line
+    points
 }
 
 /// The point at t = 0..=1 of a quadratic Bezier curve.
@@ -170,19 +168,19 @@ const GLYPHS: [&str; 94] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::traversal::font::strokes;
 
     #[test]
     fn every_printable_character_has_strokes_inside_its_cell() {
         for code in 33..=126 {
-            let lines = glyph(code);
-            assert!(!lines.is_empty(), "character {code}");
-            for line in lines {
-                assert!(line.len() >= 2, "a single point in character {code}");
-                for [x, y] in line {
-                    assert!((0.0..=0.66).contains(x) && (-0.25..=1.0).contains(y), "{x},{y} of character {code}");
-                }
-                assert!(line.windows(2).all(|pair| pair[0] != pair[1]), "a stroke of no length in character {code}");
+            assert!(strokes(glyph(code)).count() > 0, "character {code}");
+            for ([x, y], _) in glyph(code) {
+                assert!((0.0..=0.66).contains(x) && (-0.25..=1.0).contains(y), "{x},{y} of character {code}");
             }
+            let still = strokes(glyph(code)).find(|[start, end]| start == end);
+            assert_eq!(still, None, "a stroke of no length in character {code}");
+            let moves = glyph(code).windows(2).filter(|pair| !pair[0].1 && !pair[1].1).count();
+            assert_eq!(moves, 0, "a single point in character {code}");
         }
     }
 
@@ -196,26 +194,21 @@ mod tests {
     #[test]
     fn capitals_and_digits_stand_on_the_line_and_are_four_fifths_high() {
         for code in (b'A'..=b'Z').chain(b'0'..=b'9').filter(|code| *code != b'Q') {
-            let heights = || glyph(code).iter().flatten().map(|point| point[1]);
+            let heights = || glyph(code).iter().map(|point| point.0[1]);
             let (low, high) = (heights().fold(f32::MAX, f32::min), heights().fold(f32::MIN, f32::max));
             assert_eq!((low, high), (0.0, 0.8), "{}", code as char);
         }
     }
 
     #[test]
-    fn no_two_characters_are_alike() {
-        for code in 33..=126u8 {
-            for other in 33..code {
-                assert_ne!(glyph(code), glyph(other), "{} and {}", code as char, other as char);
-            }
-        }
-    }
-
-    #[test]
     fn round_strokes_pass_through_their_ends_and_bend_towards_the_control_point() {
-        let line = draw_polyline("0,0 (20,0) 20,20 0,20");
-        assert_eq!(line.len(), 1 + PARTS + 1);
-        assert_eq!((line[0], line[PARTS], line[PARTS + 1]), ([0.0, 0.0], [1.0, 1.0], [0.0, 1.0]));
-        assert_eq!(line[PARTS / 2], [0.75, 0.25]);
+        let line = draw("0,0 (20,0) 20,20 0,20 / 0,0 20,0");
+        assert_eq!(line.len(), 1 + PARTS + 1 + 2);
+        assert_eq!(
+            (line[0], line[PARTS], line[PARTS + 1]),
+            (([0.0, 0.0], false), ([1.0, 1.0], true), ([0.0, 1.0], true))
+        );
+        assert_eq!(line[PARTS / 2], ([0.75, 0.25], true));
+        assert_eq!(line[PARTS + 2..], [([0.0, 0.0], false), ([1.0, 0.0], true)]);
     }
 }
