@@ -16,6 +16,7 @@ mod pick;
 pub mod stroke;
 mod update;
 mod walk;
+pub mod write_back;
 
 pub use clip::{Clipper, ScreenMap};
 pub use pick::{PickHit, PickRequest, PickedKind, PickedPlace};
