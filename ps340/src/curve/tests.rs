@@ -74,7 +74,7 @@ fn points(curve: &Bspline) -> Vec<[f32; 4]> {
 
 /// A zigzag that no simple formula hides in.
 fn zigzag(count: usize) -> Vec<[f64; 2]> {
-    let digit = |i: usize, of: usize| ((i * 31 + 17 * of) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) % 13;
+    let digit = |i: usize, of: usize| (((i * 31 + 17 * of) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) % 13;
     (0..count).map(|i| [digit(i, 1) as f64 - 6.0, digit(i, 5) as f64 - 6.0]).collect()
 }
 
