@@ -35,7 +35,7 @@ impl Clipper {
 
     /// The same without depth cueing.
     pub fn at_full_intensity(mut self) -> Clipper {
-        self.screen.cue = [1.0; 2];
+        (self.screen.front, self.screen.fall) = (1.0, 0.0);
         self
     }
 
