@@ -1,7 +1,8 @@
 //! What flows on the arcs of a function network and in SEND: values and their kinds.
 
+use crate::Name;
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
-use std::fmt;
+use std::{fmt, sync::Arc};
 
 /// A message: one typed value.
 ///
@@ -37,6 +38,58 @@ pub enum Value {
     Matrix4(Box<DMat4>),
     /// What F:XFORMDATA emits and F:LIST turns into lines: the accumulated matrix of an XFORM MATRIX node.
     Transform(Box<DMat4>),
+    /// What F:XFORMDATA emits for an XFORM VECTOR node: transformed vectors. No command can express it.
+    Vectors(Arc<VectorData>),
+    /// What F:PICK emits. No command can express it.
+    Pick(Arc<PickList>),
+    /// What F:LABEL emits. No command can express it.
+    Label(Arc<LabelData>),
+}
+
+/// Vectors of a display structure after their transformation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VectorData {
+    /// The points, divided by w.
+    pub points: Vec<DVec3>,
+    /// Whether the vector to each point is a line; as long as `points`.
+    pub lines: Vec<bool>,
+}
+
+/// What was picked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PickList {
+    /// Number of the vector, character, label or polygon in its data node, from 1.
+    pub index: i32,
+    /// The pick identifiers on the way, nearest first.
+    pub identifiers: Vec<Name>,
+    /// The name of the data node; empty if it has none.
+    pub node: String,
+    /// The code of the kind of data.
+    pub code: i32,
+    /// Where it was picked, if coordinates were wanted.
+    pub place: Option<PickedPoint>,
+}
+
+/// Where something was picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PickedPoint {
+    /// In the coordinates of the data node; z is 0 for 2D data.
+    pub point: DVec3,
+    /// 2 or 3.
+    pub dimension: u8,
+    /// The parameter of a curve there.
+    pub parameter: Option<f64>,
+}
+
+/// A label on its way to a LABELS node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LabelData {
+    /// Lower left corner of the first cell.
+    pub position: DVec3,
+    /// The text.
+    pub text: Box<[u8]>,
+    /// Whether it is shown.
+    pub shown: bool,
 }
 
 /// Longest string that a command or a function may make, in bytes.
@@ -70,13 +123,19 @@ pub enum Kind {
     Matrix4x3,
     /// A 4x4 matrix.
     Matrix4,
-    /// Transformed data.
+    /// A transformed matrix.
     Transform,
+    /// Transformed vectors.
+    Vectors,
+    /// A pick list.
+    Pick,
+    /// A label.
+    Label,
 }
 
 impl Kind {
     /// Every kind, in the order of the enumeration.
-    pub const ALL: [Kind; 12] = [
+    pub const ALL: [Kind; 15] = [
         Kind::Boolean,
         Kind::Integer,
         Kind::Real,
@@ -89,6 +148,9 @@ impl Kind {
         Kind::Matrix4x3,
         Kind::Matrix4,
         Kind::Transform,
+        Kind::Vectors,
+        Kind::Pick,
+        Kind::Label,
     ];
 
     /// The word for the kind in messages and tables.
@@ -105,7 +167,10 @@ impl Kind {
             Kind::Matrix3 => "3x3 matrix",
             Kind::Matrix4x3 => "4x3 matrix",
             Kind::Matrix4 => "4x4 matrix",
-            Kind::Transform => "transformed data",
+            Kind::Transform => "transformed matrix",
+            Kind::Vectors => "transformed vectors",
+            Kind::Pick => "pick list",
+            Kind::Label => "label",
         }
     }
 }
@@ -132,6 +197,9 @@ impl Value {
             Value::Matrix4x3(_) => Kind::Matrix4x3,
             Value::Matrix4(_) => Kind::Matrix4,
             Value::Transform(_) => Kind::Transform,
+            Value::Vectors(_) => Kind::Vectors,
+            Value::Pick(_) => Kind::Pick,
+            Value::Label(_) => Kind::Label,
         }
     }
 
@@ -160,6 +228,9 @@ impl Value {
             Value::Matrix2(m) => m.is_finite(),
             Value::Matrix3(m) => m.is_finite(),
             Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => m.is_finite(),
+            Value::Vectors(data) => data.points.iter().all(|p| p.is_finite()),
+            Value::Pick(list) => list.place.is_none_or(|p| p.point.is_finite()),
+            Value::Label(label) => label.position.is_finite(),
         }
     }
 }

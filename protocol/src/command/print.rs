@@ -156,6 +156,8 @@ impl Printer<'_> {
             Value::Matrix4x3(m) => self.call(Word::Matrix4x3Value, &four_by_three(m)),
             Value::Matrix4(m) => self.call(Word::Matrix4Value, &m.to_cols_array()),
             Value::Transform(m) => self.call(Word::TransformValue, &m.to_cols_array()),
+            // No command can express these: their kind stands in their place.
+            Value::Vectors(_) | Value::Pick(_) | Value::Label(_) => self.quoted(value.kind().word().as_bytes()),
         }
     }
 

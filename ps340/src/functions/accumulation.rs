@@ -54,6 +54,47 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     FunctionRow {
+        name: "AVERAGE",
+        summary: "mean of each n consecutive values",
+        source: Source::manual("a value of another kind, or a new n, begins anew: ours"),
+        inputs: &[PortSpec::active(AMOUNT, "value"), PortSpec::constant(KindSet::INTEGER, "n, at least 1")],
+        outputs: &["mean, real or vector"],
+        memory: 2,
+        behaviour: average,
+        examples: &[
+            Example::of(&[(2, I(2)), (1, I(1)), (1, I(2)), (1, R(5.0)), (1, I(6))], &[(1, R(1.5)), (1, R(5.5))]),
+            Example::of(&[(2, I(1)), (1, V2([1.0, 2.0]))], &[(1, V2([1.0, 2.0]))]),
+            Example::of(&[(2, I(2)), (1, R(1.0)), (1, V2([1.0, 2.0])), (1, V2([3.0, 4.0]))], &[(1, V2([2.0, 3.0]))]),
+            Example::of(&[(2, I(0)), (1, R(1.0))], &[]).faults(&[6]),
+        ],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "ATSCALE",
+        summary: "the value scaled by its own size, so that large turns count for more",
+        source: Source::uncertain("value times its length times <2>: ours"),
+        inputs: &[PortSpec::active(AMOUNT, "value"), PortSpec::default(KindSet::NUMBER, R(1.0), "factor")],
+        outputs: &["scaled value, real or vector"],
+        behaviour: |f| {
+            let value = real(f.value(1));
+            let size = match &value {
+                Value::Real(r) => r.abs(),
+                Value::Vector2(v) => v.length(),
+                Value::Vector3(v) => v.length(),
+                Value::Vector4(v) => v.length(),
+                _ => return Err(Problem::Kind(1)),
+            };
+            let scaled = product(&value, &Value::Real(size * f.number(2)?)).ok_or(Problem::Mismatch)?;
+            f.emit(1, scaled)
+        },
+        examples: &[
+            Example::of(&[(1, R(-0.5)), (2, R(4.0)), (1, I(2))], &[(1, R(-0.25)), (1, R(16.0))]),
+            Example::of(&[(1, V2([3.0, 4.0]))], &[(1, V2([15.0, 20.0]))]),
+            Example::of(&[(1, R(1e200))], &[]).faults(&[7]),
+        ],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
         name: "DELTA",
         summary: "the message if it differs enough from the last one that passed",
         source: Source::confirmed("clients pass each change of the puck's buttons once, the first included"),
@@ -134,6 +175,39 @@ fn within(value: &Value, high: f64, low: f64, blamed: u16) -> Result<Value, Prob
 /// Whether a value is at least `least` away from the last one that left. One of another kind is; so is the first.
 fn moved(f: &Firing, value: &Value, least: f64) -> bool {
     f.memory(LAST).and_then(|last| distance(value, last)).is_none_or(|distance| distance >= least)
+}
+
+/// A value with reals in the place of integers.
+fn real(value: &Value) -> Value {
+    value.number().map_or_else(|| value.clone(), Value::Real)
+}
+
+fn average(f: &mut Firing) -> Result<(), Problem> {
+    const SUM: u8 = 0;
+    const COUNT: u8 = 1;
+    let wanted = f.integer(2)?;
+    if wanted < 1 {
+        return Err(Problem::Range(2));
+    }
+    let value = real(f.value(1));
+    let begins = f.take_fresh(2);
+    let so_far = match (f.memory(SUM).and_then(|before| sum(before, &value)), f.memory(COUNT)) {
+        (Some(total), Some(Value::Integer(count))) if !begins => (total, count + 1),
+        _ => (value, 1),
+    };
+    let (total, count) = so_far;
+    if !total.is_finite() {
+        f.forget(COUNT);
+        return Err(Problem::Overflow);
+    }
+    if count < wanted {
+        f.remember(SUM, total);
+        f.remember(COUNT, Value::Integer(count));
+        return Ok(());
+    }
+    f.forget(COUNT);
+    let mean = product(&total, &Value::Real(1.0 / f64::from(count))).ok_or(Problem::Mismatch)?;
+    f.emit(1, mean)
 }
 
 fn accumulate(f: &mut Firing) -> Result<(), Problem> {

@@ -51,6 +51,29 @@ pub static ROWS: &[FunctionRow] = &[
         ..CLOCK
     },
     FunctionRow {
+        name: "TIMEOUT",
+        summary: "a constant when no message has come for a time",
+        source: Source::uncertain("hundredths of a second; a message at <1> or <2> starts the time anew: ours"),
+        inputs: &[
+            PortSpec::active(KindSet::ANY, "sign of life"),
+            PortSpec::constant(KindSet::INTEGER, "time in hundredths of a second, at least 1"),
+            PortSpec::constant(KindSet::ANY, "what is sent then"),
+        ],
+        outputs: &["<3>"],
+        memory: 1,
+        behaviour: |f| {
+            let time = f.integer(2)?;
+            if time < 1 {
+                return Err(Problem::Range(2));
+            }
+            f.take_fresh(2);
+            f.remember(REMAINING, Value::Integer(time));
+            Ok(())
+        },
+        clock: Some(time_out),
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
         name: "CLTICKS",
         summary: "clock that counts ticks of the system clock, twentieths of a second",
         clock: Some(|f, elapsed: &Elapsed| advance(f, elapsed.ticks)),
@@ -71,6 +94,26 @@ const REMAINING: u8 = 0;
 const NEXT: u8 = 1;
 /// Memory: how many outputs are left of the count.
 const LEFT: u8 = 2;
+
+/// Lets the time of F:TIMEOUT run out.
+fn time_out(f: &mut Firing, elapsed: &Elapsed) -> Result<u64, Problem> {
+    if f.take_fresh(2) {
+        let time = integer(f, 2)?.filter(|time| *time > 0).ok_or(Problem::Range(2))?;
+        f.remember(REMAINING, Value::Integer(time));
+        return Ok(0);
+    }
+    let Some(remaining) = cell(f, REMAINING) else { return Ok(0) };
+    let passed = i32::try_from(elapsed.centiseconds).unwrap_or(i32::MAX);
+    if passed < remaining {
+        f.remember(REMAINING, Value::Integer(remaining - passed));
+        return Ok(0);
+    }
+    f.forget(REMAINING);
+    if let Some(value) = f.optional(3).cloned() {
+        f.emit(1, value)?;
+    }
+    Ok(0)
+}
 
 /// Lets a clock advance; returns how many outputs were left out.
 fn advance(f: &mut Firing, elapsed: u64) -> Result<u64, Problem> {

@@ -8,10 +8,14 @@ mod row;
 pub mod accumulation;
 pub mod algebra;
 pub mod arithmetic;
+pub mod characters;
 pub mod clocks;
 pub mod comparison;
 pub mod devices;
+pub mod host;
+pub mod labels;
 pub mod logic;
+pub mod names;
 pub mod printing;
 pub mod routing;
 pub mod selection;
@@ -25,7 +29,7 @@ pub use row::{Behaviour, Clock, Confidence, Example, Family, FunctionRow, MAX_SI
 use std::{collections::HashMap, sync::LazyLock};
 
 /// The families of functions that a command can instance, in the order of the manuals.
-pub static FAMILIES: [(&str, &[FunctionRow]); 12] = [
+pub static FAMILIES: [(&str, &[FunctionRow]); 16] = [
     ("arithmetic", arithmetic::ROWS),
     ("logic", logic::ROWS),
     ("comparison", comparison::ROWS),
@@ -36,8 +40,12 @@ pub static FAMILIES: [(&str, &[FunctionRow]); 12] = [
     ("accumulation", accumulation::ROWS),
     ("clocks", clocks::ROWS),
     ("strings", strings::ROWS),
+    ("characters", characters::ROWS),
     ("printing", printing::ROWS),
     ("selection", selection::ROWS),
+    ("labels", labels::ROWS),
+    ("names", names::ROWS),
+    ("host line and disk", host::ROWS),
 ];
 
 /// The rows of all functions that a command can instance.

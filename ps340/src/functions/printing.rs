@@ -10,7 +10,7 @@ use crate::port::{
     Literal::{B, I, M2, R, S, V2, V3},
     PortSpec,
 };
-use protocol::Value;
+use protocol::{Name, Value};
 
 /// Significant digits of a real in F:PRINT.
 pub const DIGITS: usize = 9;
@@ -59,6 +59,17 @@ pub fn print(value: &Value, exponential: bool) -> Vec<u8> {
         Value::Matrix3(m) => rows(&m.to_cols_array_2d().each_ref().map(|row| &row[..])).into(),
         Value::Matrix4x3(m) => rows(&m.to_cols_array_2d().each_ref().map(|row| &row[..3])).into(),
         Value::Matrix4(m) | Value::Transform(m) => rows(&m.to_cols_array_2d().each_ref().map(|row| &row[..])).into(),
+        Value::Vectors(data) => super::selection::vector_lines(data).concat().into(),
+        Value::Pick(picked) => {
+            let names: Vec<&str> = picked.identifiers.iter().map(Name::as_str).collect();
+            format!("{} {} {}", picked.index, names.join(","), picked.node).trim_end().to_owned().into()
+        }
+        Value::Label(label) => {
+            let mut text = format!("{} '", list(&label.position.to_array())).into_bytes();
+            text.extend_from_slice(&label.text);
+            text.extend_from_slice(if label.shown { b"' TRUE" } else { b"' FALSE" });
+            text
+        }
     }
 }
 

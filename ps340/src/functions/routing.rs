@@ -155,6 +155,28 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     FunctionRow {
+        name: "RANGE_SELECT",
+        summary: "the message to output 1 if it lies in a range, else to output 2",
+        source: Source::uncertain("the limits belong to the range and may stand in either order: ours"),
+        inputs: &[
+            PortSpec::active(KindSet::NUMBER, "number"),
+            PortSpec::constant(KindSet::NUMBER, "one limit"),
+            PortSpec::constant(KindSet::NUMBER, "other limit"),
+        ],
+        outputs: &["number inside", "number outside", "whether it is inside"],
+        behaviour: |f| {
+            let (number, a, b) = (f.number(1)?, f.number(2)?, f.number(3)?);
+            let inside = (a.min(b)..=a.max(b)).contains(&number);
+            pass(f, 1, if inside { 1 } else { 2 })?;
+            f.emit(3, protocol::Value::Boolean(inside))
+        },
+        examples: &[Example::of(
+            &[(2, I(1)), (3, I(2)), (1, I(2)), (1, R(2.5)), (2, I(3)), (1, R(2.5))],
+            &[(1, I(2)), (3, B(true)), (2, R(2.5)), (3, B(false)), (1, R(2.5)), (3, B(true))],
+        )],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
         name: "SYNC",
         summary: "one message of each input, all at once, when all are there",
         source: Source::manual(""),

@@ -1,16 +1,23 @@
-//! Transformed data: asked from a node of the structure, and written as commands.
+//! Picking and transformed data: asked from the display structure, taken apart, and written as commands.
 
-use super::{Example, FunctionRow, Source, printing::decimal};
+use super::{Example, Family, FunctionRow, Source, names::name, printing::decimal};
 use crate::port::{
     Effect, Firing, KindSet,
-    Literal::{S, T},
+    Literal::{B, I, S, T},
     PortSpec, Problem,
 };
 use glam::DMat4;
-use protocol::{Name, Value};
+use protocol::{
+    Name, Value,
+    value::{MAX_STRING, VectorData},
+};
+use std::sync::Arc;
 
 /// Significant digits of F:LIST. Four such numbers and their marks always fit the [`MAX_LINE`] of clients.
 pub const DIGITS: usize = 11;
+
+/// Most vectors in one message of transformed data. Ours.
+pub const MAX_VECTORS: usize = 1 << 20;
 
 /// Longest line that clients of the time read, in bytes. [S]
 pub const MAX_LINE: usize = 80;
@@ -19,22 +26,82 @@ pub const MAX_LINE: usize = 80;
 pub static ROWS: &[FunctionRow] = &[
     FunctionRow {
         name: "XFORMDATA",
-        summary: "the accumulated matrix at an XFORM node, at the next update",
-        source: Source::confirmed("clients use <1>, <2> and the output; <3> to <5>, for vector lists, are kept unused"),
+        summary: "the accumulated matrix or the vectors at an XFORM node, at the next update",
+        source: Source::confirmed("clients use <1>, <2> and the output; <3> is kept unused, <4> and <5> are uncertain"),
         inputs: &[
             PortSpec::active(KindSet::ANY, "trigger"),
             PortSpec::constant(KindSet::STRING, "path of the XFORM node"),
             PortSpec::optional(KindSet::STRING, "name of the destination"),
-            PortSpec::optional(KindSet::INTEGER, "first index"),
-            PortSpec::optional(KindSet::INTEGER, "count"),
+            PortSpec::optional(KindSet::INTEGER, "first vector, from 1"),
+            PortSpec::optional(KindSet::INTEGER, "number of vectors"),
         ],
         outputs: &["transformed data"],
         behaviour: |f| {
-            let node = Name::new(f.string(2)?.trim_ascii()).map_err(|_| Problem::Range(2))?;
-            f.effect(Effect::RequestTransform { function: f.object(), node });
+            let node = name(f, 2)?;
+            let whole = |input: u16| f.optional(input).map(|_| f.integer(input)).transpose();
+            let vectors = [whole(4)?, whole(5)?];
+            f.effect(Effect::RequestTransform { function: f.object(), node, vectors });
             Ok(())
         },
         examples: &[Example::of(&[(2, S("1X")), (1, S(""))], &[]).faults(&[6])],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "PICK",
+        summary: "what is drawn first inside the pick box",
+        source: Source::confirmed(
+            "clients trigger it with the place of the stylus and take the pick list; <3> and output 2 are uncertain",
+        ),
+        inputs: &[
+            PortSpec::active(KindSet::ANY, "trigger; a 2D vector is the centre of the pick box"),
+            PortSpec::default(KindSet::BOOLEAN, B(false), "TRUE: the picked point too"),
+            PortSpec::default(KindSet::INTEGER, I(1), "updates that are tried before nothing counts as hit"),
+        ],
+        outputs: &["pick list", "FALSE if nothing was hit"],
+        behaviour: |f| {
+            let at = f.vector2(1).ok();
+            let coordinates = f.boolean(2)?;
+            let frames = u32::try_from(f.integer(3)?).ok().filter(|n| *n > 0).ok_or(Problem::Range(3))?;
+            f.effect(Effect::RequestPick { function: f.object(), at, coordinates, frames });
+            Ok(())
+        },
+        examples: &[Example::of(&[(3, I(0)), (1, B(true))], &[]).faults(&[6])],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "PICKINFO",
+        summary: "a pick list taken apart",
+        source: Source::confirmed(
+            "nine outputs, the second the identifiers; what the others give is remembered or ours",
+        ),
+        inputs: &[
+            PortSpec::active(KindSet::PICK, "pick list"),
+            PortSpec::constant(KindSet::INTEGER, "how many identifiers at most leave from output 2"),
+        ],
+        outputs: &[
+            "index of the vector, character, label or polygon",
+            "identifiers, nearest first, with commas",
+            "picked point, 2D or 3D, if coordinates were picked",
+            "its dimension",
+            "whether coordinates were picked",
+            "kind of data: 1 vectors, 2 curve, 3 characters, 4 labels, 5 polygons",
+            "name of the data node, empty if it has none",
+            "parameter of a curve, if coordinates were picked",
+            "identifiers beyond <2>, if there are any",
+        ],
+        behaviour: pick_info,
+        examples: &[Example::of(&[(2, I(1)), (1, B(true))], &[]).faults(&[5])],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "CONCATXDATA",
+        summary: "the transformed vectors of n inputs joined",
+        source: Source::manual(""),
+        inputs: &[PortSpec::active(KindSet::VECTORS, "transformed vectors")],
+        outputs: &["transformed vectors"],
+        family: Family::Inputs,
+        behaviour: join_vectors,
+        examples: &[Example::of(&[(1, I(1))], &[]).sized(2).faults(&[5])],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -59,11 +126,66 @@ pub static ROWS: &[FunctionRow] = &[
 ];
 
 fn list(f: &mut Firing) -> Result<(), Problem> {
-    let Value::Transform(matrix) = f.value(1) else { return Err(Problem::Kind(1)) };
-    for line in lines(matrix) {
-        f.emit(1, Value::string(line))?;
+    let lines = match f.value(1) {
+        Value::Transform(matrix) => lines(matrix).into(),
+        Value::Vectors(data) => vector_lines(data),
+        _ => return Err(Problem::Kind(1)),
+    };
+    lines.into_iter().try_for_each(|line| f.emit(1, Value::string(line)))
+}
+
+/// Vectors as the command VECTOR_LIST: a heading, then one line a vector, the last with a `;`.
+pub fn vector_lines(data: &VectorData) -> Vec<String> {
+    let mut lines = vec![format!("VECTOR_LIST ITEMIZED N={}", data.points.len())];
+    lines.extend(data.points.iter().zip(&data.lines).map(|(point, line)| {
+        let numbers = point.to_array().map(|number| decimal(number, DIGITS));
+        format!("{} {}", if *line { 'L' } else { 'P' }, numbers.join(","))
+    }));
+    if let Some(last) = lines.last_mut() {
+        last.push(';');
     }
-    Ok(())
+    lines
+}
+
+/// Sends what is known of a pick from nine outputs; what is not known leaves nothing.
+fn pick_info(f: &mut Firing) -> Result<(), Problem> {
+    let Value::Pick(picked) = f.take(1) else { return Err(Problem::Kind(1)) };
+    let depth = usize::try_from(f.integer(2)?).map_err(|_| Problem::Range(2))?;
+    let join = |names: &[Name]| {
+        let mut text = names.iter().map(Name::as_str).collect::<Vec<_>>().join(",");
+        text.truncate(MAX_STRING);
+        Value::string(text)
+    };
+    let (near, far) = picked.identifiers.split_at(depth.min(picked.identifiers.len()));
+    f.emit(1, Value::Integer(picked.index))?;
+    f.emit(2, join(near))?;
+    if let Some(place) = picked.place {
+        let point =
+            if place.dimension == 2 { Value::Vector2(place.point.truncate()) } else { Value::Vector3(place.point) };
+        f.emit(3, point)?;
+        f.emit(4, Value::Integer(place.dimension.into()))?;
+    }
+    f.emit(5, Value::Boolean(picked.place.is_some()))?;
+    f.emit(6, Value::Integer(picked.code))?;
+    f.emit(7, Value::string(&picked.node))?;
+    if let Some(parameter) = picked.place.and_then(|place| place.parameter) {
+        f.emit(8, Value::Real(parameter))?;
+    }
+    if far.is_empty() { Ok(()) } else { f.emit(9, join(far)) }
+}
+
+/// Joins the vectors of all inputs.
+fn join_vectors(f: &mut Firing) -> Result<(), Problem> {
+    let mut joined = VectorData::default();
+    for input in 1..=f.size() {
+        let Value::Vectors(data) = f.value(input) else { return Err(Problem::Kind(input)) };
+        if joined.points.len() + data.points.len() > MAX_VECTORS {
+            return Err(Problem::TooLong);
+        }
+        joined.points.extend_from_slice(&data.points);
+        joined.lines.extend_from_slice(&data.lines);
+    }
+    f.emit(1, Value::Vectors(Arc::new(joined)))
 }
 
 /// A matrix as the command MATRIX_4X4, in five lines.

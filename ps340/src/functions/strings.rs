@@ -58,6 +58,17 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     FunctionRow {
+        name: "MCONCATENATE",
+        summary: "n strings joined, as F:MCAT_STRING",
+        source: Source::manual("another name of the same function"),
+        inputs: &[PortSpec::active(KindSet::STRING, "part")],
+        outputs: &["the parts in order"],
+        family: Family::Inputs,
+        behaviour: |f| join(f, f.size()),
+        examples: &[Example::of(&[(2, S("B")), (1, S("A"))], &[(1, S("AB"))]).sized(2)],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
         name: "LENGTH_STRING",
         summary: "number of bytes of a string",
         source: Source::manual(""),

@@ -1,6 +1,7 @@
 //! What the function network wants of the rest of the machine.
 
 use super::{Fault, ObjectId};
+use glam::DVec2;
 use protocol::{Name, Value, command::Input};
 
 /// One thing that the network asks for. The machine carries it out, in order.
@@ -51,19 +52,99 @@ pub enum Effect {
     Terminal(Box<[u8]>),
     /// The vector display goes on again after a static picture.
     TurnOnDisplay,
-    /// The accumulated matrix of an XFORM node is wanted at the next update. The answer is a message
-    /// [`Value::Transform`] from output 1 of the function.
+    /// The accumulated matrix or the vectors of an XFORM node are wanted at the next update. The answer is a message
+    /// [`Value::Transform`] or [`Value::Vectors`] from output 1 of the function.
     RequestTransform {
         /// The function that asks.
         function: ObjectId,
         /// The path of the node.
         node: Name,
+        /// The first vector that is wanted, from 1, and how many.
+        vectors: [Option<i32>; 2],
+    },
+    /// What is drawn in the pick box is wanted. The answer is a message [`Value::Pick`] from output 1 of the function,
+    /// or FALSE from output 2.
+    RequestPick {
+        /// The function that asks.
+        function: ObjectId,
+        /// The centre of the box; that of PICK_LOCATION if none.
+        at: Option<DVec2>,
+        /// Whether the place on the vector is wanted too.
+        coordinates: bool,
+        /// How many updates are tried, at least 1.
+        frames: u32,
+    },
+    /// What is drawn below WRITEBACK nodes is wanted at the next update, from the outputs of the function.
+    RequestWriteBack {
+        /// The function that asks.
+        function: ObjectId,
+    },
+    /// The value of a VARIABLE is wanted, as a message from output 1 of the function.
+    Fetch {
+        /// The function that asks.
+        function: ObjectId,
+        /// The variable.
+        name: Name,
+    },
+    /// A label of a LABELS node is wanted: text, position and whether it is shown, from outputs 1 to 3.
+    ExtractLabel {
+        /// The function that asks.
+        function: ObjectId,
+        /// The node.
+        name: Name,
+        /// Which label, from 1.
+        index: i32,
+    },
+    /// A message for an object by its name.
+    SendTo {
+        /// The object.
+        name: Name,
+        /// Which input of it.
+        input: Input,
+        /// The message.
+        value: Value,
+    },
+    /// A file of the disk is wanted, as messages from output 1 of the function.
+    ReadDisk {
+        /// The function that asks.
+        function: ObjectId,
+        /// The name of the file.
+        file: Box<[u8]>,
+    },
+    /// A file of the disk is written.
+    WriteDisk {
+        /// The function that writes.
+        function: ObjectId,
+        /// The name of the file.
+        file: Box<[u8]>,
+        /// What is added at its end; none makes the file empty.
+        text: Option<Box<[u8]>>,
+    },
+    /// Bytes for a command interpreter that belongs to the function.
+    Interpret {
+        /// The function.
+        function: ObjectId,
+        /// The bytes.
+        bytes: Box<[u8]>,
+        /// What they are.
+        stream: Stream,
     },
     /// A line about the use of memory is wanted, as a string from output 1 of the function.
     ReportMemory {
         /// The function that asks.
         function: ObjectId,
     },
+}
+
+/// What a function gives to an interpreter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stream {
+    /// Commands as text.
+    Commands,
+    /// Binary records of commands.
+    Binary,
+    /// Records of the raster screen.
+    Raster,
 }
 
 /// A place for text on the control devices.

@@ -33,7 +33,11 @@ impl KindSet {
     /// All matrices.
     pub const MATRIX: KindSet = KindSet::SQUARE.or(KindSet::of(&[Kind::Matrix4x3]));
     /// Transformed data.
-    pub const TRANSFORM: KindSet = KindSet::of(&[Kind::Transform]);
+    pub const TRANSFORM: KindSet = KindSet::of(&[Kind::Transform, Kind::Vectors]);
+    /// Transformed vectors.
+    pub const VECTORS: KindSet = KindSet::of(&[Kind::Vectors]);
+    /// Pick lists.
+    pub const PICK: KindSet = KindSet::of(&[Kind::Pick]);
 
     /// The set of some kinds.
     pub const fn of(kinds: &[Kind]) -> KindSet {
