@@ -68,13 +68,13 @@ impl Decoders {
         match frame {
             Frame::Text(text) => match self.plain_text {
                 PlainText::Commands => self.commands(text, machine),
-                PlainText::Terminal => machine.panel.type_text(text),
+                PlainText::Terminal => machine.show_text(Some(self.line), text),
             },
             Frame::Packet { route, payload, .. } => match route {
                 Route::Text => self.commands(payload, machine),
                 Route::Binary => self.binary(payload, machine),
                 Route::Raster => raster_records(payload, machine),
-                Route::Terminal => machine.panel.type_text(payload),
+                Route::Terminal => machine.show_text(Some(self.line), payload),
                 Route::Message => {
                     let writer = machine.writers.get_mut(&self.line);
                     if !writer.is_some_and(|w| w.request(payload)) {

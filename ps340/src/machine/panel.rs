@@ -1,19 +1,15 @@
-//! What the machine shows around its screens: labels, lights, message line, terminal text.
+//! What the machine shows around its screens: labels, lights, and the text of the message line.
 
 use crate::port::{Effect, Label};
 use std::{collections::BTreeMap, fmt};
 
-/// Bytes of terminal text that are kept, the latest ones.
-const TERMINAL_BYTES: usize = 64 << 10;
-
-/// Labels over dials and keys, lights of the buttons, the message line and the text of the terminal emulator.
+/// Labels over dials and keys, lights of the buttons, and the message line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Panel {
     labels: BTreeMap<Label, Vec<u8>>,
     /// Bit n-1 is the light of button n.
     lights: u32,
     message: Vec<u8>,
-    terminal: Vec<u8>,
 }
 
 impl Panel {
@@ -32,11 +28,6 @@ impl Panel {
         &self.message
     }
 
-    /// What the terminal emulator was sent, the latest bytes.
-    pub fn terminal(&self) -> &[u8] {
-        &self.terminal
-    }
-
     /// Carries out an effect that changes the panel; others change nothing.
     pub(super) fn carry(&mut self, effect: Effect) {
         match effect {
@@ -50,22 +41,8 @@ impl Panel {
                 self.lights = if on { self.lights | bit } else { self.lights & !bit };
             }
             Effect::Message(text) => self.message = text.into_vec(),
-            Effect::Terminal(text) => self.type_text(&text),
-            // There is no static picture yet that would have darkened the display.
-            Effect::TurnOnDisplay => {}
-            Effect::Deliver { .. }
-            | Effect::Fault { .. }
-            | Effect::Host { .. }
-            | Effect::RequestTransform { .. }
-            | Effect::ReportMemory { .. } => {}
+            _ => {}
         }
-    }
-
-    /// Adds characters to the text of the terminal emulator.
-    pub(super) fn type_text(&mut self, text: &[u8]) {
-        self.terminal.extend_from_slice(text);
-        let excess = self.terminal.len().saturating_sub(TERMINAL_BYTES);
-        self.terminal.drain(..excess);
     }
 }
 

@@ -13,7 +13,7 @@ mod walk;
 pub use clip::{Clipper, ScreenMap};
 pub use state::State;
 pub use stroke::Stroke;
-pub use walk::{MAX_DEPTH, MAX_VECTORS, MAX_VISITS, Trouble, Update, update};
+pub use walk::{MAX_DEPTH, MAX_VECTORS, MAX_VISITS, Trouble, Update, alone, update};
 
 #[cfg(test)]
 mod tests;

@@ -58,6 +58,13 @@ pub fn update(structures: &Structures, wanted: &BTreeSet<ObjectId>) -> Update {
     walk.update
 }
 
+/// The strokes of one object from a state of its own, as of the cursor that the system shows.
+pub fn alone(structures: &Structures, root: ObjectId, mut state: State) -> Vec<Stroke> {
+    let mut walk = Walk { structures, wanted: &BTreeSet::new(), update: Update::default(), clip: Vec::new() };
+    walk.object(root, &mut state, 0);
+    walk.update.strokes
+}
+
 struct Walk<'a> {
     structures: &'a Structures,
     wanted: &'a BTreeSet<ObjectId>,
