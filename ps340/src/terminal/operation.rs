@@ -133,11 +133,7 @@ impl Terminal {
             }
             b'm' => self.attributes(s),
             b'n' => self.report(s.choice()),
-            b'r' => {
-                if self.screen.set_region(n - 1, s.or(1, ROWS as u16) - 1) {
-                    self.place(0, 0);
-                }
-            }
+            b'r' => self.set_region(n - 1, s.or(1, ROWS as u16) - 1),
             b's' => self.screen.save_cursor(),
             b'u' => self.screen.restore_cursor(),
             // No parity, 8 bits, 9600 baud both ways.
@@ -161,6 +157,13 @@ impl Terminal {
             b'K' => part(s.choice()).into_iter().for_each(|part| self.screen.erase_in_row(part)),
             b'n' => self.report(s.choice()),
             _ => {}
+        }
+    }
+
+    /// Sets the scroll region, which sends the cursor home.
+    fn set_region(&mut self, top: usize, bottom: usize) {
+        if self.screen.set_region(top, bottom) {
+            self.place(0, 0);
         }
     }
 
