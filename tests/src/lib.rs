@@ -1,4 +1,7 @@
-//! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait.
+//! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
+//! conformance suite.
+
+pub mod conformance;
 
 use std::{
     io::{BufRead, BufReader, Read, Write},

@@ -3,7 +3,10 @@
 use super::*;
 use crate::{
     port::Label,
-    traversal::{Stroke, font},
+    traversal::{
+        Stroke,
+        font::{self, Font},
+    },
 };
 use protocol::wire::{Route, write_packet};
 
@@ -129,7 +132,7 @@ fn in_command_mode_lines_are_commands_and_errors_appear_on_the_terminal() {
                     @@ NONS";
     assert_eq!(machine.terminal().text(), expected);
     machine.next_frame();
-    assert_eq!(machine.latest_update().strokes.len() - machine.overlay().len(), 1, "the dot");
+    assert_eq!(machine.latest_update().strokes.len(), 1, "the dot");
     tell(&mut machine, "SEND 1 TO <1>ELSEWHERE;");
     let expected = format!("{expected}\nE 2 *** Name not found: ELSEWHERE\n@@ NONS");
     assert_eq!(machine.terminal().text(), expected, "the line goes on below what came in between");
@@ -172,7 +175,7 @@ fn the_keys_graph_and_term_switch_what_is_seen() {
     let mut machine =
         told("D := VECTOR_LIST DOTS 0,0,0; DISPLAY D; SEND '-' TO <1>ES_TE; SEND '.' TO <1>MESSAGE_DISPLAY;");
     machine.next_frame();
-    let strokes = |character| font::glyph(character).iter().map(|line| line.len() - 1).sum::<usize>();
+    let strokes = |character| font::strokes(Font::Standard.glyph(character)).count();
     let (text, message) = (strokes(b'-'), strokes(b'.'));
     assert_eq!(machine.visible_strokes().len(), 1 + text + message);
     press(&mut machine, "term");

@@ -29,7 +29,7 @@ use crate::{
     port::{Effect, ObjectId},
     raster::FrameBuffer,
     terminal::{Ink, Terminal},
-    traversal::{self, Update},
+    traversal::{self, Requests, Trouble, Update},
 };
 use devices::Devices;
 use host_line::HostLine;
@@ -240,7 +240,7 @@ impl Machine {
         self.update_picture();
         self.settle();
         self.update_overlay();
-        beam.picture(self.visible_strokes())
+        beam.picture(&self.visible_strokes())
     }
 
     /// What the raster screen shows now.
@@ -274,7 +274,7 @@ impl Machine {
             frame: self.frame,
             objects: self.memory.objects.len() as u64,
             bytes: self.memory.bytes() as u64,
-            strokes: (self.update.strokes.len() - self.overlay().len()) as u64,
+            strokes: self.update.strokes.len() as u64,
             vectors: self.update.vectors,
             ..self.counters
         }
@@ -439,16 +439,24 @@ impl Machine {
 
     fn update_picture(&mut self) {
         let version = self.memory.structures.version();
-        if self.updated == Some(version) && self.transforms.is_empty() {
+        let stays = self.update.next_change.is_none_or(|change| self.frame < change);
+        if self.updated == Some(version) && self.transforms.is_empty() && stays {
             return;
         }
         let requests = std::mem::take(&mut self.transforms);
         let wanted: BTreeSet<ObjectId> =
             requests.iter().filter_map(|(_, name)| self.memory.objects.find(name.as_str())).collect();
-        let update = traversal::update(&self.memory.structures, &wanted);
+        let wanted = Requests { transforms: wanted, ..Requests::default() };
+        let update = traversal::update(&self.memory.structures, self.frame, &wanted);
         self.counters.updates += 1;
-        if let Some(trouble) = update.trouble {
-            self.report(Message::Update(trouble));
+        // What was said of the update before is not said again.
+        match update.trouble.filter(|trouble| self.update.trouble != Some(*trouble)) {
+            Some(Trouble::ContainsItself(id)) => {
+                let name = self.memory.objects.name(id).to_owned();
+                self.report(Message::Structure(format!("{name} contains itself")));
+            }
+            Some(trouble) => self.report(Message::Update(trouble)),
+            None => {}
         }
         for (function, name) in requests {
             // The function may have gone since it asked, and its place may be another object's.

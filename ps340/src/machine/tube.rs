@@ -1,6 +1,6 @@
 //! What the vector screen shows besides the displayed structure: the cursor, the message line, the terminal's text.
 //!
-//! These strokes stand behind those of the traversal. They are made anew only when something of them changes.
+//! These strokes are made anew only when something of them changes.
 //!
 //! # Source
 //! That the system itself displays CURSOR and moves it with the tablet is confirmed; that it does so while stylus or puck
@@ -8,15 +8,19 @@
 
 use super::{KeyboardMode, Machine};
 use crate::{
+    interpreter::Message,
     terminal::{Ink, MESSAGE_ROW, text_line},
-    traversal::{self, State, Stroke},
+    traversal::{self, State, Stroke, Update},
 };
 use glam::{DMat4, DVec3};
+use std::borrow::Cow;
 
 /// Frames for which blinking characters are seen, and then not seen. Ours.
 const BLINK_FRAMES: u64 = 30;
+/// The screen that the machine shows, of those that SET DISPLAYS tells apart.
+const SCREEN: u8 = 0;
 
-/// Switches of the screen, and what was drawn over the picture.
+/// Switches of the screen, and what is drawn over the picture.
 #[derive(Debug)]
 pub(super) struct Tube {
     /// Whether the displayed structure is seen.
@@ -28,13 +32,10 @@ pub(super) struct Tube {
     words: Words,
     words_of: Option<WordsKey>,
     message: Vec<u8>,
-    cursor: Vec<Stroke>,
+    cursor: Update,
     cursor_of: Option<CursorKey>,
-    /// Strokes of the traversal at the front of the update, and strokes behind them.
-    traversed: usize,
-    added: usize,
-    /// Which update they were added to.
-    update: Option<u64>,
+    /// The strokes of words and cursor.
+    overlay: Vec<Stroke>,
 }
 
 /// Strokes of terminal and message line.
@@ -70,34 +71,32 @@ impl Default for Tube {
             words: Words::default(),
             words_of: None,
             message: Vec::new(),
-            cursor: Vec::new(),
+            cursor: Update::default(),
             cursor_of: None,
-            traversed: 0,
-            added: 0,
-            update: None,
+            overlay: Vec::new(),
         }
     }
 }
 
 impl Machine {
-    /// The strokes that the vector screen shows: those of the structure, then cursor, message line and terminal, as
+    /// The strokes that the vector screen shows: those of the structure, then terminal, message line and cursor, as
     /// far as the keys GRAPH and TERM and the screen saver let them be seen.
-    pub fn visible_strokes(&self) -> &[Stroke] {
-        let strokes = self.update.strokes.as_slice();
-        match (self.tube.blanked, self.tube.graphics) {
-            (true, _) => &[],
-            (false, true) => strokes,
-            (false, false) => self.overlay(),
+    pub fn visible_strokes(&self) -> Cow<'_, [Stroke]> {
+        let Tube { graphics, blanked, overlay, .. } = &self.tube;
+        match (*blanked, *graphics) {
+            (true, _) => Cow::Borrowed(&[]),
+            (false, false) => Cow::Borrowed(overlay),
+            (false, true) if overlay.is_empty() && self.update.scopes.is_empty() => Cow::Borrowed(&self.update.strokes),
+            (false, true) => self.update.on_screen(SCREEN).chain(overlay).copied().collect(),
         }
     }
 
-    /// The strokes over the picture of the latest update: cursor, message line and terminal.
+    /// The strokes over the picture: terminal, message line and cursor.
     pub fn overlay(&self) -> &[Stroke] {
-        let strokes = self.update.strokes.as_slice();
-        strokes.get(strokes.len().saturating_sub(self.tube.added)..).unwrap_or(&[])
+        &self.tube.overlay
     }
 
-    /// One line on the switches of keyboard and screen.
+    /// One line each on the switches of keyboard and screen.
     pub fn switches(&self) -> String {
         let word = |on| if on { "on" } else { "off" };
         let Self { tube, .. } = self;
@@ -108,32 +107,27 @@ impl Machine {
 
     /// Whether the strokes over the picture are those of now.
     pub(super) fn overlay_is_current(&self) -> bool {
-        self.tube.words_of == Some(self.words_key())
-            && self.tube.message == self.panel.message()
-            && self.tube.cursor_of == self.cursor_key()
+        self.words_are_current() && self.cursor_is_current()
     }
 
-    /// Brings the strokes over the picture up to date, behind those of the latest update.
+    /// Brings the strokes over the picture up to date.
     pub(super) fn update_overlay(&mut self) {
-        let replaced = self.tube.update.replace(self.counters.updates) != Some(self.counters.updates);
-        if replaced {
-            self.tube.traversed = self.update.strokes.len();
-        } else if self.overlay_is_current() {
+        if self.overlay_is_current() {
             return;
         }
-        self.update_words();
-        self.update_cursor();
-        self.update.strokes.truncate(self.tube.traversed);
-        self.update.strokes.extend_from_slice(&self.tube.words.strokes);
-        self.update.strokes.extend_from_slice(&self.tube.cursor);
-        self.tube.added = self.update.strokes.len() - self.tube.traversed;
+        if !self.words_are_current() {
+            self.update_words();
+        }
+        if !self.cursor_is_current() {
+            self.update_cursor();
+        }
+        let Tube { words, cursor, overlay, .. } = &mut self.tube;
+        overlay.clear();
+        overlay.extend(words.strokes.iter().chain(cursor.on_screen(SCREEN)));
     }
 
     fn update_words(&mut self) {
         let key = self.words_key();
-        if self.tube.words_of == Some(key) && self.tube.message == self.panel.message() {
-            return;
-        }
         let Words { strokes, blinking } = &mut self.tube.words;
         *strokes = text_line(MESSAGE_ROW, self.panel.message(), self.terminal.ink());
         *blinking = key.terminal.is_some() && self.terminal.blinks();
@@ -141,24 +135,30 @@ impl Machine {
             strokes.extend(self.terminal.strokes(key.lit, cursor));
         }
         self.tube.message = self.panel.message().to_vec();
-        // Whether something blinks may just have changed, and the key with it.
-        self.tube.words_of = Some(self.words_key());
+        // Whether something blinks may just have changed, and with it whether it is lit: then the next frame draws it.
+        self.tube.words_of = Some(key);
     }
 
     fn update_cursor(&mut self) {
         let key = self.cursor_key();
-        if self.tube.cursor_of == key {
-            return;
-        }
+        let before = self.tube.cursor.trouble;
         self.tube.cursor_of = key;
         self.tube.cursor = match (key, self.memory.objects.find("CURSOR")) {
             (Some(key), Some(cursor)) => {
                 let [x, y] = key.place;
                 let ctm = DMat4::from_translation(DVec3::new(x, y, 0.0));
-                traversal::alone(&self.memory.structures, cursor, State { ctm, ..State::default() })
+                traversal::alone(&self.memory.structures, self.frame, cursor, State { ctm, ..State::default() })
             }
-            _ => Vec::new(),
+            _ => Update::default(),
         };
+        // What was said of the cursor before is not said again.
+        if let Some(trouble) = self.tube.cursor.trouble.filter(|trouble| before != Some(*trouble)) {
+            self.report(Message::Update(trouble));
+        }
+    }
+
+    fn words_are_current(&self) -> bool {
+        self.tube.words_of == Some(self.words_key()) && self.tube.message == self.panel.message()
     }
 
     fn words_key(&self) -> WordsKey {
@@ -169,6 +169,12 @@ impl Machine {
             lit: !self.tube.words.blinking || (self.frame / BLINK_FRAMES).is_multiple_of(2),
             ink: *self.terminal.ink(),
         }
+    }
+
+    /// A cursor may also change by itself, at a rate.
+    fn cursor_is_current(&self) -> bool {
+        let stays = self.tube.cursor.next_change.is_none_or(|change| self.frame < change);
+        self.tube.cursor_of == self.cursor_key() && stays
     }
 
     fn cursor_key(&self) -> Option<CursorKey> {

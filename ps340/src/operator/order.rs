@@ -71,6 +71,8 @@ pub enum Order {
     },
     /// Describes an object.
     Show(String),
+    /// The strokes of the latest update, the first so many.
+    Strokes(usize),
     /// Counters of the machine.
     Counters,
     /// Labels of dials and keys, lights, message line, mode of the keyboard, switches of the screen.
@@ -109,6 +111,9 @@ pub enum OrderError {
 
 /// Frames that `idle` and `message` wait for if the order does not say: ten seconds.
 const PATIENCE: u64 = 600;
+
+/// Strokes that `strokes` lists if the order does not say.
+const STROKES: usize = 10_000;
 
 /// Every order.
 pub const ORDERS: &[OrderRow] = &[
@@ -169,6 +174,12 @@ pub const ORDERS: &[OrderRow] = &[
         arguments: "NAME",
         summary: "describe an object",
         read: |w| Ok(Order::Show(w.required("a name")?.to_ascii_uppercase())),
+    },
+    OrderRow {
+        word: "strokes",
+        arguments: "[N]",
+        summary: "what the latest update drew: x y x y, intensities, red green blue of each stroke, N at most",
+        read: |w| Ok(Order::Strokes(w.optional("a number of strokes")?.unwrap_or(STROKES))),
     },
     OrderRow { word: "counters", arguments: "", summary: "counters of the machine", read: |_| Ok(Order::Counters) },
     OrderRow {

@@ -66,6 +66,7 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         Order::Message(n) => return Outcome::Waiting(Wait::Message(frame.saturating_add(*n))),
         Order::Picture { screen, file, size } => return Outcome::Done(picture(machine, *screen, file, *size)),
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
+        Order::Strokes(most) => return Outcome::Done(Ok(strokes(machine, *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
         Order::Panel => {
             return Outcome::Done(Ok(format!("{}\n{}", machine.panel(), machine.switches())));
@@ -82,6 +83,19 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
 fn help() -> String {
     let lines = ORDERS.iter().map(|r| format!("{:<50} {}", format!("{} {}", r.word, r.arguments), r.summary));
     lines.collect::<Vec<_>>().join("\n")
+}
+
+/// The number of strokes, then on each line x and y of start and end, the intensities there, red, green and blue.
+fn strokes(machine: &Machine, most: usize) -> String {
+    let strokes = &machine.latest_update().strokes;
+    let shown = &strokes[..strokes.len().min(most)];
+    let mut text = format!("{} strokes", shown.len());
+    for stroke in shown {
+        let numbers = stroke.start.iter().chain(&stroke.end).chain(&stroke.intensity).chain(&stroke.color);
+        text.push('\n');
+        text.push_str(&numbers.map(f32::to_string).collect::<Vec<_>>().join(" "));
+    }
+    text
 }
 
 fn picture(machine: &mut Machine, screen: Screen, file: &str, size: Option<u32>) -> Result<String, String> {

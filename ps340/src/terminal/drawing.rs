@@ -9,7 +9,10 @@ use super::{
 };
 use crate::{
     hue,
-    traversal::{Stroke, font},
+    traversal::{
+        Stroke,
+        font::{self, Font},
+    },
 };
 
 /// The row of the message line, below the rows of the terminal.
@@ -21,8 +24,9 @@ const TOP: f32 = 0.97;
 /// Width and height of a cell.
 const WIDTH: f32 = 0.024;
 const HEIGHT: f32 = 0.077;
-/// Size of the font's unit cell, of which a character fills 0.6 by 0.8.
-const SCALE: [f32; 2] = [0.032, 0.052];
+/// Size of the font's unit cell, and how much of it a character fills from left to right.
+const SCALE: [f32; 2] = [0.028, 0.052];
+const FILLED: f32 = 0.66;
 /// From the lower edge of a cell to the base line.
 const BASE: f32 = 0.021;
 /// Intensity of a character, and of a bold one.
@@ -133,10 +137,10 @@ impl Pen {
         }
         match u8::try_from(character) {
             Ok(code) if code.is_ascii() => {
-                let inset = (WIDTH - 0.6 * SCALE[0]) / 2.0;
+                let inset = (WIDTH - FILLED * SCALE[0]) / 2.0;
                 let place = |p: [f32; 2]| [x + inset + p[0] * SCALE[0], y + BASE + p[1] * SCALE[1]];
-                for line in font::glyph(code) {
-                    line.windows(2).for_each(|ends| self.stroke(place(ends[0]), place(ends[1]), intensity));
+                for [start, end] in font::strokes(Font::Standard.glyph(code)) {
+                    self.stroke(place(start), place(end), intensity);
                 }
             }
             _ => {

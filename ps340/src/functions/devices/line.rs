@@ -1,7 +1,7 @@
 //! The host line: messages and characters to the host.
 
 use super::{
-    super::{FunctionRow, Source},
+    super::{Family, FunctionRow, Source},
     TEXT, ask,
 };
 use crate::port::{Effect, Firing, Problem};
@@ -33,6 +33,14 @@ pub static ROWS: &[FunctionRow] = &[
             let text = f.string(1)?.into();
             ask(f, Effect::HostCharacters(text))
         },
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "CHANNEL",
+        summary: "data of a packet that the host sent on route 3 to 7, one string a packet",
+        source: Source::uncertain("the routes are believed to be channels of the site; the instances are ours"),
+        outputs: &["string"],
+        family: Family::Device,
         ..FunctionRow::PLAIN
     },
 ];

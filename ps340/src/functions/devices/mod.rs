@@ -42,6 +42,7 @@ pub fn initial() -> impl Iterator<Item = Initial> {
     rows().flat_map(|function| {
         let devices = match (function.family, function.name) {
             (Family::Device, "FLABEL") => 0..=12,
+            (Family::Device, "CHANNEL") => 3..=7,
             (Family::Device, _) => 1..=8,
             _ => return vec![Initial { name: function.name.into(), function, device: None }],
         };

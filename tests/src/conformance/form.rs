@@ -1,0 +1,220 @@
+//! The ways in which commands travel: as text or binary, in packets or not, whole or cut.
+
+use protocol::{
+    command::{CommandError, CommandReader, binary},
+    record::EncodeError,
+    wire::{self, MAX_COUNT_DATA, Route},
+};
+use rand_pcg::{
+    Pcg64Mcg,
+    rand_core::{Rng, SeedableRng},
+};
+
+/// The form of commands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Form {
+    /// As they stand in the case.
+    #[default]
+    Text,
+    /// Binary records of whole bytes.
+    Binary8,
+}
+
+/// What carries them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Packets {
+    /// Bare text.
+    #[default]
+    None,
+    /// Count packets.
+    Count,
+    /// Long packets, with checks.
+    Long,
+}
+
+/// A form and a carrier.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Way {
+    /// The form of commands.
+    pub form: Form,
+    /// What carries them.
+    pub packets: Packets,
+}
+
+/// Why a text cannot go a way.
+#[derive(Debug, thiserror::Error)]
+pub enum WayError {
+    /// Binary records need packets.
+    #[error("the binary forms travel in packets only")]
+    NoPackets,
+    /// A case whose text cannot be parsed should be marked `text-only`.
+    #[error("the text has no binary form: {0}")]
+    Text(CommandError),
+    /// The binary form lacks this command.
+    #[error("the command has no binary record: {0}")]
+    Record(EncodeError),
+    /// A record that does not fit a packet.
+    #[error("a record of {0} bytes fits no count packet")]
+    LongRecord(usize),
+}
+
+impl Way {
+    /// Every way that commands can go.
+    pub fn all() -> Vec<Way> {
+        let forms = <Form as clap::ValueEnum>::value_variants();
+        let packets = <Packets as clap::ValueEnum>::value_variants();
+        let all = forms.iter().flat_map(|&form| packets.iter().map(move |&packets| Way { form, packets }));
+        all.filter(|way| way.check().is_ok()).collect()
+    }
+
+    /// Whether the carrier can carry the form.
+    ///
+    /// # Errors
+    /// [`WayError::NoPackets`].
+    pub fn check(self) -> Result<(), WayError> {
+        if self.form != Form::Text && self.packets == Packets::None { Err(WayError::NoPackets) } else { Ok(()) }
+    }
+}
+
+impl std::fmt::Display for Way {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:?} in {:?}", self.form, self.packets)
+    }
+}
+
+/// Brings command text on its way: into bytes of the line.
+#[derive(Debug)]
+pub struct Sender {
+    way: Way,
+    cut: Option<Pcg64Mcg>,
+    reader: CommandReader,
+}
+
+impl Sender {
+    /// A sender at the beginning of a stream.
+    ///
+    /// - `cut`: seed for cutting the stream at random places.
+    pub fn new(way: Way, cut: Option<u64>) -> Sender {
+        Sender { way, cut: cut.map(Pcg64Mcg::seed_from_u64), reader: CommandReader::default() }
+    }
+
+    /// Appends command text in the sender's way. A statement may come in pieces.
+    ///
+    /// # Errors
+    /// [`WayError`] if the text cannot go this way.
+    pub fn write(&mut self, text: &[u8], text_only: bool, out: &mut Vec<u8>) -> Result<(), WayError> {
+        if self.way.form == Form::Text || text_only {
+            self.write_text(text, out);
+            return Ok(());
+        }
+        self.reader.push(text);
+        while let Some(read) = self.reader.next() {
+            let command = read.map_err(WayError::Text)?.command;
+            let mut packets: Vec<Vec<u8>> = Vec::new();
+            let mut each = |record: &[u8]| packets.push(record.to_vec());
+            binary::records(&command, &mut Vec::new(), &mut each).map_err(WayError::Record)?;
+            for record in packets {
+                match self.way.packets {
+                    Packets::Count if record.len() > MAX_COUNT_DATA => {
+                        return Err(WayError::LongRecord(record.len()));
+                    }
+                    Packets::Count => {
+                        wire::write_count_packet(Route::Binary, &record, out).map_err(WayError::Record)?;
+                    }
+                    Packets::Long | Packets::None => {
+                        wire::write_packet(Route::Binary, &record, out).map_err(WayError::Record)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn write_text(&mut self, text: &[u8], out: &mut Vec<u8>) {
+        let mut rest = text;
+        while !rest.is_empty() {
+            let most = if self.way.packets == Packets::None { usize::MAX } else { MAX_COUNT_DATA };
+            let most = self.cut.as_mut().map_or(most, |random| 1 + random.next_u32() as usize % 200);
+            let (now, later) = rest.split_at(rest.len().min(most));
+            let written = match self.way.packets {
+                Packets::None => {
+                    out.extend_from_slice(now);
+                    Ok(())
+                }
+                Packets::Count => wire::write_count_packet(Route::Text, now, out),
+                Packets::Long => wire::write_packet(Route::Text, now, out),
+            };
+            written.expect("a piece fits every packet");
+            rest = later;
+        }
+    }
+
+    /// The pieces in which bytes are given to the line: one, or random ones.
+    pub fn pieces<'b>(&mut self, bytes: &'b [u8]) -> Vec<&'b [u8]> {
+        let Some(random) = &mut self.cut else { return vec![bytes] };
+        let mut pieces = Vec::new();
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            // Mostly short pieces, some of a kilobyte.
+            let most = if random.next_u32() % 4 == 0 { 1000 } else { 30 };
+            let length = (1 + random.next_u32() as usize % most).min(rest.len());
+            let (now, later) = rest.split_at(length);
+            pieces.push(now);
+            rest = later;
+        }
+        pieces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::{
+        command::{BinaryDecoder, Command},
+        wire::{Frame, FrameDecoder},
+    };
+
+    /// The commands that a machine would hear.
+    fn heard(stream: &[u8]) -> Vec<Command> {
+        let (mut frames, mut text, mut binary) =
+            (FrameDecoder::default(), CommandReader::default(), BinaryDecoder::default());
+        let mut all = Vec::new();
+        frames.feed(stream, |frame| match frame {
+            Frame::Text(bytes) | Frame::Packet { route: Route::Text, payload: bytes, .. } => {
+                text.push(bytes);
+                all.extend(text.by_ref().map(|read| read.unwrap().command));
+            }
+            Frame::Packet { route: Route::Binary, payload, .. } => all.extend(binary.push(payload).map(Result::unwrap)),
+            other => panic!("{other:?}"),
+        });
+        all
+    }
+
+    #[test]
+    fn every_way_says_the_same_also_when_it_is_cut() {
+        let text: String = (0..400).map(|i| format!("V{i} := VECTOR_LIST {i},0 1,{i}; DISPLAY V{i};\n")).collect();
+        let plain = heard(text.as_bytes());
+        assert_eq!(plain.len(), 800);
+        for way in Way::all() {
+            for cut in [None, Some(7)] {
+                let mut sender = Sender::new(way, cut);
+                let mut stream = Vec::new();
+                // A statement that comes in two pieces.
+                let (first, second) = text.as_bytes().split_at(1001);
+                sender.write(first, false, &mut stream).unwrap();
+                sender.write(second, false, &mut stream).unwrap();
+                assert!(heard(&stream) == plain, "{way}");
+                assert_eq!(sender.pieces(&stream).concat(), stream);
+            }
+        }
+    }
+
+    #[test]
+    fn a_text_that_is_no_command_has_no_binary_form() {
+        let way = Way { form: Form::Binary8, packets: Packets::Long };
+        let mut sender = Sender::new(way, None);
+        assert!(matches!(sender.write(b"DISPLAY 3;", false, &mut Vec::new()), Err(WayError::Text(_))));
+        assert!(sender.write(b"DISPLAY 3;", true, &mut Vec::new()).is_ok());
+        assert!(Way { form: Form::Binary8, packets: Packets::None }.check().is_err());
+    }
+}

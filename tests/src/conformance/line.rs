@@ -1,0 +1,167 @@
+//! A host line from the host's side: bytes out, bytes in with a time limit, whatever carries them.
+
+use protocol::address::Address;
+use std::{
+    fs::{File, OpenOptions},
+    io::{self, Read, Write},
+    net::{Shutdown, TcpStream},
+    os::unix::net::UnixStream,
+    path::PathBuf,
+    str::FromStr,
+    sync::mpsc,
+    time::{Duration, Instant},
+};
+
+/// How long a machine may take to let a host go.
+const GOODBYE: Duration = Duration::from_secs(3);
+/// How long a machine may refuse to take bytes.
+const WRITE_LIMIT: Duration = Duration::from_secs(30);
+
+/// Where a line is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A socket that listens.
+    Socket(Address),
+    /// A terminal device: a pseudo-terminal, or a serial line that is set up already.
+    Terminal(PathBuf),
+}
+
+impl FromStr for Place {
+    type Err = String;
+
+    /// `tcp:HOST:PORT`, `unix:PATH`, `pty:PATH` or `serial:PATH`.
+    fn from_str(text: &str) -> Result<Place, String> {
+        for prefix in ["pty:", "serial:"] {
+            if let Some(path) = text.strip_prefix(prefix) {
+                return Ok(Place::Terminal(path.into()));
+            }
+        }
+        text.parse().map(Place::Socket).map_err(|e: protocol::address::AddressError| e.to_string())
+    }
+}
+
+/// A line to a machine.
+pub struct Line {
+    stream: Stream,
+    inbox: mpsc::Receiver<io::Result<Vec<u8>>>,
+}
+
+enum Stream {
+    Tcp(TcpStream),
+    Unix(UnixStream),
+    Terminal(File),
+}
+
+impl std::fmt::Debug for Line {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Line").finish_non_exhaustive()
+    }
+}
+
+impl Line {
+    /// Attaches to a machine.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn attach(place: &Place) -> io::Result<Line> {
+        let (stream, reader): (Stream, Box<dyn Read + Send>) = match place {
+            Place::Socket(Address::Tcp(at)) => {
+                let stream = TcpStream::connect(at.as_str())?;
+                stream.set_nodelay(true)?;
+                stream.set_write_timeout(Some(WRITE_LIMIT))?;
+                let reader = stream.try_clone()?;
+                (Stream::Tcp(stream), Box::new(reader))
+            }
+            Place::Socket(Address::Unix(path)) => {
+                let stream = UnixStream::connect(path)?;
+                stream.set_write_timeout(Some(WRITE_LIMIT))?;
+                let reader = stream.try_clone()?;
+                (Stream::Unix(stream), Box::new(reader))
+            }
+            Place::Terminal(path) => {
+                let file = OpenOptions::new().read(true).write(true).open(path)?;
+                make_raw(&file)?;
+                let reader = file.try_clone()?;
+                (Stream::Terminal(file), Box::new(reader))
+            }
+        };
+        let (sender, inbox) = mpsc::channel();
+        std::thread::spawn(move || read_on(reader, &sender));
+        Ok(Line { stream, inbox })
+    }
+
+    /// Gives bytes to the line.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        match &mut self.stream {
+            Stream::Tcp(stream) => stream.write_all(bytes),
+            Stream::Unix(stream) => stream.write_all(bytes),
+            Stream::Terminal(file) => file.write_all(bytes),
+        }
+    }
+
+    /// Bytes that came, waiting until `deadline` at most; none then.
+    ///
+    /// # Errors
+    /// Those of the system, and `UnexpectedEof` if the machine closed the line.
+    pub fn receive(&mut self, deadline: Instant) -> io::Result<Option<Vec<u8>>> {
+        match self.inbox.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+            Ok(Ok(bytes)) => Ok(Some(bytes)),
+            Ok(Err(error)) => Err(error),
+            Err(mpsc::RecvTimeoutError::Timeout) => Ok(None),
+            Err(mpsc::RecvTimeoutError::Disconnected) => Err(io::ErrorKind::UnexpectedEof.into()),
+        }
+    }
+
+    /// Leaves, and waits until the machine has let the line go, so that the next host meets no trace of this one.
+    pub fn detach(mut self) {
+        let closed = match &self.stream {
+            Stream::Tcp(stream) => stream.shutdown(Shutdown::Write),
+            Stream::Unix(stream) => stream.shutdown(Shutdown::Write),
+            // A terminal is not let go.
+            Stream::Terminal(_) => return,
+        };
+        let deadline = Instant::now() + GOODBYE;
+        if closed.is_ok() {
+            while let Ok(Some(_)) = self.receive(deadline) {}
+        }
+    }
+}
+
+impl Drop for Line {
+    fn drop(&mut self) {
+        // Also ends the thread that reads.
+        let _ = match &self.stream {
+            Stream::Tcp(stream) => stream.shutdown(Shutdown::Both),
+            Stream::Unix(stream) => stream.shutdown(Shutdown::Both),
+            Stream::Terminal(_) => Ok(()),
+        };
+    }
+}
+
+/// Switches off echo, translation and line editing.
+fn make_raw(file: &File) -> io::Result<()> {
+    use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+    let mut settings = tcgetattr(file)?;
+    settings.make_raw();
+    Ok(tcsetattr(file, OptionalActions::Now, &settings)?)
+}
+
+/// Hands on what comes, until the end or until nobody listens.
+fn read_on(mut reader: Box<dyn Read + Send>, sender: &mpsc::Sender<io::Result<Vec<u8>>>) {
+    let mut buffer = vec![0; 64 << 10];
+    loop {
+        let read = match reader.read(&mut buffer) {
+            Ok(0) => return,
+            Ok(length) => Ok(buffer[..length].to_vec()),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => Err(error),
+        };
+        let ended = read.is_err();
+        if sender.send(read).is_err() || ended {
+            return;
+        }
+    }
+}

@@ -1,0 +1,418 @@
+//! One case on one machine: attach, clear, play the steps, compare, leave.
+
+use super::{
+    case::{Case, Expected, Step, StrokeLine},
+    compare::{matches, strokes_differ},
+    form::{Sender, Way, WayError},
+    line::{Line, Place},
+    person::{Operator, OrderFault},
+};
+use protocol::wire::MessageReader;
+use std::{
+    collections::VecDeque,
+    io,
+    time::{Duration, Instant},
+};
+
+/// Lines of the transcript of a failure that are kept.
+const TRANSCRIPT_LINES: usize = 30;
+/// Messages that may come without being asked for before a case is given up.
+const MAX_MESSAGES: usize = 20_000;
+
+/// What the cases are run against, and how.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// Where the machine is.
+    pub place: Place,
+    /// How commands travel.
+    pub way: Way,
+    /// Seed for cutting the stream at random places.
+    pub cut: Option<u64>,
+    /// How long a machine may take to answer.
+    pub patience: Duration,
+    /// Numbers and texts of the machine's messages do not matter.
+    pub any_fault: bool,
+}
+
+/// Why a case failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// The line of the step in the file.
+    pub line: usize,
+    /// What was expected.
+    pub expected: String,
+    /// What came.
+    pub found: String,
+    /// The latest of what went to and fro.
+    pub transcript: Vec<String>,
+}
+
+/// Why a case came to no end by itself.
+#[derive(Debug)]
+pub enum Stop {
+    /// Not as expected.
+    Failed {
+        /// What was expected.
+        expected: String,
+        /// What came.
+        found: String,
+    },
+    /// It cannot be played here.
+    Skipped(String),
+    /// There is no machine.
+    Unreachable(io::Error),
+}
+
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Stop {
+        let found = format!("the line failed: {error}");
+        Stop::Failed { expected: "a line that works".into(), found }
+    }
+}
+
+impl From<WayError> for Stop {
+    fn from(error: WayError) -> Stop {
+        Stop::Failed { expected: "commands that can travel in this form".into(), found: error.to_string() }
+    }
+}
+
+impl From<OrderFault> for Stop {
+    fn from(fault: OrderFault) -> Stop {
+        match fault {
+            OrderFault::Beyond(why) => Stop::Skipped(why.into()),
+            fault => Stop::Failed { expected: "an order that is carried out".into(), found: fault.to_string() },
+        }
+    }
+}
+
+/// A case in play.
+pub struct Session<'s> {
+    target: &'s Target,
+    operator: Option<&'s mut dyn Operator>,
+    case: &'s Case,
+    line: Line,
+    sender: Sender,
+    reader: MessageReader,
+    /// Bytes that still have to go.
+    waiting: Vec<u8>,
+    /// Messages that came.
+    messages: VecDeque<Vec<u8>>,
+    tokens: u64,
+    watched: u64,
+    reply: String,
+    transcript: VecDeque<String>,
+}
+
+impl<'s> Session<'s> {
+    /// Attaches and clears the machine.
+    ///
+    /// # Errors
+    /// [`Stop::Unreachable`] if there is no machine, else that it does not answer.
+    pub fn begin(
+        target: &'s Target,
+        operator: Option<&'s mut dyn Operator>,
+        case: &'s Case,
+    ) -> Result<Session<'s>, Stop> {
+        let line = Line::attach(&target.place).map_err(Stop::Unreachable)?;
+        let mut session = Session {
+            target,
+            operator,
+            case,
+            line,
+            sender: Sender::new(target.way, target.cut),
+            reader: MessageReader::default(),
+            waiting: Vec::new(),
+            messages: VecDeque::new(),
+            tokens: 0,
+            watched: 0,
+            reply: String::new(),
+            transcript: VecDeque::new(),
+        };
+        session.commands("INITIALIZE;\nCONNECT ERROR<1>:<1>HOST_MESSAGE;\n", false)?;
+        if case.wants_warnings() {
+            session.commands("CONNECT WARNING<1>:<1>HOST_MESSAGE;\n", false)?;
+        }
+        session.synchronize()?;
+        session.messages.clear();
+        Ok(session)
+    }
+
+    /// Plays all steps.
+    ///
+    /// # Errors
+    /// The line of the step that stopped the case, and why.
+    pub fn play(&mut self) -> Result<(), (usize, Stop)> {
+        for (line, step) in &self.case.steps {
+            self.step(step).map_err(|stop| (*line, stop))?;
+        }
+        let last = self.case.steps.last().map_or(self.case.line, |(line, _)| *line);
+        self.quiet().map_err(|stop| (last, stop))
+    }
+
+    /// Leaves the machine empty, so that what a case began goes on for nobody.
+    pub fn end(mut self) -> Vec<String> {
+        let _ = self.commands("\nINITIALIZE;\n", false).and_then(|()| self.flush());
+        self.line.detach();
+        self.transcript.into()
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), Stop> {
+        match step {
+            Step::Send(text) => self.commands(text, self.case.text_only)?,
+            Step::Raw(bytes) => {
+                self.note(format!("> {}", bytes.escape_ascii()));
+                self.waiting.extend_from_slice(bytes);
+            }
+            Step::Watch { name, output, word } => self.watch(name, *output, word.as_deref())?,
+            Step::Expect(expected) => self.expect(expected)?,
+            Step::Order(order) => {
+                self.synchronize()?;
+                self.reply = self.order(order)?;
+            }
+            Step::Reply(glob) => {
+                let reply = std::mem::take(&mut self.reply);
+                let Some(operator) = &mut self.operator else { return Err(no_operator()) };
+                if !operator.confirm(&reply, glob) {
+                    return Err(Stop::Failed { expected: format!("a sight like {glob}"), found: reply });
+                }
+                self.reply = reply;
+            }
+            Step::Frames(count) => self.frames(*count)?,
+            Step::Strokes { count, lines } => self.strokes(*count, lines)?,
+            Step::Drop => {
+                self.synchronize()?;
+                self.messages.clear();
+            }
+            Step::Quiet => self.quiet()?,
+        }
+        Ok(())
+    }
+
+    fn commands(&mut self, text: &str, text_only: bool) -> Result<(), Stop> {
+        self.note(format!("> {}", text.trim_end()));
+        Ok(self.sender.write(text.as_bytes(), text_only, &mut self.waiting)?)
+    }
+
+    /// Sends each message of an output to the host, printed, with a word before it if there is one.
+    fn watch(&mut self, name: &str, output: u16, word: Option<&str>) -> Result<(), Stop> {
+        self.watched += 1;
+        let n = self.watched;
+        let text = match word {
+            None => format!(
+                "WATCHP{n} := F:PRINT; CONNECT {name}<{output}>:<1>WATCHP{n}; CONNECT WATCHP{n}<1>:<1>HOST_MESSAGE;\n"
+            ),
+            Some(word) => format!(
+                "WATCHP{n} := F:PRINT; WATCHC{n} := F:CCONCATENATE; SEND '{word} ' TO <1>WATCHC{n}; \
+                 CONNECT {name}<{output}>:<1>WATCHP{n}; CONNECT WATCHP{n}<1>:<2>WATCHC{n}; \
+                 CONNECT WATCHC{n}<1>:<1>HOST_MESSAGE;\n"
+            ),
+        };
+        self.commands(&text, false)
+    }
+
+    /// Gives what waits to the line.
+    fn flush(&mut self) -> Result<(), Stop> {
+        let bytes = std::mem::take(&mut self.waiting);
+        for piece in self.sender.pieces(&bytes) {
+            self.line.send(piece)?;
+        }
+        Ok(())
+    }
+
+    /// Waits until everything sent so far was carried out and its messages are here.
+    fn synchronize(&mut self) -> Result<(), Stop> {
+        self.tokens += 1;
+        let token = format!("~{}~", self.tokens);
+        let text = format!("SEND '{token}' TO <1>HOST_MESSAGE;\n");
+        // A case about the text form may have stopped the interpreter of text only.
+        self.sender.write(text.as_bytes(), self.case.text_only, &mut self.waiting)?;
+        self.flush()?;
+        let deadline = Instant::now() + self.target.patience;
+        loop {
+            let Some(mut message) = self.receive(deadline)? else {
+                let found = format!("nothing for {:?}, after: {}", self.target.patience, self.collected());
+                return Err(Stop::Failed { expected: "an answer of the machine".into(), found });
+            };
+            if message.ends_with(token.as_bytes()) {
+                message.truncate(message.len() - token.len());
+                // A message without an end of its own stands directly before.
+                if !message.is_empty() {
+                    self.arrived(message);
+                }
+                return Ok(());
+            }
+            self.arrived(message);
+            if self.messages.len() > MAX_MESSAGES {
+                return Err(Stop::Failed { expected: "an end of the messages".into(), found: self.collected() });
+            }
+        }
+    }
+
+    /// The next message from the line itself.
+    fn receive(&mut self, deadline: Instant) -> Result<Option<Vec<u8>>, Stop> {
+        loop {
+            match self.reader.next() {
+                Some(Ok(message)) => return Ok(Some(message)),
+                Some(Err(error)) => {
+                    let expected = "a message".into();
+                    return Err(Stop::Failed { expected, found: error.to_string() });
+                }
+                None => {}
+            }
+            match self.line.receive(deadline)? {
+                Some(bytes) => self.reader.push(&bytes),
+                None => return Ok(None),
+            }
+        }
+    }
+
+    fn arrived(&mut self, message: Vec<u8>) {
+        self.note(format!("< {}", message.escape_ascii()));
+        self.messages.push_back(message);
+    }
+
+    /// The next message of the case; none if there is none.
+    fn next_message(&mut self) -> Result<Option<Vec<u8>>, Stop> {
+        if self.messages.is_empty() {
+            self.synchronize()?;
+        }
+        // Where time passes by itself, a message may still be on its way.
+        if self.messages.is_empty() && !self.time_stands() {
+            let deadline = Instant::now() + self.target.patience;
+            if let Some(message) = self.receive(deadline)? {
+                self.arrived(message);
+            }
+        }
+        Ok(self.messages.pop_front())
+    }
+
+    fn time_stands(&self) -> bool {
+        self.operator.as_ref().is_some_and(|operator| operator.drives_time())
+    }
+
+    fn expect(&mut self, expected: &Expected) -> Result<(), Stop> {
+        let Expected::AnyOrder(all) = expected else {
+            let message = self.next_message()?;
+            let is_right = message.as_ref().is_some_and(|m| self.is(expected, m));
+            return if is_right { Ok(()) } else { Err(failed(expected.to_string(), message.as_deref())) };
+        };
+        let mut open: Vec<&Expected> = all.iter().collect();
+        while !open.is_empty() {
+            let message = self.next_message()?;
+            let place = message.as_ref().and_then(|m| open.iter().position(|e| self.is(e, m)));
+            let Some(place) = place else {
+                let wanted: Vec<String> = open.iter().map(ToString::to_string).collect();
+                return Err(failed(wanted.join(" or "), message.as_deref()));
+            };
+            open.remove(place);
+        }
+        Ok(())
+    }
+
+    fn is(&self, expected: &Expected, message: &[u8]) -> bool {
+        matches(expected, message, self.case.tolerance, self.target.any_fault)
+    }
+
+    fn quiet(&mut self) -> Result<(), Stop> {
+        self.synchronize()?;
+        if self.messages.is_empty() {
+            return Ok(());
+        }
+        Err(Stop::Failed { expected: "no message".into(), found: self.collected() })
+    }
+
+    fn collected(&self) -> String {
+        let some: Vec<String> = self.messages.iter().take(10).map(|m| format!("\"{}\"", m.escape_ascii())).collect();
+        let more = if self.messages.len() > 10 { " and more" } else { "" };
+        if some.is_empty() { "nothing".into() } else { format!("{}{more}", some.join(", ")) }
+    }
+
+    fn order(&mut self, order: &str) -> Result<String, Stop> {
+        self.note(format!("@ {order}"));
+        let Some(operator) = &mut self.operator else { return Err(no_operator()) };
+        let reply = operator.give(order)?;
+        if !reply.is_empty() && !order.starts_with("strokes") {
+            self.note(format!("= {reply}"));
+        }
+        Ok(reply)
+    }
+
+    fn frames(&mut self, count: u64) -> Result<(), Stop> {
+        self.synchronize()?;
+        if self.time_stands() {
+            self.order(&format!("frames {count}"))?;
+        } else {
+            // A few frames more, for machines that are late.
+            std::thread::sleep(Duration::from_millis((count + 3) * 1000 / 60));
+        }
+        Ok(())
+    }
+
+    fn strokes(&mut self, count: Option<usize>, lines: &[StrokeLine]) -> Result<(), Stop> {
+        self.frames(1)?;
+        let reply = self.order("strokes")?;
+        let found = read_strokes(&reply)
+            .ok_or_else(|| Stop::Failed { expected: "strokes, one a line".into(), found: reply.clone() })?;
+        match strokes_differ(count, lines, &found, self.case.tolerance) {
+            None => Ok(()),
+            Some(expected) => {
+                let some: Vec<String> = found.iter().take(12).map(stroke_text).collect();
+                let found = format!("{} strokes: {}", found.len(), some.join(" | "));
+                Err(Stop::Failed { expected, found })
+            }
+        }
+    }
+
+    fn note(&mut self, line: String) {
+        if self.transcript.len() >= TRANSCRIPT_LINES {
+            self.transcript.pop_front();
+        }
+        self.transcript.push_back(line);
+    }
+}
+
+fn no_operator() -> Stop {
+    Stop::Skipped("nobody is at the machine".into())
+}
+
+fn failed(expected: String, message: Option<&[u8]>) -> Stop {
+    let found = message.map_or("no message".into(), |m| format!("\"{}\"", m.escape_ascii()));
+    Stop::Failed { expected, found }
+}
+
+/// The strokes in the reply to `strokes`: their number, then on each line x, y, x, y, two intensities, red, green, blue.
+fn read_strokes(reply: &str) -> Option<Vec<StrokeLine>> {
+    let mut lines = reply.lines();
+    let count: usize = lines.next()?.split(' ').next()?.parse().ok()?;
+    let read = |line: &str| -> Option<StrokeLine> {
+        let numbers: Result<Vec<f64>, _> = line.split([' ', ',']).filter(|w| !w.is_empty()).map(str::parse).collect();
+        let n: [f64; 9] = numbers.ok()?.try_into().ok()?;
+        let (intensity, color) = (Some([n[4], n[5]]), Some([n[6], n[7], n[8]]));
+        Some(StrokeLine { start: [n[0], n[1]], end: [n[2], n[3]], intensity, color })
+    };
+    let strokes: Option<Vec<StrokeLine>> = lines.map(read).collect();
+    strokes.filter(|s| s.len() == count)
+}
+
+fn stroke_text(stroke: &StrokeLine) -> String {
+    let StrokeLine { start, end, intensity, color } = stroke;
+    let list = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let more = [intensity.map(|i| list(&i)), color.map(|c| list(&c))];
+    let more: Vec<String> = more.into_iter().flatten().collect();
+    format!("{} {} {}", list(start), list(end), more.join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_are_read_from_the_reply() {
+        let strokes = read_strokes("2 strokes\n0 0 1 0.5 1 0.25 1 1 1\n0,0,0,0,1,1,1,0,0").unwrap();
+        assert_eq!(strokes[0].end, [1.0, 0.5]);
+        assert_eq!(strokes[0].intensity, Some([1.0, 0.25]));
+        assert_eq!(strokes[1].color, Some([1.0, 0.0, 0.0]));
+        assert_eq!(read_strokes("2 strokes\n0 0 1 0.5 1 0.25 1 1 1"), None);
+        assert_eq!(read_strokes("none"), None);
+    }
+}
