@@ -8,6 +8,7 @@ use crate::{
         font::{self, Font},
     },
 };
+use proptest::prelude::*;
 use protocol::wire::{Route, write_packet};
 
 const LINE: LineId = LineId(1);
@@ -365,4 +366,59 @@ fn the_colour_of_the_text_is_that_of_tecolor_while_the_colour_tube_is_on() {
     assert_eq!(overlay(&mut machine)[0].color, [1.0; 3]);
     tell(&mut machine, "SEND TRUE TO <1>TSCSM; SEND 0 TO <2>TECOLOR; SEND 120 TO <1>TECOLOR;");
     assert_eq!(overlay(&mut machine)[0].color, [1.0; 3], "saturation 0");
+}
+
+#[test]
+fn the_labels_of_the_keys_are_parts_of_one_strip() {
+    let mut machine = told("SEND 'ONE' TO <1>FLABEL1; SEND 'TWO TOO LONG' TO <1>FLABEL2; SEND 'TURN' TO <1>DLABEL8;");
+    let panel = machine.panel();
+    assert_eq!((panel.label(Label::Key(1)), panel.label(Label::Key(2))), (&b"ONE"[..], &b"TWO TOO"[..]));
+    assert_eq!(panel.label(Label::Strip), b"ONE     TWO TOO");
+    assert!(panel.to_string().starts_with("dial 8: TURN\nkey 1: ONE\nkey 2: TWO TOO\nlights:"), "{panel}");
+    tell(&mut machine, "SEND 'A WHOLE STRIP' TO <1>FLABEL0;");
+    assert_eq!(machine.panel().label(Label::Key(2)), b"STRIP");
+    assert!(machine.panel().to_string().contains("\nkeys: A WHOLE STRIP\n"));
+    tell(
+        &mut machine,
+        "SEND TRUE TO <1>CLEAR_LABELS; SEND FIX(0) TO <1>ONBUTTONLIGHTS; SEND FIX(2) TO <1>OFFBUTTONLIGHTS;",
+    );
+    let panel = machine.panel();
+    assert!(panel.label(Label::Strip).is_empty() && panel.label(Label::Dial(8)).is_empty());
+    assert!(panel.light(1) && !panel.light(2) && panel.light(32) && !panel.light(33));
+}
+
+/// Anything that a person may do, sensible or not.
+fn events() -> impl Strategy<Value = Event> {
+    let number = prop_oneof![4 => -2.0..2.0, 1 => prop::num::f64::ANY];
+    let keys: Vec<Key> = Key::names().filter_map(Key::named).collect();
+    prop_oneof![
+        (any::<u8>(), number.clone()).prop_map(|(dial, turns)| Event::Dial { dial, turns }),
+        any::<u8>().prop_map(Event::Key),
+        any::<u8>().prop_map(Event::Button),
+        [number.clone(), number].prop_map(|at| Event::Tablet(TabletEvent::Move(at))),
+        any::<u8>().prop_map(|code| Event::Tablet(TabletEvent::Press(code))),
+        Just(Event::Tablet(TabletEvent::Release)),
+        Just(Event::Tablet(TabletEvent::Away)),
+        prop::collection::vec(any::<u8>(), 0..20).prop_map(Event::Type),
+        Just(Event::Type(b"SEND 'x' TO <1>ES_TE; DELETE *;\r".to_vec())),
+        prop::sample::select(keys).prop_map(Event::Press),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+    #[test]
+    fn whatever_a_person_does_the_machine_goes_on(events in prop::collection::vec(events(), 0..60)) {
+        let mut machine = told("CONNECT TABLETIN<1>:<1>TABLETOUT; CONNECT KBHANDLER<4>:<1>ES_TE; SEND 'text' TO <1>DLABEL1;");
+        for event in events {
+            machine.event(event);
+            machine.next_frame();
+        }
+        let on_screen = |s: &Stroke| s.start.iter().chain(&s.end).all(|c| c.abs() <= 1.0);
+        prop_assert!(machine.visible_strokes().iter().all(on_screen));
+        machine.event(Event::Mode(KeyboardMode::Interactive));
+        tell(&mut machine, "SEND 'STILL HERE' TO <1>HOST_MESSAGE;");
+        let mut said = std::iter::from_fn(|| machine.take_message());
+        prop_assert!(said.any(|message| message == b"STILL HERE"));
+    }
 }

@@ -71,7 +71,7 @@ pub enum Order {
     },
     /// Describes an object.
     Show(String),
-    /// The strokes of the latest update, the first so many.
+    /// The strokes that the vector screen shows, the first so many.
     Strokes(usize),
     /// Counters of the machine.
     Counters,

@@ -87,7 +87,7 @@ fn help() -> String {
 
 /// The number of strokes, then on each line x and y of start and end, the intensities there, red, green and blue.
 fn strokes(machine: &Machine, most: usize) -> String {
-    let strokes = &machine.latest_update().strokes;
+    let strokes = machine.visible_strokes();
     let shown = &strokes[..strokes.len().min(most)];
     let mut text = format!("{} strokes", shown.len());
     for stroke in shown {
