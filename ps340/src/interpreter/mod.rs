@@ -170,11 +170,12 @@ impl Interpreter {
                 self.abandon();
                 memory.initialize();
             }
-            Initialize::Connections => memory.network.retain_arcs(|_, _, _| false),
+            Initialize::Connections => memory.restore_arcs(),
             Initialize::Displays => memory.structures.clear_displayed(),
             Initialize::Names => {
                 let users = memory.objects.user_objects("");
                 memory.undefine_all(users);
+                memory.restore_structures();
             }
         }
     }
@@ -208,6 +209,10 @@ fn user_object(name: &Name, memory: &MassMemory) -> Result<Option<ObjectId>, Mes
 fn delete(pattern: &NamePattern, memory: &mut MassMemory) -> Result<(), Message> {
     match pattern {
         NamePattern::Name(name) => {
+            // An initial structure is as it was at the start.
+            if memory.objects.find(name.as_str()).is_some_and(|id| memory.restore(id)) {
+                return Ok(());
+            }
             let id = user_object(name, memory)?.filter(|id| memory.is_defined(*id));
             memory.undefine_all(vec![id.ok_or_else(|| Message::NotFound(name.clone()))?]);
         }

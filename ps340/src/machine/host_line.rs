@@ -76,7 +76,7 @@ impl Decoders {
         match frame {
             Frame::Text(text) => match self.plain_text {
                 PlainText::Commands => self.commands(text, machine),
-                PlainText::Terminal => machine.panel.type_text(text),
+                PlainText::Terminal => machine.show_text(Some(self.line), text),
             },
             Frame::Packet { route, payload, .. } => self.packet(route, payload, machine),
             Frame::Empty(_) => {}
@@ -110,7 +110,7 @@ impl Decoders {
                 machine.carry_effects();
                 machine.settle();
             }
-            Route::Terminal => machine.panel.type_text(payload),
+            Route::Terminal => machine.show_text(Some(self.line), payload),
             Route::Diagnostic => {
                 let text: String = payload.escape_ascii().map(char::from).take(DIAGNOSTIC_CHARACTERS).collect();
                 machine.report(Message::Diagnostic(text));

@@ -3,13 +3,21 @@
 mod counters;
 mod describe;
 mod devices;
+mod dials;
 mod host_line;
+mod initial;
+mod keyboard;
 mod panel;
+mod tablet;
+mod tube;
+mod watch;
 
 pub use counters::Counters;
-pub use devices::{Event, TabletEvent};
+pub use devices::Event;
 pub use host_line::PlainText;
+pub use keyboard::{Key, KeyboardMode};
 pub use panel::Panel;
+pub use tablet::TabletEvent;
 
 use crate::{
     calligraphic::Beam,
@@ -20,15 +28,19 @@ use crate::{
     picture::Picture,
     port::{Effect, ObjectId},
     raster::FrameBuffer,
-    traversal::{self, Requests, Stroke, Trouble, Update},
+    terminal::{Ink, Terminal},
+    traversal::{self, Requests, Trouble, Update},
 };
 use devices::Devices;
 use host_line::HostLine;
+use keyboard::Keyboard;
 use protocol::{
     Name, Value,
     wire::{MessageForm, MessageWriter},
 };
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use tube::Tube;
+use watch::Watch;
 
 /// Frames a second: the nominal refresh rate, as remembered from the manuals.
 pub const FRAMES_PER_SECOND: u64 = 60;
@@ -75,6 +87,8 @@ pub struct Output {
 pub struct Settings {
     /// Who gets text that arrives outside packets.
     pub plain_text: PlainText,
+    /// The mode of the keyboard at the start.
+    pub keyboard: KeyboardMode,
 }
 
 /// The PS 340.
@@ -86,6 +100,10 @@ pub struct Machine {
     /// How messages go to each host.
     writers: BTreeMap<LineId, MessageWriter>,
     devices: Devices,
+    keyboard: Keyboard,
+    terminal: Terminal,
+    tube: Tube,
+    watch: Watch,
     panel: Panel,
     frame_buffer: FrameBuffer,
     frame: u64,
@@ -113,13 +131,19 @@ impl Machine {
             let made = memory.define_initial(&initial);
             debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
         }
+        let structures = initial::define_structures(&mut memory);
+        debug_assert!(structures.is_ok(), "{structures:?}");
         memory.objects.seal_system();
-        Machine {
+        let mut machine = Machine {
             settings,
             memory,
             lines: BTreeMap::new(),
             writers: BTreeMap::new(),
             devices: Devices::default(),
+            keyboard: Keyboard::default(),
+            terminal: Terminal::default(),
+            tube: Tube::default(),
+            watch: Watch::default(),
             panel: Panel::default(),
             frame_buffer: FrameBuffer::default(),
             frame: 0,
@@ -134,7 +158,9 @@ impl Machine {
             to_host: VecDeque::new(),
             outputs: Vec::new(),
             counters: Counters::default(),
-        }
+        };
+        machine.switch_keyboard(settings.keyboard);
+        machine
     }
 
     /// Takes the inputs, in order, at the time of the machine; then lets time run to `until` (a time in the
@@ -162,8 +188,16 @@ impl Machine {
     /// Something that a person does. Dials speak at the next frame, everything else at once.
     pub fn event(&mut self, event: Event) {
         self.work_left = WORK_PER_STEP;
-        let emissions = self.devices.event(event);
-        self.emit(emissions);
+        self.activity();
+        match event {
+            Event::Type(text) => self.type_characters(&text),
+            Event::Press(key) => self.press(key),
+            Event::Mode(mode) => self.switch_keyboard(mode),
+            event => {
+                let emissions = self.devices.event(&event);
+                self.emit(emissions);
+            }
+        }
         self.settle();
     }
 
@@ -172,13 +206,15 @@ impl Machine {
         self.frame += 1;
         self.work_left = WORK_PER_STEP;
         self.account_for_reports();
-        let emissions = self.devices.frame();
+        let emissions = self.devices.frame(self.frame);
         self.emit(emissions);
+        self.watch();
         let centiseconds = self.frame * 100 / FRAMES_PER_SECOND;
         self.memory.network.advance(self.frame, centiseconds, &mut self.memory.effects);
         self.settle();
         self.update_picture();
         self.settle();
+        self.update_overlay();
     }
 
     /// The number of frames that have passed.
@@ -188,7 +224,10 @@ impl Machine {
 
     /// Whether nothing is left to do until something comes in, or a clock ticks.
     pub fn is_idle(&self) -> bool {
-        self.network_rests() && self.devices.is_quiet() && self.updated == Some(self.memory.structures.version())
+        self.network_rests()
+            && self.devices.is_quiet()
+            && self.updated == Some(self.memory.structures.version())
+            && self.overlay_is_current()
     }
 
     /// Whether no function is ready to fire.
@@ -200,11 +239,8 @@ impl Machine {
     pub fn vector_picture(&mut self, beam: &Beam) -> Picture {
         self.update_picture();
         self.settle();
-        if self.update.scopes.is_empty() {
-            return beam.picture(&self.update.strokes);
-        }
-        let strokes: Vec<Stroke> = self.update.on_screen(0).copied().collect();
-        beam.picture(&strokes)
+        self.update_overlay();
+        beam.picture(&self.visible_strokes())
     }
 
     /// What the raster screen shows now.
@@ -215,6 +251,11 @@ impl Machine {
     /// The latest update.
     pub fn latest_update(&self) -> &Update {
         &self.update
+    }
+
+    /// The terminal emulator: its text, cursor and modes.
+    pub fn terminal(&self) -> &Terminal {
+        &self.terminal
     }
 
     /// Labels, lights and texts around the screens.
@@ -261,6 +302,7 @@ impl Machine {
 
     fn receive(&mut self, line: LineId, bytes: &[u8]) {
         let Some(mut host) = self.lines.remove(&line) else { return };
+        self.activity();
         self.counters.bytes_in += bytes.len() as u64;
         host.receive(bytes, self);
         self.lines.insert(line, host);
@@ -268,6 +310,7 @@ impl Machine {
 
     fn detach(&mut self, line: LineId) {
         self.writers.remove(&line);
+        self.keyboard.detach(line);
         if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon()) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
@@ -316,10 +359,26 @@ impl Machine {
             }
             Effect::RequestTransform { function, node } => self.transforms.push((function, node)),
             Effect::ReportMemory { function } => {
-                let text = format!("{:>8} bytes in use", self.memory.bytes());
-                self.memory.network.emit(function, 1, Value::string(text), &mut self.memory.effects);
+                let text = Value::string(self.memory_line());
+                self.memory.network.emit(function, 1, text, &mut self.memory.effects);
             }
             Effect::Host { bytes, binary } => self.send_to_host(&bytes, binary),
+            Effect::HostCharacters(bytes) => {
+                let lines = self.writers.keys();
+                self.outputs.extend(lines.map(|line| Output { line: *line, bytes: bytes.to_vec() }));
+            }
+            Effect::Terminal(text) => self.show_text(None, &text),
+            Effect::TerminalColor { hue, saturation } => {
+                self.terminal.set_ink(Ink { hue, saturation, ..*self.terminal.ink() });
+            }
+            Effect::TerminalCsm(csm) => self.terminal.set_ink(Ink { csm, ..*self.terminal.ink() }),
+            Effect::TurnOnDisplay => self.tube.graphics = true,
+            Effect::Activity => self.activity(),
+            Effect::Dial { dial, setting } => self.devices.set_dial(dial, setting),
+            Effect::Tablet(command) => {
+                let emissions = self.devices.command_tablet(command);
+                self.emit(emissions);
+            }
             effect => self.panel.carry(effect),
         }
     }
@@ -362,6 +421,7 @@ impl Machine {
             tracing::info!("{text}");
         }
         self.log.push_back(text.clone());
+        self.show_message(&text);
         if self.reported <= REPORTS_PER_FRAME {
             self.emit(vec![(instance, 1, Value::string(&text))]);
         }
@@ -422,5 +482,7 @@ pub fn time_of_frame(frame: u64) -> Micros {
     frame * 1_000_000 / FRAMES_PER_SECOND
 }
 
+#[cfg(test)]
+mod device_tests;
 #[cfg(test)]
 mod tests;

@@ -52,6 +52,28 @@ pub enum Effect {
     Terminal(Box<[u8]>),
     /// The vector display goes on again after a static picture.
     TurnOnDisplay,
+    /// Characters to the host line, without any frame.
+    HostCharacters(Box<[u8]>),
+    /// How a dial is sampled from now on.
+    Dial {
+        /// 1..=8.
+        dial: u8,
+        /// What changes.
+        setting: DialSetting,
+    },
+    /// A command to the tablet.
+    Tablet(TabletCommand),
+    /// The colour of the terminal's text.
+    TerminalColor {
+        /// Degrees, 0 is blue.
+        hue: f64,
+        /// 0 white, 1 pure.
+        saturation: f64,
+    },
+    /// Whether the terminal's text is in colour.
+    TerminalCsm(bool),
+    /// Somebody is there: the screen is not blanked.
+    Activity,
     /// The accumulated matrix or the vectors of an XFORM node are wanted at the next update. The answer is a message
     /// [`Value::Transform`] or [`Value::Vectors`] from output 1 of the function.
     RequestTransform {
@@ -145,6 +167,35 @@ pub enum Stream {
     Binary,
     /// Records of the raster screen.
     Raster,
+}
+
+/// One setting of a dial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DialSetting {
+    /// Whether it sends its position, not its change.
+    Absolute(bool),
+    /// Steps that it must turn before it sends.
+    MinimumChange(u32),
+    /// Samples a second, 1..=60.
+    SamplesPerSecond(u8),
+    /// Its position is this number of turns.
+    Reset(f64),
+}
+
+/// A command to the tablet: when it sends the position from output 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TabletCommand {
+    /// While the stylus or puck is in range.
+    #[default]
+    Stream,
+    /// While a switch is down.
+    SwitchStream,
+    /// Once at a press.
+    Point,
+    /// On demand only.
+    Remote,
+    /// Now, once.
+    Trigger,
 }
 
 /// A place for text on the control devices.

@@ -7,7 +7,7 @@ mod kinds;
 mod literal;
 mod queue;
 
-pub use effect::{Effect, Label, Stream};
+pub use effect::{DialSetting, Effect, Label, Stream, TabletCommand};
 pub use fault::{Cause, Fault, Problem};
 pub use firing::{Elapsed, Firing};
 pub use kinds::KindSet;

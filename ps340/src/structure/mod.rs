@@ -67,7 +67,9 @@ impl Structures {
         if data {
             self.bytes = self.bytes + node.bytes() - before;
         }
-        self.version += u64::from(result.is_ok());
+        // The place of the pick box is no part of the picture.
+        let is_seen = !matches!(self.node(id), Some(Node::Operate { operation: Operation::PickLocation { .. }, .. }));
+        self.version += u64::from(result.is_ok() && is_seen);
         result
     }
 
