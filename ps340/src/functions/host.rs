@@ -50,7 +50,7 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: |f| {
             let [route] = *f.string(2)? else { return Err(Problem::Range(2)) };
             let mut packet = Vec::new();
-            let written = write_packet_as(PacketForm::Count, Route::from_code(route), f.string(1)?, &mut packet);
+            let written = write_packet_as(PacketForm::Count, Route::from(route), f.string(1)?, &mut packet);
             written.map_err(|_| Problem::TooLong)?;
             f.emit(1, Value::String(packet.into()))
         },

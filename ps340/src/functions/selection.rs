@@ -27,11 +27,11 @@ pub static ROWS: &[FunctionRow] = &[
     FunctionRow {
         name: "XFORMDATA",
         summary: "the accumulated matrix or the vectors at an XFORM node, at the next update",
-        source: Source::confirmed("clients use <1>, <2> and the output; <3> is kept unused, <4> and <5> are uncertain"),
+        source: Source::confirmed("clients use <1>, <2> and the output; <3> to <5> are uncertain"),
         inputs: &[
             PortSpec::active(KindSet::ANY, "trigger"),
             PortSpec::constant(KindSet::STRING, "path of the XFORM node"),
-            PortSpec::optional(KindSet::STRING, "name of the destination"),
+            PortSpec::optional(KindSet::STRING, "name that gets the data as its definition"),
             PortSpec::optional(KindSet::INTEGER, "first vector, from 1"),
             PortSpec::optional(KindSet::INTEGER, "number of vectors"),
         ],
@@ -40,7 +40,8 @@ pub static ROWS: &[FunctionRow] = &[
             let node = name(f, 2)?;
             let whole = |input: u16| f.optional(input).map(|_| f.integer(input)).transpose();
             let vectors = [whole(4)?, whole(5)?];
-            f.effect(Effect::RequestTransform { function: f.object(), node, vectors });
+            let destination = f.optional(3).map(|_| name(f, 3)).transpose()?;
+            f.effect(Effect::RequestTransform { function: f.object(), node, destination, vectors });
             Ok(())
         },
         examples: &[Example::of(&[(2, S("1X")), (1, S(""))], &[]).faults(&[6])],

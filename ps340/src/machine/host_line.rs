@@ -2,10 +2,10 @@
 
 use super::Machine;
 use crate::interpreter::{Interpreter, Message};
-use crate::line::LineId;
+use crate::{line::LineId, memory::MassMemory, port::Stream};
 use protocol::{
     Value,
-    command::{BinaryDecoder, CommandReader},
+    command::{BinaryDecoder, Command, CommandReader},
     raster,
     value::MAX_STRING,
     wire::{Frame, FrameDecoder, Route, read_six_bit},
@@ -59,15 +59,64 @@ impl HostLine {
         }
     }
 
+    /// The interpreter of a function, which belongs to no line.
+    pub(super) fn of_function() -> HostLine {
+        HostLine::new(LineId(u64::MAX), PlainText::Commands)
+    }
+
+    /// Carries out what a function gives to its interpreter. What the commands send into the network waits there.
+    /// Returns whether all of it could be read.
+    pub(super) fn interpret(&mut self, bytes: &[u8], stream: Stream, machine: &mut Machine) -> bool {
+        let Decoders { text, binary, interpreter, .. } = &mut self.decoders;
+        let mut good = true;
+        let mut take = |read: Result<Command, Message>| {
+            machine.counters.commands += 1;
+            match read {
+                Ok(command) => interpreter.execute(command, &mut machine.memory, &mut machine.messages),
+                Err(message) => {
+                    good = false;
+                    machine.messages.push(message);
+                }
+            }
+        };
+        match stream {
+            Stream::Commands => {
+                text.push(bytes);
+                while let Some(read) = text.next() {
+                    take(read.map(|spanned| spanned.command).map_err(Message::Syntax));
+                }
+            }
+            Stream::Binary => binary.push(bytes).for_each(|read| take(read.map_err(Message::Binary))),
+            Stream::Raster => {
+                for read in raster::decode(bytes) {
+                    let done = match read {
+                        Ok(command) => machine.frame_buffer.apply(&command).map_err(Message::Raster),
+                        Err(error) => Err(Message::Line(error.to_string())),
+                    };
+                    if let Err(message) = done {
+                        good = false;
+                        machine.messages.push(message);
+                    }
+                }
+            }
+        }
+        good
+    }
+
     /// Takes bytes from the host and does what they say.
     pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine) {
         let HostLine { frames, decoders } = self;
         frames.feed(bytes, |frame| decoders.frame(frame, machine));
     }
 
-    /// Gives up what is open. Returns the name of the structure that was.
-    pub(super) fn abandon(&mut self) -> Option<String> {
-        self.decoders.interpreter.abandon()
+    /// Everything that was begun on the line is forgotten: the machine starts again.
+    pub(super) fn restart(&mut self) {
+        self.decoders.interpreter = Interpreter::default();
+    }
+
+    /// Gives up what is open. Returns what that was.
+    pub(super) fn abandon(&mut self, memory: &mut MassMemory) -> Option<String> {
+        self.decoders.interpreter.abandon(memory)
     }
 }
 

@@ -1,13 +1,16 @@
 //! The whole machine: owns the parts, wires them, and moves in steps. No thread, window or wall clock here.
 
+mod carry;
 mod counters;
 mod describe;
 mod devices;
 mod dials;
+mod disk;
 mod host_line;
 mod initial;
 mod keyboard;
 mod panel;
+mod requests;
 mod tablet;
 mod tube;
 mod watch;
@@ -28,17 +31,19 @@ use crate::{
     picture::Picture,
     port::{Effect, ObjectId},
     raster::FrameBuffer,
-    terminal::{Ink, Terminal},
-    traversal::{self, Requests, Trouble, Update},
+    terminal::Terminal,
+    traversal::Update,
 };
 use devices::Devices;
+use disk::Disk;
 use host_line::HostLine;
 use keyboard::Keyboard;
 use protocol::{
-    Name, Value,
+    Value,
     wire::{MessageForm, MessageWriter},
 };
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use requests::Waiting;
+use std::collections::{BTreeMap, VecDeque};
 use tube::Tube;
 use watch::Watch;
 
@@ -114,8 +119,11 @@ pub struct Machine {
     update: Update,
     /// Version of the structure that `update` shows; none before the first.
     updated: Option<u64>,
-    /// XFORMDATA functions that wait for the next update, with the names of their nodes.
-    transforms: Vec<(ObjectId, Name)>,
+    /// What functions want of the next update.
+    waiting: Waiting,
+    disk: Disk,
+    /// The interpreters of the functions that have one.
+    interpreters: BTreeMap<ObjectId, HostLine>,
     messages: Vec<Message>,
     log: VecDeque<String>,
     to_host: VecDeque<Vec<u8>>,
@@ -126,17 +134,9 @@ pub struct Machine {
 impl Machine {
     /// A machine as after its start: the initial function instances exist, nothing is displayed.
     pub fn new(settings: Settings) -> Machine {
-        let mut memory = MassMemory::default();
-        for initial in initial() {
-            let made = memory.define_initial(&initial);
-            debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
-        }
-        let structures = initial::define_structures(&mut memory);
-        debug_assert!(structures.is_ok(), "{structures:?}");
-        memory.objects.seal_system();
         let mut machine = Machine {
             settings,
-            memory,
+            memory: initial_memory(),
             lines: BTreeMap::new(),
             writers: BTreeMap::new(),
             devices: Devices::default(),
@@ -152,7 +152,9 @@ impl Machine {
             network_idle: true,
             update: Update::default(),
             updated: None,
-            transforms: Vec::new(),
+            waiting: Waiting::default(),
+            disk: Disk::default(),
+            interpreters: BTreeMap::new(),
             messages: Vec::new(),
             log: VecDeque::new(),
             to_host: VecDeque::new(),
@@ -206,11 +208,13 @@ impl Machine {
         self.frame += 1;
         self.work_left = WORK_PER_STEP;
         self.account_for_reports();
+        // The interpreter of a function goes with it.
+        self.interpreters.retain(|function, _| self.memory.network.function(*function).is_some());
         let emissions = self.devices.frame(self.frame);
         self.emit(emissions);
         self.watch();
-        let centiseconds = self.frame * 100 / FRAMES_PER_SECOND;
-        self.memory.network.advance(self.frame, centiseconds, &mut self.memory.effects);
+        self.memory.structures.set_frame(self.frame);
+        self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
         self.settle();
         self.update_picture();
         self.settle();
@@ -232,7 +236,7 @@ impl Machine {
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.transforms.is_empty()
+        self.network_idle && self.waiting.is_empty()
     }
 
     /// What the vector screen shows now.
@@ -311,7 +315,7 @@ impl Machine {
     fn detach(&mut self, line: LineId) {
         self.writers.remove(&line);
         self.keyboard.detach(line);
-        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon()) {
+        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory)) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
     }
@@ -337,6 +341,10 @@ impl Machine {
     fn carry_effects(&mut self) {
         while !self.memory.effects.is_empty() || !self.messages.is_empty() {
             for effect in std::mem::take(&mut self.memory.effects) {
+                if effect == Effect::Restart {
+                    self.restart();
+                    break; // the others are of objects that are gone
+                }
                 self.carry(effect);
             }
             for message in std::mem::take(&mut self.messages) {
@@ -345,42 +353,27 @@ impl Machine {
         }
     }
 
-    fn carry(&mut self, effect: Effect) {
-        match effect {
-            Effect::Deliver { object, input, value } => {
-                if let Err(fault) = self.memory.accept(object, input, value) {
-                    let name = self.memory.objects.name(object).to_string();
-                    self.messages.push(Message::Node { name, fault });
-                }
-            }
-            Effect::Fault { object, fault } => {
-                let name = self.memory.objects.name(object).to_string();
-                self.messages.push(Message::Function { name, fault });
-            }
-            Effect::RequestTransform { function, node } => self.transforms.push((function, node)),
-            Effect::ReportMemory { function } => {
-                let text = Value::string(self.memory_line());
-                self.memory.network.emit(function, 1, text, &mut self.memory.effects);
-            }
-            Effect::Host { bytes, binary } => self.send_to_host(&bytes, binary),
-            Effect::HostCharacters(bytes) => {
-                let lines = self.writers.keys();
-                self.outputs.extend(lines.map(|line| Output { line: *line, bytes: bytes.to_vec() }));
-            }
-            Effect::Terminal(text) => self.show_text(None, &text),
-            Effect::TerminalColor { hue, saturation } => {
-                self.terminal.set_ink(Ink { hue, saturation, ..*self.terminal.ink() });
-            }
-            Effect::TerminalCsm(csm) => self.terminal.set_ink(Ink { csm, ..*self.terminal.ink() }),
-            Effect::TurnOnDisplay => self.tube.graphics = true,
-            Effect::Activity => self.activity(),
-            Effect::Dial { dial, setting } => self.devices.set_dial(dial, setting),
-            Effect::Tablet(command) => {
-                let emissions = self.devices.command_tablet(command);
-                self.emit(emissions);
-            }
-            effect => self.panel.carry(effect),
-        }
+    /// REBOOT: everything is as after the start, but for the time, the lines, what was counted and the password.
+    fn restart(&mut self) {
+        let password = self.memory.system.password.take();
+        self.memory = initial_memory();
+        self.memory.system.password = password;
+        self.memory.structures.set_frame(self.frame);
+        self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
+        self.lines.values_mut().for_each(HostLine::restart);
+        self.devices = Devices::default();
+        self.panel = Panel::default();
+        self.frame_buffer = FrameBuffer::default();
+        self.update = Update::default();
+        self.updated = None;
+        self.waiting = Waiting::default();
+        self.interpreters.clear();
+        self.keyboard = Keyboard::default();
+        self.terminal = Terminal::default();
+        self.tube = Tube::default();
+        self.watch = Watch::default();
+        self.switch_keyboard(self.settings.keyboard);
+        self.messages.push(Message::Information("the machine was started again".into()));
     }
 
     /// A message to the host goes to every host that is attached; a `binary` one without an end of line.
@@ -436,45 +429,24 @@ impl Machine {
             tracing::warn!("{rest} more messages in one frame; {unheard} of them did not reach ERROR and WARNING");
         }
     }
+}
 
-    fn update_picture(&mut self) {
-        let version = self.memory.structures.version();
-        let stays = self.update.next_change.is_none_or(|change| self.frame < change);
-        if self.updated == Some(version) && self.transforms.is_empty() && stays {
-            return;
-        }
-        let requests = std::mem::take(&mut self.transforms);
-        let wanted: BTreeSet<ObjectId> =
-            requests.iter().filter_map(|(_, name)| self.memory.objects.find(name.as_str())).collect();
-        let wanted = Requests { transforms: wanted, ..Requests::default() };
-        let update = traversal::update(&self.memory.structures, self.frame, &wanted);
-        self.counters.updates += 1;
-        // What was said of the update before is not said again.
-        match update.trouble.filter(|trouble| self.update.trouble != Some(*trouble)) {
-            Some(Trouble::ContainsItself(id)) => {
-                let name = self.memory.objects.name(id).to_owned();
-                self.report(Message::Structure(format!("{name} contains itself")));
-            }
-            Some(trouble) => self.report(Message::Update(trouble)),
-            None => {}
-        }
-        for (function, name) in requests {
-            // The function may have gone since it asked, and its place may be another object's.
-            if self.memory.network.function(function).is_none_or(|row| row.name != "XFORMDATA") {
-                continue;
-            }
-            let matrix = self.memory.objects.find(name.as_str()).and_then(|id| update.transforms.get(&id));
-            match matrix {
-                Some(m) => {
-                    let value = Value::Transform(Box::new(*m));
-                    self.memory.network.emit(function, 1, value, &mut self.memory.effects);
-                }
-                None => self.report(Message::NotFound(name)),
-            }
-        }
-        self.update = update;
-        self.updated = Some(version);
+/// The mass memory after the start: the initial function instances exist.
+fn initial_memory() -> MassMemory {
+    let mut memory = MassMemory::default();
+    for initial in initial() {
+        let made = memory.define_initial(&initial);
+        debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
     }
+    let structures = initial::define_structures(&mut memory);
+    debug_assert!(structures.is_ok(), "{structures:?}");
+    memory.objects.seal_system();
+    memory
+}
+
+/// The time of a frame, for clocks.
+const fn centiseconds(frame: u64) -> u64 {
+    frame * 100 / FRAMES_PER_SECOND
 }
 
 /// When a frame begins.

@@ -52,6 +52,11 @@ pub enum Effect {
     Terminal(Box<[u8]>),
     /// The vector display goes on again after a static picture.
     TurnOnDisplay,
+    /// The raster screen is filled with a colour.
+    WashScreen {
+        /// Red, green, blue.
+        color: [u8; 3],
+    },
     /// Characters to the host line, without any frame.
     HostCharacters(Box<[u8]>),
     /// How a dial is sampled from now on.
@@ -81,6 +86,8 @@ pub enum Effect {
         function: ObjectId,
         /// The path of the node.
         node: Name,
+        /// What gets the data as its definition, besides the message.
+        destination: Option<Name>,
         /// The first vector that is wanted, from 1, and how many.
         vectors: [Option<i32>; 2],
     },
@@ -96,10 +103,10 @@ pub enum Effect {
         /// How many updates are tried, at least 1.
         frames: u32,
     },
-    /// What is drawn below WRITEBACK nodes is wanted at the next update, from the outputs of the function.
+    /// The picture is wanted after the next update, from the outputs of the instance WRITEBACK.
     RequestWriteBack {
-        /// The function that asks.
-        function: ObjectId,
+        /// The WRITEBACK node below which; none for all that is displayed.
+        node: Option<ObjectId>,
     },
     /// The value of a VARIABLE is wanted, as a message from output 1 of the function.
     Fetch {
@@ -151,6 +158,8 @@ pub enum Effect {
         /// What they are.
         stream: Stream,
     },
+    /// The machine starts again: REBOOT.
+    Restart,
     /// A line about the use of memory is wanted, as a string from output 1 of the function.
     ReportMemory {
         /// The function that asks.

@@ -5,17 +5,19 @@
 pub mod control;
 pub mod display;
 pub mod line;
+pub mod shading;
 pub mod status;
 
 use super::{Family, FunctionRow};
 use crate::port::{Effect, Firing, KindSet, PortSpec, Problem};
 
 /// The initial instances by what they belong to.
-pub static FAMILIES: [(&str, &[FunctionRow]); 4] = [
+pub static FAMILIES: [(&str, &[FunctionRow]); 5] = [
     ("control devices", control::ROWS),
     ("labels, lights and screen", display::ROWS),
     ("host line", line::ROWS),
     ("status", status::ROWS),
+    ("shading", shading::ROWS),
 ];
 
 const TEXT: &[PortSpec] = &[PortSpec::active(KindSet::STRING, "text")];
@@ -39,7 +41,9 @@ pub fn rows() -> impl Iterator<Item = &'static FunctionRow> {
 
 /// The initial instances: each row once, or once a device.
 pub fn initial() -> impl Iterator<Item = Initial> {
-    rows().flat_map(|function| {
+    // PICK is an instance of a function that a user can make too.
+    let pick = super::selection::ROWS.iter().filter(|row| row.name == "PICK");
+    rows().chain(pick).flat_map(|function| {
         let devices = match (function.family, function.name) {
             (Family::Device, "FLABEL") => 0..=12,
             (Family::Device, "CHANNEL") => 3..=7,

@@ -53,6 +53,23 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     ALERT,
+    FunctionRow {
+        name: "WRITEBACK",
+        summary: "the picture as data: what WRITEBACK nodes were asked for, or all that is displayed",
+        source: Source::uncertain("records and text are ours"),
+        inputs: &[PortSpec::active(KindSet::BOOLEAN, "TRUE: all that is displayed")],
+        outputs: &[
+            "records of eight bytes, many in a message",
+            "the same as the text of a vector list, a line a message",
+        ],
+        behaviour: |f| {
+            if f.boolean(1)? {
+                f.effect(crate::port::Effect::RequestWriteBack { node: None });
+            }
+            Ok(())
+        },
+        ..FunctionRow::PLAIN
+    },
     FunctionRow { name: "MEMALERT", summary: "the same as MEMORY_ALERT", ..ALERT },
     FunctionRow { name: "ERROR", summary: "text of every error, for whatever is connected", ..MESSAGES },
     FunctionRow { name: "WARNING", summary: "text of every warning, for whatever is connected", ..MESSAGES },
