@@ -99,6 +99,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::STRING, "text of commands")],
         outputs: &["whether all commands that ended in the message could be read"],
         behaviour: |f| interpret(f, Stream::Commands),
+        examples: &[Example::of(&[(1, S("DISPLAY A;")), (1, S("DISP"))], &[])],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -108,6 +109,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::STRING, "binary records")],
         outputs: &["whether all records could be read"],
         behaviour: |f| interpret(f, Stream::Binary),
+        examples: &[Example::of(&[(1, S("")), (1, S("A"))], &[])],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -117,6 +119,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::STRING, "raster records")],
         outputs: &["whether all records could be read"],
         behaviour: |f| interpret(f, Stream::Raster),
+        examples: &[Example::of(&[(1, S("")), (1, S("A"))], &[])],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -138,6 +141,7 @@ pub static ROWS: &[FunctionRow] = &[
             f.effect(Effect::Terminal(text));
             Ok(())
         },
+        examples: &[Example::of(&[(1, S("READY")), (1, S("\r"))], &[])],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -151,6 +155,7 @@ pub static ROWS: &[FunctionRow] = &[
             f.effect(Effect::ReadDisk { function: f.object(), file });
             Ok(())
         },
+        examples: &[Example::of(&[(1, S("SITE.DAT")), (1, S("SITE.DAT"))], &[])],
         ..FunctionRow::PLAIN
     },
     FunctionRow {

@@ -134,6 +134,7 @@ impl Network {
             strings,
             queued: false,
         };
+        self.string_bytes += self.ports.get(instance.ports).iter().map(Port::string_bytes).sum::<usize>();
         let slot = self.occupy(id, instance);
         if row.clock.is_some() {
             self.clocks.push(slot);

@@ -108,9 +108,16 @@ impl Network {
         let instance = &mut self.instances[slot as usize];
         let inputs = usize::from(instance.inputs);
         let ports = self.ports.get_mut(instance.ports);
-        let leaving = if instance.strings { ports[..inputs].iter().map(Port::leaving_bytes).sum() } else { 0 };
+        let remembered = |ports: &[Port]| ports[inputs..].iter().map(Port::string_bytes).sum::<usize>();
+        let strings = instance.strings;
+        let leaving = if strings { ports[..inputs].iter().map(Port::leaving_bytes).sum() } else { 0 };
+        let before = if strings { remembered(ports) } else { 0 };
         let mut firing = Firing::new(instance.object, instance.size, ports, inputs, &mut self.outbox, effects);
-        match (instance.row.behaviour)(&mut firing) {
+        let outcome = (instance.row.behaviour)(&mut firing);
+        if strings {
+            self.string_bytes = self.string_bytes + remembered(ports) - before;
+        }
+        match outcome {
             Ok(()) => {
                 self.string_bytes -= leaving;
                 instance.missing += consume(&mut ports[..inputs]);
