@@ -310,7 +310,7 @@ impl Machine {
                 let name = self.memory.objects.name(object).to_string();
                 self.messages.push(Message::Function { name, fault });
             }
-            Effect::RequestTransform { function, node } => self.transforms.push((function, node)),
+            Effect::RequestTransform { function, node, .. } => self.transforms.push((function, node)),
             Effect::ReportMemory { function } => {
                 let text = format!("{:>8} bytes in use", self.memory.bytes());
                 self.memory.network.emit(function, 1, Value::string(text), &mut self.memory.effects);

@@ -53,11 +53,7 @@ impl Panel {
             Effect::Terminal(text) => self.type_text(&text),
             // There is no static picture yet that would have darkened the display.
             Effect::TurnOnDisplay => {}
-            Effect::Deliver { .. }
-            | Effect::Fault { .. }
-            | Effect::Host { .. }
-            | Effect::RequestTransform { .. }
-            | Effect::ReportMemory { .. } => {}
+            _ => {}
         }
     }
 

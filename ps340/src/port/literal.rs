@@ -1,7 +1,11 @@
 //! Values as constants of a table: defaults of inputs, messages of examples.
 
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
-use protocol::Value;
+use protocol::{
+    Name, Value,
+    value::{Label, PickList, PickedPlace, TransformedVectors, VectorEnd},
+};
+use std::sync::Arc;
 
 /// A value that can stand in a constant table. Matrices are given by the machine's rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +34,43 @@ pub enum Literal {
     M4([[f64; 4]; 4]),
     /// Transformed data.
     T([[f64; 4]; 4]),
+    /// A pick list.
+    Pick(PickLiteral),
+    /// A label: position, text, whether it is shown.
+    Label([f64; 3], &'static str, bool),
+    /// Transformed vectors: whether each is a line, and its end.
+    Vectors(&'static [(bool, [f64; 3])]),
+}
+
+/// A pick list that can stand in a constant table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PickLiteral {
+    /// Number of the element in its data node, from 1.
+    pub index: u32,
+    /// Pick identifiers, nearest first. What is no name is left out.
+    pub identifiers: &'static [&'static str],
+    /// The data node.
+    pub node: &'static str,
+    /// The kind of data.
+    pub type_code: i32,
+    /// The picked point and the dimension of the data.
+    pub point: Option<([f64; 3], u8)>,
+    /// The parameter of a curve at that point.
+    pub parameter: Option<f64>,
+}
+
+impl PickLiteral {
+    fn list(&self) -> PickList {
+        let place =
+            |(point, dimension)| PickedPlace { point: DVec3::from(point), dimension, parameter: self.parameter };
+        PickList {
+            index: self.index,
+            identifiers: self.identifiers.iter().filter_map(|name| Name::new(name).ok()).collect(),
+            node: Name::new(self.node).ok(),
+            type_code: self.type_code,
+            place: self.point.map(place),
+        }
+    }
 }
 
 impl Literal {
@@ -53,6 +94,14 @@ impl Literal {
             ))),
             Literal::M4(rows) => Value::Matrix4(Box::new(DMat4::from_cols_array_2d(&rows))),
             Literal::T(rows) => Value::Transform(Box::new(DMat4::from_cols_array_2d(&rows))),
+            Literal::Pick(pick) => Value::Pick(Box::new(pick.list())),
+            Literal::Label(position, text, on) => {
+                Value::Label(Box::new(Label { position: DVec3::from(position), text: text.as_bytes().into(), on }))
+            }
+            Literal::Vectors(ends) => {
+                let ends = ends.iter().map(|&(line, point)| VectorEnd { line, point: DVec3::from(point) }).collect();
+                Value::Vectors(Arc::new(TransformedVectors { ends }))
+            }
         }
     }
 }
