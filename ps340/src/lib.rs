@@ -14,6 +14,7 @@ pub mod traversal;
 pub mod picture;
 pub mod calligraphic;
 pub mod raster;
+pub mod disk;
 pub mod interpreter;
 pub mod line;
 pub mod machine;

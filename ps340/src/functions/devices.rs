@@ -172,6 +172,17 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     FunctionRow {
+        name: "SCREENSAVE",
+        summary: "blanks the screen when nobody does anything for a while",
+        source: Source::manual("any message counts as somebody who does something"),
+        inputs: &[
+            PortSpec::active(KindSet::ANY, "activity"),
+            PortSpec::optional(KindSet::NUMBER, "minutes until the screen goes blank; 0 never"),
+        ],
+        behaviour: |f| ask(f, Effect::Activity),
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
         name: "MEMORY_MONITOR",
         summary: "a line about the use of memory",
         source: Source::confirmed(
@@ -227,7 +238,8 @@ const OUT_OF_RANGE: Example = Example::of(
 
 /// The initial instances: each row once, or once a device.
 pub fn initial() -> impl Iterator<Item = Initial> {
-    ROWS.iter().flat_map(|function| {
+    let pick = super::find("PICK").map(|function| Initial { name: function.name.into(), function, device: None });
+    let devices = ROWS.iter().flat_map(|function| {
         let devices = match (function.family, function.name) {
             (Family::Device, "FLABEL") => 0..=12,
             (Family::Device, _) => 1..=8,
@@ -235,7 +247,8 @@ pub fn initial() -> impl Iterator<Item = Initial> {
         };
         let several = devices.map(|n| Initial { name: format!("{}{n}", function.name), function, device: Some(n) });
         several.collect()
-    })
+    });
+    devices.chain(pick)
 }
 
 fn ask(f: &mut Firing, effect: Effect) -> Result<(), Problem> {

@@ -6,6 +6,7 @@ use crate::port::{
     Literal::{B, I, R, S},
     PortSpec, Problem,
 };
+use protocol::Value;
 
 const ANY: PortSpec = PortSpec::active(KindSet::ANY, "message");
 const HELD: PortSpec = PortSpec::constant(KindSet::ANY, "message");
@@ -152,6 +153,35 @@ pub static ROWS: &[FunctionRow] = &[
         )
         .sized(3)
         .faults(&[6])],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "RANGE_SELECT",
+        summary: "the number to output 1 if it lies in a range, else to output 2",
+        source: Source::uncertain("inputs and outputs; the limits belong to the range"),
+        inputs: &[
+            PortSpec::active(KindSet::NUMBER, "number"),
+            PortSpec::constant(KindSet::NUMBER, "lower limit"),
+            PortSpec::constant(KindSet::NUMBER, "upper limit"),
+        ],
+        outputs: &["<1> if inside", "<1> if outside", "whether it is inside"],
+        behaviour: |f| {
+            let (number, low, high) = (f.number(1)?, f.number(2)?, f.number(3)?);
+            if low > high {
+                return Err(Problem::Range(3));
+            }
+            let inside = (low..=high).contains(&number);
+            pass(f, 1, if inside { 1 } else { 2 })?;
+            f.emit(3, Value::Boolean(inside))
+        },
+        examples: &[
+            Example::of(
+                &[(2, I(1)), (3, I(3)), (1, I(3)), (1, R(3.5))],
+                &[(1, I(3)), (3, B(true)), (2, R(3.5)), (3, B(false))],
+            ),
+            Example::of(&[(2, R(1.0)), (3, R(1.0)), (1, I(1)), (2, R(2.0)), (1, I(1))], &[(1, I(1)), (3, B(true))])
+                .faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {

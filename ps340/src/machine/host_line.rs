@@ -73,7 +73,9 @@ impl Decoders {
             Frame::Packet { route, payload, .. } => match route {
                 Route::Text => self.commands(payload, machine),
                 Route::Binary => self.binary(payload, machine),
-                Route::Raster => raster_records(payload, machine),
+                Route::Raster => {
+                    raster_records(payload, machine);
+                }
                 Route::Terminal => machine.panel.type_text(payload),
                 Route::Message => {
                     let writer = machine.writers.get_mut(&self.line);
@@ -97,7 +99,7 @@ impl Decoders {
         self.text.push(text);
         while let Some(read) = self.text.next() {
             match read {
-                Ok(spanned) => self.execute(spanned.command, machine),
+                Ok(spanned) => machine.execute(&mut self.interpreter, spanned.command),
                 Err(error) => machine.report(Message::Syntax(error)),
             }
         }
@@ -108,32 +110,26 @@ impl Decoders {
         let commands: Vec<_> = self.binary.push(payload).collect();
         for read in commands {
             match read {
-                Ok(command) => self.execute(command, machine),
+                Ok(command) => machine.execute(&mut self.interpreter, command),
                 Err(error) => machine.report(Message::Binary(error)),
             }
         }
     }
-
-    fn execute(&mut self, command: protocol::command::Command, machine: &mut Machine) {
-        machine.counters.commands += 1;
-        self.interpreter.execute(command, &mut machine.memory, &mut machine.messages);
-        machine.network_idle = false;
-        machine.carry_effects();
-        // What a command sends into the network is carried out before the next one, as long as the share of this
-        // step lasts; after that the queues fill, and what is too much for them is counted and reported.
-        machine.settle();
-    }
 }
 
-fn raster_records(payload: &[u8], machine: &mut Machine) {
+/// Carries out raster records; returns how many.
+pub(super) fn raster_records(payload: &[u8], machine: &mut Machine) -> usize {
+    let mut completed = 0;
     for read in raster::decode(payload) {
         match read {
             Ok(command) => {
                 if let Err(fault) = machine.frame_buffer.apply(&command) {
                     machine.report(Message::Raster(fault));
                 }
+                completed += 1;
             }
             Err(error) => machine.report(Message::Line(error.to_string())),
         }
     }
+    completed
 }

@@ -1,10 +1,12 @@
 //! The whole machine: owns the parts, wires them, and moves in steps. No thread, window or wall clock here.
 
+mod answers;
 mod counters;
 mod describe;
 mod devices;
 mod host_line;
 mod panel;
+mod streams;
 
 pub use counters::Counters;
 pub use devices::{Event, TabletEvent};
@@ -13,6 +15,7 @@ pub use panel::Panel;
 
 use crate::{
     calligraphic::Beam,
+    disk::Disk,
     functions::devices::initial,
     interpreter::{Class, Message},
     line::LineId,
@@ -22,13 +25,15 @@ use crate::{
     raster::FrameBuffer,
     traversal::{self, Update},
 };
+use answers::TransformRequest;
 use devices::Devices;
 use host_line::HostLine;
 use protocol::{
-    Name, Value,
+    Value,
     wire::{MessageForm, MessageWriter},
 };
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use streams::Streams;
 
 /// Frames a second: the nominal refresh rate, as remembered from the manuals.
 pub const FRAMES_PER_SECOND: u64 = 60;
@@ -96,8 +101,10 @@ pub struct Machine {
     update: Update,
     /// Version of the structure that `update` shows; none before the first.
     updated: Option<u64>,
-    /// XFORMDATA functions that wait for the next update, with the names of their nodes.
-    transforms: Vec<(ObjectId, Name)>,
+    /// XFORMDATA functions that wait for the next update.
+    transforms: Vec<TransformRequest>,
+    streams: Streams,
+    disk: Disk,
     messages: Vec<Message>,
     log: VecDeque<String>,
     to_host: VecDeque<Vec<u8>>,
@@ -129,6 +136,8 @@ impl Machine {
             update: Update::default(),
             updated: None,
             transforms: Vec::new(),
+            streams: Streams::default(),
+            disk: Disk::default(),
             messages: Vec::new(),
             log: VecDeque::new(),
             to_host: VecDeque::new(),
@@ -193,7 +202,7 @@ impl Machine {
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.transforms.is_empty()
+        self.network_idle && self.transforms.is_empty() && self.streams.are_quiet()
     }
 
     /// What the vector screen shows now.
@@ -216,6 +225,16 @@ impl Machine {
     /// Labels, lights and texts around the screens.
     pub fn panel(&self) -> &Panel {
         &self.panel
+    }
+
+    /// The files that functions read and write.
+    pub fn disk(&self) -> &Disk {
+        &self.disk
+    }
+
+    /// The same, to put files there before the machine starts.
+    pub fn disk_mut(&mut self) -> &mut Disk {
+        &mut self.disk
     }
 
     /// The latest messages of the machine, oldest first.
@@ -281,7 +300,7 @@ impl Machine {
             self.work_left = self.work_left.saturating_sub(ran.work);
             self.counters.firings += ran.firings;
             self.network_idle = ran.idle;
-            if self.memory.effects.is_empty() {
+            if self.memory.effects.is_empty() && !self.interpret_next() {
                 return;
             }
         }
@@ -310,13 +329,16 @@ impl Machine {
                 let name = self.memory.objects.name(object).to_string();
                 self.messages.push(Message::Function { name, fault });
             }
-            Effect::RequestTransform { function, node, .. } => self.transforms.push((function, node)),
             Effect::ReportMemory { function } => {
                 let text = format!("{:>8} bytes in use", self.memory.bytes());
                 self.memory.network.emit(function, 1, Value::string(text), &mut self.memory.effects);
             }
             Effect::Host { bytes, binary } => self.send_to_host(&bytes, binary),
-            effect => self.panel.carry(effect),
+            effect => {
+                if let Some(other) = self.answer(effect) {
+                    self.panel.carry(other);
+                }
+            }
         }
     }
 
@@ -380,28 +402,25 @@ impl Machine {
         }
         let requests = std::mem::take(&mut self.transforms);
         let wanted: BTreeSet<ObjectId> =
-            requests.iter().filter_map(|(_, name)| self.memory.objects.find(name.as_str())).collect();
+            requests.iter().filter_map(|request| self.memory.objects.find(request.node.as_str())).collect();
         let update = traversal::update(&self.memory.structures, &wanted);
         self.counters.updates += 1;
         if let Some(trouble) = update.trouble {
             self.report(Message::Update(trouble));
         }
-        for (function, name) in requests {
-            // The function may have gone since it asked, and its place may be another object's.
-            if self.memory.network.function(function).is_none_or(|row| row.name != "XFORMDATA") {
-                continue;
-            }
-            let matrix = self.memory.objects.find(name.as_str()).and_then(|id| update.transforms.get(&id));
-            match matrix {
-                Some(m) => {
-                    let value = Value::Transform(Box::new(*m));
-                    self.memory.network.emit(function, 1, value, &mut self.memory.effects);
-                }
-                None => self.report(Message::NotFound(name)),
-            }
-        }
         self.update = update;
         self.updated = Some(version);
+        for request in requests {
+            // The function may have gone since it asked, and its place may be another object's.
+            if self.memory.network.function(request.function).is_none_or(|row| row.name != "XFORMDATA") {
+                continue;
+            }
+            let id = self.memory.objects.find(request.node.as_str());
+            match id.and_then(|id| self.update.transforms.get(&id)).copied() {
+                Some(matrix) => self.give_data(request, Value::Transform(Box::new(matrix))),
+                None => self.report(Message::NotFound(request.node)),
+            }
+        }
     }
 }
 

@@ -129,6 +129,8 @@ pub enum Effect {
         stream: Stream,
         /// Some of them; a command may go on in the next.
         bytes: Box<[u8]>,
+        /// Whether these are the first since the function was instanced: what was unfinished before is forgotten.
+        fresh: bool,
     },
     /// Somebody is there: the screen is not blanked.
     Activity,

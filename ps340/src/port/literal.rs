@@ -5,7 +5,7 @@ use protocol::{
     Name, Value,
     value::{Label, PickList, PickedPlace, TransformedVectors, VectorEnd},
 };
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 /// A value that can stand in a constant table. Matrices are given by the machine's rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,6 +101,46 @@ impl Literal {
             Literal::Vectors(ends) => {
                 let ends = ends.iter().map(|&(line, point)| VectorEnd { line, point: DVec3::from(point) }).collect();
                 Value::Vectors(Arc::new(TransformedVectors { ends }))
+            }
+        }
+    }
+}
+
+impl fmt::Display for Literal {
+    /// As in commands, so far as commands can express it; in a string, characters that cannot be seen as escapes.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        match *self {
+            Literal::B(b) => f.write_str(if b { "TRUE" } else { "FALSE" }),
+            Literal::I(i) => write!(f, "FIX({i})"),
+            Literal::R(r) if r.fract() == 0.0 && r.abs() < 1e15 => write!(f, "{r:.1}"),
+            Literal::R(r) => write!(f, "{r}"),
+            Literal::S(s) => write!(f, "'{}'", s.escape_default()),
+            Literal::V2(v) => write!(f, "V2D({})", list(&v)),
+            Literal::V3(v) => write!(f, "V3D({})", list(&v)),
+            Literal::V4(v) => write!(f, "V4D({})", list(&v)),
+            Literal::M2(m) => write!(f, "M2D({})", list(m.as_flattened())),
+            Literal::M3(m) => write!(f, "M3D({})", list(m.as_flattened())),
+            Literal::M43(m) => write!(f, "4x3 matrix ({})", list(m.as_flattened())),
+            Literal::M4(m) => write!(f, "M4D({})", list(m.as_flattened())),
+            Literal::T(m) => write!(f, "transformed matrix ({})", list(m.as_flattened())),
+            Literal::Pick(pick) => {
+                write!(f, "pick list ({}", pick.list())?;
+                match pick.point {
+                    Some((point, dimension)) => write!(f, " at {})", list(&point[..usize::from(dimension).min(3)])),
+                    None => f.write_str(")"),
+                }
+            }
+            Literal::Label(position, text, on) => {
+                write!(f, "label ({} '{text}' {})", list(&position), if on { "TRUE" } else { "FALSE" })
+            }
+            Literal::Vectors(ends) => {
+                f.write_str("vectors (")?;
+                for (i, (line, point)) in ends.iter().enumerate() {
+                    let before = if i > 0 { " " } else { "" };
+                    write!(f, "{before}{} {}", if *line { 'L' } else { 'P' }, list(point))?;
+                }
+                f.write_str(")")
             }
         }
     }
