@@ -80,6 +80,39 @@ pub const fn is_name_character(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'$' | b'.')
 }
 
+/// The name that was probably meant: the nearest one, if at most a third of the letters are wrong (at least one may be).
+///
+/// ```
+/// use protocol::name::nearest;
+/// assert_eq!(nearest("ROATE", ["NOP", "ROTATE"]), Some("ROTATE"));
+/// assert_eq!(nearest("X", ["NOP", "ROTATE"]), None);
+/// ```
+///
+/// # Source
+/// The edit distance of Levenshtein 1966, by the rows of Wagner and Fischer 1974.
+pub fn nearest<'n>(wanted: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    if wanted.len() > MAX_NAME {
+        return None;
+    }
+    let near = names.into_iter().map(|name| (edits(wanted.as_bytes(), name.as_bytes()), name));
+    let allowed = (wanted.len() / 3).max(1);
+    near.filter(|(edits, name)| *edits <= allowed && *edits < name.len()).min_by_key(|near| near.0).map(|near| near.1)
+}
+
+/// How many characters must be changed, added or left out to make one text of the other; case does not count.
+fn edits(a: &[u8], b: &[u8]) -> usize {
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.iter().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, y) in b.iter().enumerate() {
+            let changed = diagonal + usize::from(!x.eq_ignore_ascii_case(y));
+            diagonal = row[j + 1];
+            row[j + 1] = changed.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
 impl Borrow<str> for Name {
     fn borrow(&self) -> &str {
         &self.0
@@ -106,6 +139,16 @@ mod tests {
     fn names_are_upper_case_and_may_hold_dots_and_dollars() {
         assert_eq!(Name::new("r001.irx").unwrap().as_str(), "R001.IRX");
         assert_eq!(Name::new("K0$1_").unwrap().as_str(), "K0$1_");
+    }
+
+    #[test]
+    fn edits_count_changes_additions_and_omissions() {
+        for (a, b, distance) in [("", "ABC", 3), ("KITTEN", "SITTING", 3), ("FLAW", "lawn", 2), ("ADD", "add", 0)] {
+            assert_eq!(edits(a.as_bytes(), b.as_bytes()), distance);
+            assert_eq!(edits(b.as_bytes(), a.as_bytes()), distance);
+        }
+        assert_eq!(nearest("ADDD", ["ANDC", "ADDC", "SUBC"]), Some("ADDC"));
+        assert_eq!(nearest("QQ", ["A", "BC"]), None);
     }
 
     #[test]

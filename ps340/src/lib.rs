@@ -17,6 +17,7 @@ pub mod terminal;
 pub mod picture;
 pub mod calligraphic;
 pub mod raster;
+pub mod disk;
 pub mod interpreter;
 pub mod line;
 pub mod machine;

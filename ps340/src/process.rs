@@ -1,11 +1,12 @@
 //! The process `ps340`: arguments, log and exit codes around the shell.
 
 use crate::{
+    functions::page,
     line::Address,
     machine::{KeyboardMode, PlainText, Settings},
     shell::{Clock, End, Operator, Options, run},
 };
-use clap::Parser;
+use clap::{Parser, Subcommand};
 use std::{
     io::{IsTerminal, Write},
     process::ExitCode,
@@ -23,7 +24,10 @@ use std::{
                                  The environment variable PS340_LOG sets what is logged on standard error \
                                  (e.g. 'debug', 'warn')."
 )]
+#[command(args_conflicts_with_subcommands = true)]
 struct Arguments {
+    #[command(subcommand)]
+    subject: Option<Subject>,
     /// Where hosts attach: tcp:HOST:PORT (port 0 takes a free one) or unix:PATH. May be given several times.
     #[arg(long, value_name = "ADDRESS", default_value = "tcp:127.0.0.1:3400")]
     listen: Vec<Address>,
@@ -45,9 +49,36 @@ struct Arguments {
     threads: Option<u16>,
 }
 
+/// What to tell instead of starting the machine.
+#[derive(Subcommand, Debug)]
+enum Subject {
+    /// Tells about the functions of the machine: all in a table, or one in full.
+    Functions {
+        /// Which one, such as ROUTE or F:ROUTE.
+        name: Option<String>,
+    },
+}
+
+/// Tells about the functions on standard output; a reader that goes away early is no failure.
+fn tell_functions(name: Option<&str>) -> ExitCode {
+    match name.map_or_else(|| Ok(page::table()), page::page) {
+        Ok(text) => {
+            let _ = std::io::stdout().lock().write_all(text.as_bytes());
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("ps340: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
 /// Reads the arguments, runs the machine, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(Subject::Functions { name }) = &arguments.subject {
+        return tell_functions(name.as_deref());
+    }
     let filter = tracing_subscriber::EnvFilter::try_from_env("PS340_LOG");
     tracing_subscriber::fmt()
         .with_env_filter(filter.unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("info")))

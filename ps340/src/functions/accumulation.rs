@@ -1,8 +1,8 @@
-//! Accumulation and change: sums of the turns of a dial, and messages that pass only when something changed.
+//! Accumulation and change: sums and means, limits, and messages that pass only when something changed.
 
 use super::{
     Example, FunctionRow, Source,
-    algebra::{distance, limited, product, sum},
+    algebra::{difference, distance, limited, product, quotient, sum},
 };
 use crate::port::{
     Firing, KindSet,
@@ -54,47 +54,6 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     FunctionRow {
-        name: "AVERAGE",
-        summary: "mean of each n consecutive values",
-        source: Source::manual("a value of another kind, or a new n, begins anew: ours"),
-        inputs: &[PortSpec::active(AMOUNT, "value"), PortSpec::constant(KindSet::INTEGER, "n, at least 1")],
-        outputs: &["mean, real or vector"],
-        memory: 2,
-        behaviour: average,
-        examples: &[
-            Example::of(&[(2, I(2)), (1, I(1)), (1, I(2)), (1, R(5.0)), (1, I(6))], &[(1, R(1.5)), (1, R(5.5))]),
-            Example::of(&[(2, I(1)), (1, V2([1.0, 2.0]))], &[(1, V2([1.0, 2.0]))]),
-            Example::of(&[(2, I(2)), (1, R(1.0)), (1, V2([1.0, 2.0])), (1, V2([3.0, 4.0]))], &[(1, V2([2.0, 3.0]))]),
-            Example::of(&[(2, I(0)), (1, R(1.0))], &[]).faults(&[6]),
-        ],
-        ..FunctionRow::PLAIN
-    },
-    FunctionRow {
-        name: "ATSCALE",
-        summary: "the value scaled by its own size, so that large turns count for more",
-        source: Source::uncertain("value times its length times <2>: ours"),
-        inputs: &[PortSpec::active(AMOUNT, "value"), PortSpec::default(KindSet::NUMBER, R(1.0), "factor")],
-        outputs: &["scaled value, real or vector"],
-        behaviour: |f| {
-            let value = real(f.value(1));
-            let size = match &value {
-                Value::Real(r) => r.abs(),
-                Value::Vector2(v) => v.length(),
-                Value::Vector3(v) => v.length(),
-                Value::Vector4(v) => v.length(),
-                _ => return Err(Problem::Kind(1)),
-            };
-            let scaled = product(&value, &Value::Real(size * f.number(2)?)).ok_or(Problem::Mismatch)?;
-            f.emit(1, scaled)
-        },
-        examples: &[
-            Example::of(&[(1, R(-0.5)), (2, R(4.0)), (1, I(2))], &[(1, R(-0.25)), (1, R(16.0))]),
-            Example::of(&[(1, V2([3.0, 4.0]))], &[(1, V2([15.0, 20.0]))]),
-            Example::of(&[(1, R(1e200))], &[]).faults(&[7]),
-        ],
-        ..FunctionRow::PLAIN
-    },
-    FunctionRow {
         name: "DELTA",
         summary: "the message if it differs enough from the last one that passed",
         source: Source::confirmed("clients pass each change of the puck's buttons once, the first included"),
@@ -140,6 +99,48 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     FunctionRow {
+        name: "AVERAGE",
+        summary: "mean of each <2> messages that follow each other",
+        source: Source::manual("the mean of integers is a real: ours"),
+        inputs: &[PortSpec::active(AMOUNT, "value"), PortSpec::constant(KindSet::INTEGER, "how many")],
+        outputs: &["mean"],
+        memory: 2,
+        behaviour: average,
+        examples: &[
+            Example::of(
+                &[(2, I(2)), (1, I(1)), (1, I(2)), (1, R(5.0)), (2, I(1)), (1, I(7)), (1, I(4))],
+                &[(1, R(1.5)), (1, R(6.0)), (1, R(4.0))],
+            ),
+            Example::of(
+                &[(2, I(2)), (1, V2([1.0, 2.0])), (1, V3([1.0; 3])), (1, V2([3.0, 4.0]))],
+                &[(1, V2([2.0, 3.0]))],
+            )
+            .faults(&[5]),
+            Example::of(&[(2, I(0)), (1, I(1))], &[]).faults(&[6]),
+        ],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "ATSCALE",
+        summary: "the value scaled, large ones more than small ones: fine and coarse control with one dial",
+        source: Source::uncertain(
+            "only that the gain grows with the value is remembered; the rule and <2>, <3> are ours",
+        ),
+        inputs: &[
+            PortSpec::active(AMOUNT, "value"),
+            PortSpec::default(KindSet::NUMBER, R(1.0), "factor of small values"),
+            PortSpec::default(KindSet::NUMBER, R(1.0), "size above which the factor grows in proportion to the size"),
+        ],
+        outputs: &["<1> x <2> x the larger of 1 and |<1>| / <3>"],
+        behaviour: scale_by_size,
+        examples: &[
+            Example::of(&[(2, R(10.0)), (3, R(0.5)), (1, R(0.25)), (1, R(-2.0))], &[(1, R(2.5)), (1, R(-80.0))]),
+            Example::of(&[(1, V2([3.0, 4.0])), (1, I(1))], &[(1, V2([15.0, 20.0])), (1, R(1.0))]),
+            Example::of(&[(3, R(0.0)), (1, R(1.0))], &[]).faults(&[6]),
+        ],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
         name: "LIMIT",
         summary: "the value within limits, each component for itself",
         source: Source::uncertain("order of the limits as in F:ACCUMULATE"),
@@ -177,39 +178,6 @@ fn moved(f: &Firing, value: &Value, least: f64) -> bool {
     f.memory(LAST).and_then(|last| distance(value, last)).is_none_or(|distance| distance >= least)
 }
 
-/// A value with reals in the place of integers.
-fn real(value: &Value) -> Value {
-    value.number().map_or_else(|| value.clone(), Value::Real)
-}
-
-fn average(f: &mut Firing) -> Result<(), Problem> {
-    const SUM: u8 = 0;
-    const COUNT: u8 = 1;
-    let wanted = f.integer(2)?;
-    if wanted < 1 {
-        return Err(Problem::Range(2));
-    }
-    let value = real(f.value(1));
-    let begins = f.take_fresh(2);
-    let so_far = match (f.memory(SUM).and_then(|before| sum(before, &value)), f.memory(COUNT)) {
-        (Some(total), Some(Value::Integer(count))) if !begins => (total, count + 1),
-        _ => (value, 1),
-    };
-    let (total, count) = so_far;
-    if !total.is_finite() {
-        f.forget(COUNT);
-        return Err(Problem::Overflow);
-    }
-    if count < wanted {
-        f.remember(SUM, total);
-        f.remember(COUNT, Value::Integer(count));
-        return Ok(());
-    }
-    f.forget(COUNT);
-    let mean = product(&total, &Value::Real(1.0 / f64::from(count))).ok_or(Problem::Mismatch)?;
-    f.emit(1, mean)
-}
-
 fn accumulate(f: &mut Firing) -> Result<(), Problem> {
     let change = match f.optional(4) {
         Some(factor) => product(f.value(1), factor).ok_or(Problem::Mismatch)?,
@@ -232,4 +200,49 @@ fn accumulate(f: &mut Firing) -> Result<(), Problem> {
         f.emit(1, total)?;
     }
     Ok(())
+}
+
+/// Memory of F:AVERAGE: the sum, and how many values it has.
+const SUM: u8 = 0;
+const SUMMED: u8 = 1;
+
+fn average(f: &mut Firing) -> Result<(), Problem> {
+    let wanted = f.integer(2)?;
+    if wanted < 1 {
+        return Err(Problem::Range(2));
+    }
+    let total = match f.memory(SUM) {
+        Some(before) => sum(before, f.value(1)).ok_or(Problem::Mismatch)?,
+        // As a real, so that a sum of integers cannot wrap.
+        None => quotient(f.value(1), 1.0).ok_or(Problem::Kind(1))?,
+    };
+    if !total.is_finite() {
+        return Err(Problem::Overflow);
+    }
+    let count = 1 + match f.memory(SUMMED) {
+        Some(Value::Integer(count)) => *count,
+        _ => 0,
+    };
+    if count < wanted {
+        f.remember(SUM, total);
+        f.remember(SUMMED, Value::Integer(count));
+        return Ok(());
+    }
+    f.forget(SUM);
+    f.forget(SUMMED);
+    let mean = quotient(&total, count.into()).ok_or(Problem::Kind(1))?;
+    f.emit(1, mean)
+}
+
+fn scale_by_size(f: &mut Firing) -> Result<(), Problem> {
+    let (gain, threshold) = (f.number(2)?, f.number(3)?);
+    if threshold <= 0.0 {
+        return Err(Problem::Range(3));
+    }
+    let value = f.value(1);
+    let zero = difference(value, value).ok_or(Problem::Kind(1))?;
+    let size = distance(value, &zero).ok_or(Problem::Kind(1))?;
+    let factor = gain * (size / threshold).max(1.0);
+    let scaled = product(value, &Value::Real(factor)).ok_or(Problem::Kind(1))?;
+    f.emit(1, scaled)
 }

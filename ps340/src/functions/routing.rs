@@ -6,6 +6,7 @@ use crate::port::{
     Literal::{B, I, R, S},
     PortSpec, Problem,
 };
+use protocol::Value;
 
 const ANY: PortSpec = PortSpec::active(KindSet::ANY, "message");
 const HELD: PortSpec = PortSpec::constant(KindSet::ANY, "message");
@@ -156,24 +157,31 @@ pub static ROWS: &[FunctionRow] = &[
     },
     FunctionRow {
         name: "RANGE_SELECT",
-        summary: "the message to output 1 if it lies in a range, else to output 2",
-        source: Source::uncertain("the limits belong to the range and may stand in either order: ours"),
+        summary: "the number to output 1 if it lies in a range, else to output 2",
+        source: Source::uncertain("inputs and outputs; the limits belong to the range"),
         inputs: &[
             PortSpec::active(KindSet::NUMBER, "number"),
-            PortSpec::constant(KindSet::NUMBER, "one limit"),
-            PortSpec::constant(KindSet::NUMBER, "other limit"),
+            PortSpec::constant(KindSet::NUMBER, "lower limit"),
+            PortSpec::constant(KindSet::NUMBER, "upper limit"),
         ],
-        outputs: &["number inside", "number outside", "whether it is inside"],
+        outputs: &["<1> if inside", "<1> if outside", "whether it is inside"],
         behaviour: |f| {
-            let (number, a, b) = (f.number(1)?, f.number(2)?, f.number(3)?);
-            let inside = (a.min(b)..=a.max(b)).contains(&number);
+            let (number, low, high) = (f.number(1)?, f.number(2)?, f.number(3)?);
+            if low > high {
+                return Err(Problem::Range(3));
+            }
+            let inside = (low..=high).contains(&number);
             pass(f, 1, if inside { 1 } else { 2 })?;
-            f.emit(3, protocol::Value::Boolean(inside))
+            f.emit(3, Value::Boolean(inside))
         },
-        examples: &[Example::of(
-            &[(2, I(1)), (3, I(2)), (1, I(2)), (1, R(2.5)), (2, I(3)), (1, R(2.5))],
-            &[(1, I(2)), (3, B(true)), (2, R(2.5)), (3, B(false)), (1, R(2.5)), (3, B(true))],
-        )],
+        examples: &[
+            Example::of(
+                &[(2, I(1)), (3, I(3)), (1, I(3)), (1, R(3.5))],
+                &[(1, I(3)), (3, B(true)), (2, R(3.5)), (3, B(false))],
+            ),
+            Example::of(&[(2, R(1.0)), (3, R(1.0)), (1, I(1)), (2, R(2.0)), (1, I(1))], &[(1, I(1)), (3, B(true))])
+                .faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {

@@ -2,13 +2,12 @@
 
 use super::{
     Machine, Output,
-    host_line::HostLine,
     requests::{Pick, TransformRequest},
 };
 use crate::{
     interpreter::Message,
     memory::Refusal,
-    port::{Effect, ObjectId},
+    port::{Effect, FileName, ObjectId},
     structure::Node,
     terminal::Ink,
 };
@@ -23,8 +22,9 @@ impl Machine {
                 let name = self.memory.objects.name(object).to_string();
                 self.messages.push(Message::Function { name, fault });
             }
-            Effect::RequestTransform { function, node, destination, vectors } => {
-                let room = self.waiting.add_transform(TransformRequest { function, node, destination, vectors });
+            Effect::RequestTransform { function, node, destination, first, count } => {
+                let request = TransformRequest { function, node, destination, first, count };
+                let room = self.waiting.add_transform(request);
                 self.refuse_without(room);
             }
             Effect::RequestPick { function, at, coordinates, frames } => {
@@ -38,20 +38,13 @@ impl Machine {
                 Some(object) if self.memory.is_defined(object) => self.deliver(object, input, value),
                 _ => self.messages.push(Refusal::NotFound(name).into()),
             },
-            Effect::ReadDisk { function, file } => self.read_disk(function, &file),
-            Effect::WriteDisk { function, file, text } => {
-                if let Err(full) = self.disk.write(&file, text.as_deref()) {
-                    let name = Name::new(self.memory.objects.name(function)).ok();
-                    self.messages.push(Message::Range { name, text: full.to_string() });
+            Effect::ReadDisk { function, name } => self.read_disk(function, &name),
+            Effect::WriteDisk { name, bytes, append } => {
+                if let Err(fault) = self.disk.write(name, &bytes, append) {
+                    self.messages.push(Message::Disk(fault));
                 }
             }
-            Effect::Interpret { function, bytes, stream } => {
-                // The interpreter of a function is taken out while it works, so that it cannot call itself endlessly.
-                let mut interpreter = self.interpreters.remove(&function).unwrap_or_else(HostLine::of_function);
-                let read = interpreter.interpret(&bytes, stream, self);
-                self.interpreters.insert(function, interpreter);
-                self.memory.network.emit(function, 1, Value::Boolean(read), &mut self.memory.effects);
-            }
+            Effect::Interpret { function, stream, bytes, fresh } => self.queue_stream(function, stream, bytes, fresh),
             Effect::ReportMemory { function } => {
                 let text = Value::string(self.memory_line());
                 self.memory.network.emit(function, 1, text, &mut self.memory.effects);
@@ -110,7 +103,7 @@ impl Machine {
         }
     }
 
-    fn extract_label(&mut self, function: ObjectId, name: Name, index: i32) {
+    fn extract_label(&mut self, function: ObjectId, name: Name, index: u32) {
         let node = self.memory.target(&name).and_then(|id| self.memory.structures.node(id));
         let Some(Node::Labels(block)) = node else {
             return self.messages.push(Refusal::Misfit(name, "no LABELS").into());
@@ -126,18 +119,20 @@ impl Machine {
         }
     }
 
-    fn read_disk(&mut self, function: ObjectId, file: &[u8]) {
-        match self.disk.read(file) {
-            Some(contents) => {
+    fn read_disk(&mut self, function: ObjectId, name: &FileName) {
+        match self.disk.read(name) {
+            Ok([]) => self.memory.network.emit(function, 1, Value::string(""), &mut self.memory.effects),
+            Ok(contents) => {
                 for part in contents.chunks(MAX_STRING) {
                     self.memory.network.emit(function, 1, Value::string(part), &mut self.memory.effects);
                 }
             }
-            None => {
-                let name = Name::new(self.memory.objects.name(function)).ok();
-                let text = format!("there is no file {}", file.escape_ascii());
-                self.messages.push(Message::Range { name, text });
-            }
+            Err(fault) => self.messages.push(Message::Disk(fault)),
         }
+    }
+
+    /// A message from an output of a function.
+    pub(super) fn reply(&mut self, function: ObjectId, output: u16, value: Value) {
+        self.memory.network.emit(function, output, value, &mut self.memory.effects);
     }
 }

@@ -2,10 +2,10 @@
 
 use super::Machine;
 use crate::interpreter::{Interpreter, Message};
-use crate::{line::LineId, memory::MassMemory, port::Stream};
+use crate::{line::LineId, memory::MassMemory};
 use protocol::{
     Value,
-    command::{BinaryDecoder, Command, CommandReader},
+    command::{BinaryDecoder, CommandReader},
     raster,
     value::MAX_STRING,
     wire::{Frame, FrameDecoder, Route, read_six_bit},
@@ -59,50 +59,6 @@ impl HostLine {
         }
     }
 
-    /// The interpreter of a function, which belongs to no line.
-    pub(super) fn of_function() -> HostLine {
-        HostLine::new(LineId(u64::MAX), PlainText::Commands)
-    }
-
-    /// Carries out what a function gives to its interpreter. What the commands send into the network waits there.
-    /// Returns whether all of it could be read.
-    pub(super) fn interpret(&mut self, bytes: &[u8], stream: Stream, machine: &mut Machine) -> bool {
-        let Decoders { text, binary, interpreter, .. } = &mut self.decoders;
-        let mut good = true;
-        let mut take = |read: Result<Command, Message>| {
-            machine.counters.commands += 1;
-            match read {
-                Ok(command) => interpreter.execute(command, &mut machine.memory, &mut machine.messages),
-                Err(message) => {
-                    good = false;
-                    machine.messages.push(message);
-                }
-            }
-        };
-        match stream {
-            Stream::Commands => {
-                text.push(bytes);
-                while let Some(read) = text.next() {
-                    take(read.map(|spanned| spanned.command).map_err(Message::Syntax));
-                }
-            }
-            Stream::Binary => binary.push(bytes).for_each(|read| take(read.map_err(Message::Binary))),
-            Stream::Raster => {
-                for read in raster::decode(bytes) {
-                    let done = match read {
-                        Ok(command) => machine.frame_buffer.apply(&command).map_err(Message::Raster),
-                        Err(error) => Err(Message::Line(error.to_string())),
-                    };
-                    if let Err(message) = done {
-                        good = false;
-                        machine.messages.push(message);
-                    }
-                }
-            }
-        }
-        good
-    }
-
     /// Takes bytes from the host and does what they say.
     pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine) {
         let HostLine { frames, decoders } = self;
@@ -140,12 +96,12 @@ impl Decoders {
         match route {
             Route::Text => self.commands(payload, machine),
             Route::Binary => self.binary(payload, machine),
-            Route::Raster => raster_records(payload, machine),
+            Route::Raster => drop(raster_records(payload, machine)),
             Route::SixBitBinary | Route::SixBitRaster => {
                 let mut records = Vec::new();
                 match read_six_bit(payload, &mut records) {
                     Ok(()) if route == Route::SixBitBinary => self.binary(&records, machine),
-                    Ok(()) => raster_records(&records, machine),
+                    Ok(()) => drop(raster_records(&records, machine)),
                     Err(error) => machine.report(Message::Line(format!("a 6-bit packet is dropped: {error}"))),
                 }
             }
@@ -181,7 +137,7 @@ impl Decoders {
         self.text.push(text);
         while let Some(read) = self.text.next() {
             match read {
-                Ok(spanned) => self.execute(spanned.command, machine),
+                Ok(spanned) => machine.execute(&mut self.interpreter, spanned.command),
                 Err(error) => machine.report(Message::Syntax(error)),
             }
         }
@@ -192,32 +148,26 @@ impl Decoders {
         let commands: Vec<_> = self.binary.push(payload).collect();
         for read in commands {
             match read {
-                Ok(command) => self.execute(command, machine),
+                Ok(command) => machine.execute(&mut self.interpreter, command),
                 Err(error) => machine.report(Message::Binary(error)),
             }
         }
     }
-
-    fn execute(&mut self, command: protocol::command::Command, machine: &mut Machine) {
-        machine.counters.commands += 1;
-        self.interpreter.execute(command, &mut machine.memory, &mut machine.messages);
-        machine.network_idle = false;
-        machine.carry_effects();
-        // What a command sends into the network is carried out before the next one, as long as the share of this
-        // step lasts; after that the queues fill, and what is too much for them is counted and reported.
-        machine.settle();
-    }
 }
 
-fn raster_records(payload: &[u8], machine: &mut Machine) {
+/// Carries out raster records; returns how many.
+pub(super) fn raster_records(payload: &[u8], machine: &mut Machine) -> usize {
+    let mut completed = 0;
     for read in raster::decode(payload) {
         match read {
             Ok(command) => {
                 if let Err(fault) = machine.frame_buffer.apply(&command) {
                     machine.report(Message::Raster(fault));
                 }
+                completed += 1;
             }
             Err(error) => machine.report(Message::Line(error.to_string())),
         }
     }
+    completed
 }

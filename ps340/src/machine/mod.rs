@@ -5,12 +5,12 @@ mod counters;
 mod describe;
 mod devices;
 mod dials;
-mod disk;
 mod host_line;
 mod initial;
 mod keyboard;
 mod panel;
 mod requests;
+mod streams;
 mod tablet;
 mod tube;
 mod watch;
@@ -24,18 +24,18 @@ pub use tablet::TabletEvent;
 
 use crate::{
     calligraphic::Beam,
+    disk::Disk,
     functions::devices::initial,
     interpreter::{Class, Message},
     line::LineId,
     memory::MassMemory,
     picture::Picture,
-    port::{Effect, ObjectId},
+    port::Effect,
     raster::FrameBuffer,
     terminal::Terminal,
     traversal::Update,
 };
 use devices::Devices;
-use disk::Disk;
 use host_line::HostLine;
 use keyboard::Keyboard;
 use protocol::{
@@ -44,6 +44,7 @@ use protocol::{
 };
 use requests::Waiting;
 use std::collections::{BTreeMap, VecDeque};
+use streams::Streams;
 use tube::Tube;
 use watch::Watch;
 
@@ -121,9 +122,8 @@ pub struct Machine {
     updated: Option<u64>,
     /// What functions want of the next update.
     waiting: Waiting,
+    streams: Streams,
     disk: Disk,
-    /// The interpreters of the functions that have one.
-    interpreters: BTreeMap<ObjectId, HostLine>,
     messages: Vec<Message>,
     log: VecDeque<String>,
     to_host: VecDeque<Vec<u8>>,
@@ -153,8 +153,8 @@ impl Machine {
             update: Update::default(),
             updated: None,
             waiting: Waiting::default(),
+            streams: Streams::default(),
             disk: Disk::default(),
-            interpreters: BTreeMap::new(),
             messages: Vec::new(),
             log: VecDeque::new(),
             to_host: VecDeque::new(),
@@ -208,8 +208,6 @@ impl Machine {
         self.frame += 1;
         self.work_left = WORK_PER_STEP;
         self.account_for_reports();
-        // The interpreter of a function goes with it.
-        self.interpreters.retain(|function, _| self.memory.network.function(*function).is_some());
         let emissions = self.devices.frame(self.frame);
         self.emit(emissions);
         self.watch();
@@ -236,7 +234,7 @@ impl Machine {
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.waiting.is_empty()
+        self.network_idle && self.waiting.is_empty() && self.streams.are_quiet()
     }
 
     /// What the vector screen shows now.
@@ -265,6 +263,16 @@ impl Machine {
     /// Labels, lights and texts around the screens.
     pub fn panel(&self) -> &Panel {
         &self.panel
+    }
+
+    /// The files that functions read and write.
+    pub fn disk(&self) -> &Disk {
+        &self.disk
+    }
+
+    /// The same, to put files there before the machine starts.
+    pub fn disk_mut(&mut self) -> &mut Disk {
+        &mut self.disk
     }
 
     /// The latest messages of the machine, oldest first.
@@ -332,7 +340,7 @@ impl Machine {
             self.work_left = self.work_left.saturating_sub(ran.work);
             self.counters.firings += ran.firings;
             self.network_idle = ran.idle;
-            if self.memory.effects.is_empty() {
+            if self.memory.effects.is_empty() && !self.interpret_next() {
                 return;
             }
         }
@@ -367,7 +375,7 @@ impl Machine {
         self.update = Update::default();
         self.updated = None;
         self.waiting = Waiting::default();
-        self.interpreters.clear();
+        self.streams = Streams::default();
         self.keyboard = Keyboard::default();
         self.terminal = Terminal::default();
         self.tube = Tube::default();

@@ -15,7 +15,7 @@ use glam::{DMat4, DVec2};
 use protocol::{
     Name, Value,
     command::{Fourth, VectorClass, VectorList},
-    value::{PickList, PickedPoint, VectorData},
+    value::{PickList, PickedPlace, TransformedVectors, VectorEnd},
 };
 use std::sync::Arc;
 
@@ -40,8 +40,10 @@ pub(super) struct TransformRequest {
     pub(super) node: Name,
     /// What gets the data as its definition, besides the message.
     pub(super) destination: Option<Name>,
-    /// The first vector, from 1, and how many.
-    pub(super) vectors: [Option<i32>; 2],
+    /// Of vectors: the first one, from 1.
+    pub(super) first: u32,
+    /// Of vectors: how many.
+    pub(super) count: u32,
 }
 
 /// A pick is wanted.
@@ -49,8 +51,8 @@ pub(super) struct TransformRequest {
 pub(super) struct Pick {
     /// The function that asked.
     pub(super) function: ObjectId,
-    /// The centre of the box, if not that of PICK_LOCATION.
-    pub(super) at: Option<DVec2>,
+    /// The centre of the box.
+    pub(super) at: DVec2,
     /// Whether coordinates are wanted.
     pub(super) coordinates: bool,
     /// Updates that are still tried.
@@ -71,7 +73,9 @@ impl Waiting {
         room
     }
 
+    /// A new pick of a function takes the place of the one before.
     pub(super) fn add_pick(&mut self, pick: Pick) -> bool {
+        self.picks.retain(|other| other.function != pick.function);
         let room = self.picks.len() < MAX_WAITING;
         if room {
             self.picks.push(pick);
@@ -158,7 +162,8 @@ impl Machine {
         }
         let node = self.memory.target(&request.node);
         let matrix = node.and_then(|id| update.transforms.get(&id));
-        let vectors = node.and_then(|id| update.transformed.get(&id)).map(|data| part(data, request.vectors));
+        let vectors = node.and_then(|id| update.transformed.get(&id));
+        let vectors = vectors.map(|data| all(data).part(request.first, request.count));
         let (value, defined) = match (matrix, vectors) {
             (Some(matrix), _) => (Value::Transform(Box::new(*matrix)), matrix_node(*matrix)),
             (None, Some(data)) => {
@@ -192,11 +197,11 @@ impl Machine {
 
     fn pick_request(&self, pick: &Pick) -> PickRequest {
         let location = self.memory.objects.find("PICK_LOCATION").and_then(|id| self.memory.structures.node(id));
-        let (center, half_size) = match location {
-            Some(Node::Operate { operation: Operation::PickLocation { center, size }, .. }) => (*center, *size),
-            _ => (DVec2::ZERO, DVec2::ZERO),
+        let half_size = match location {
+            Some(Node::Operate { operation: Operation::PickLocation { size, .. }, .. }) => *size,
+            _ => DVec2::ZERO,
         };
-        PickRequest { center: pick.at.unwrap_or(center), half_size, coordinates: pick.coordinates }
+        PickRequest { center: pick.at, half_size, coordinates: pick.coordinates }
     }
 
     fn answer_pick(&mut self, pick: Pick, hit: Option<&PickHit>) {
@@ -211,31 +216,28 @@ impl Machine {
             }
             return;
         };
-        let place = hit.place.map(|p| PickedPoint { point: p.point, dimension: p.dimension, parameter: p.parameter });
+        let place = hit.place.map(|p| PickedPlace { point: p.point, dimension: p.dimension, parameter: p.parameter });
         let list = PickList {
-            index: i32::try_from(hit.index).unwrap_or(i32::MAX),
+            index: hit.index,
             identifiers: hit.identifiers.clone(),
-            node: hit.node.map_or_else(String::new, |id| self.memory.objects.name(id).to_owned()),
-            code: hit.kind.code(),
+            node: hit.node.and_then(|id| Name::new(self.memory.objects.name(id)).ok()),
+            type_code: hit.kind.code(),
             place,
         };
-        self.memory.network.emit(pick.function, 1, Value::Pick(Arc::new(list)), &mut self.memory.effects);
+        self.memory.network.emit(pick.function, 1, Value::Pick(Box::new(list)), &mut self.memory.effects);
     }
 }
 
-/// The vectors from the first wanted one on, as many as wanted and there.
-fn part(data: &Transformed, [first, count]: [Option<i32>; 2]) -> VectorData {
-    let index = |n: Option<i32>, otherwise: usize| n.map_or(otherwise, |n| usize::try_from(n).unwrap_or(0));
-    let start = index(first, 1).saturating_sub(1).min(data.points.len());
-    let end = start.saturating_add(index(count, data.points.len())).min(data.points.len());
-    VectorData { points: data.points[start..end].to_vec(), lines: data.lines[start..end].to_vec() }
+fn all(data: &Transformed) -> TransformedVectors {
+    let ends = data.points.iter().zip(&data.lines).map(|(point, line)| VectorEnd { line: *line, point: *point });
+    TransformedVectors { ends: ends.collect() }
 }
 
 fn matrix_node(matrix: DMat4) -> Node {
     Node::Operate { operation: Operation::Projective(matrix), descendant: None }
 }
 
-fn vector_node(data: &VectorData) -> Node {
+fn vector_node(data: &TransformedVectors) -> Node {
     let list = VectorList {
         block_normalized: false,
         class: VectorClass::Itemized,
@@ -243,8 +245,8 @@ fn vector_node(data: &VectorData) -> Node {
         estimate: None,
         fourth: Fourth::Intensity,
         internal_units: false,
-        points: data.points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 1.0]).collect(),
-        lines: data.lines.clone(),
+        points: data.ends.iter().map(|e| [e.point.x as f32, e.point.y as f32, e.point.z as f32, 1.0]).collect(),
+        lines: data.ends.iter().map(|e| e.line).collect(),
     };
     Node::Vectors(Box::new(list.into()))
 }

@@ -79,28 +79,30 @@ pub enum Effect {
     TerminalCsm(bool),
     /// Somebody is there: the screen is not blanked.
     Activity,
-    /// The accumulated matrix or the vectors of an XFORM node are wanted at the next update. The answer is a message
-    /// [`Value::Transform`] or [`Value::Vectors`] from output 1 of the function.
+    /// The accumulated matrix of an XFORM MATRIX node, or the vectors of an XFORM VECTOR node, are wanted at the next
+    /// update. The answer is a message [`Value::Transform`] or [`Value::Vectors`] from output 1 of the function.
     RequestTransform {
         /// The function that asks.
         function: ObjectId,
         /// The path of the node.
         node: Name,
-        /// What gets the data as its definition, besides the message.
+        /// A name that becomes an object with the data.
         destination: Option<Name>,
-        /// The first vector that is wanted, from 1, and how many.
-        vectors: [Option<i32>; 2],
+        /// Of vectors: the number of the first one, from 1.
+        first: u32,
+        /// Of vectors: how many.
+        count: u32,
     },
-    /// What is drawn in the pick box is wanted. The answer is a message [`Value::Pick`] from output 1 of the function,
-    /// or FALSE from output 2.
+    /// A pick is wanted: the first thing that an update draws inside the pick box. The answer is a message
+    /// [`Value::Pick`] from output 1 of the function, or, if nothing is met in time, FALSE from output 2.
     RequestPick {
-        /// The function that asks.
+        /// The function that asks. A new request of it replaces the one before.
         function: ObjectId,
-        /// The centre of the box; that of PICK_LOCATION if none.
-        at: Option<DVec2>,
+        /// The position that came with the request, -1..=1.
+        at: DVec2,
         /// Whether the place on the vector is wanted too.
         coordinates: bool,
-        /// How many updates are tried, at least 1.
+        /// Refresh frames to wait for a hit, at least 1.
         frames: u32,
     },
     /// The picture is wanted after the next update, from the outputs of the instance WRITEBACK.
@@ -108,23 +110,14 @@ pub enum Effect {
         /// The WRITEBACK node below which; none for all that is displayed.
         node: Option<ObjectId>,
     },
-    /// The value of a VARIABLE is wanted, as a message from output 1 of the function.
+    /// The value of a VARIABLE is wanted, from output 1 of the function.
     Fetch {
         /// The function that asks.
         function: ObjectId,
         /// The variable.
         name: Name,
     },
-    /// A label of a LABELS node is wanted: text, position and whether it is shown, from outputs 1 to 3.
-    ExtractLabel {
-        /// The function that asks.
-        function: ObjectId,
-        /// The node.
-        name: Name,
-        /// Which label, from 1.
-        index: i32,
-    },
-    /// A message for an object by its name.
+    /// A message for a named object, as by the command SEND.
     SendTo {
         /// The object.
         name: Name,
@@ -133,30 +126,43 @@ pub enum Effect {
         /// The message.
         value: Value,
     },
-    /// A file of the disk is wanted, as messages from output 1 of the function.
+    /// A label of a LABELS node is wanted: its text from output 1 of the function, its position from 2, whether it is
+    /// shown from 3.
+    ExtractLabel {
+        /// The function that asks.
+        function: ObjectId,
+        /// The node.
+        name: Name,
+        /// Number of the label, from 1.
+        index: u32,
+    },
+    /// A file of the disk is wanted, from output 1 of the function; a long one in several messages.
     ReadDisk {
         /// The function that asks.
         function: ObjectId,
-        /// The name of the file.
-        file: Box<[u8]>,
+        /// The file.
+        name: FileName,
     },
-    /// A file of the disk is written.
+    /// Bytes for a file of the disk.
     WriteDisk {
-        /// The function that writes.
-        function: ObjectId,
-        /// The name of the file.
-        file: Box<[u8]>,
-        /// What is added at its end; none makes the file empty.
-        text: Option<Box<[u8]>>,
-    },
-    /// Bytes for a command interpreter that belongs to the function.
-    Interpret {
-        /// The function.
-        function: ObjectId,
-        /// The bytes.
+        /// The file; it is made if need be.
+        name: FileName,
+        /// What is written.
         bytes: Box<[u8]>,
-        /// What they are.
+        /// Whether the bytes go to the end of the file; otherwise they replace what is there.
+        append: bool,
+    },
+    /// Bytes for an interpreter of the function's own, which remembers what is unfinished. When they are read, the number
+    /// of commands that they completed leaves output 1 of the function.
+    Interpret {
+        /// The function, to which the interpreter belongs.
+        function: ObjectId,
+        /// What the bytes are.
         stream: Stream,
+        /// Some of them; a command may go on in the next.
+        bytes: Box<[u8]>,
+        /// Whether these are the first since the function was instanced: what was unfinished before is forgotten.
+        fresh: bool,
     },
     /// The machine starts again: REBOOT.
     Restart,
@@ -165,17 +171,6 @@ pub enum Effect {
         /// The function that asks.
         function: ObjectId,
     },
-}
-
-/// What a function gives to an interpreter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stream {
-    /// Commands as text.
-    Commands,
-    /// Binary records of commands.
-    Binary,
-    /// Records of the raster screen.
-    Raster,
 }
 
 /// One setting of a dial.
@@ -207,6 +202,40 @@ pub enum TabletCommand {
     Trigger,
 }
 
+/// What bytes for an interpreter are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stream {
+    /// Text of commands.
+    Text,
+    /// Binary records of commands.
+    Binary,
+    /// Raster records.
+    Raster,
+}
+
+/// Longest name of a file of the disk, in bytes. Ours.
+pub const MAX_FILE_NAME: usize = 64;
+
+/// The name of a file of the disk: 1 to [`MAX_FILE_NAME`] letters, digits, `_`, `$`, `-` and `.`, the first no `.`; always
+/// upper case. So it is a plain name in a folder of any computer too.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FileName(Box<str>);
+
+impl FileName {
+    /// Reads a name, blanks around it left out; none if it is no name of a file.
+    pub fn new(text: &[u8]) -> Option<FileName> {
+        let text = text.trim_ascii();
+        let plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"_$-.".contains(byte);
+        let is_name = (1..=MAX_FILE_NAME).contains(&text.len()) && text[0] != b'.' && text.iter().all(plain);
+        is_name.then(|| FileName(text.iter().map(|byte| char::from(byte.to_ascii_uppercase())).collect()))
+    }
+
+    /// The characters, in upper case.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
 /// A place for text on the control devices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Label {
@@ -224,6 +253,19 @@ impl Label {
         match self {
             Label::Dial(_) | Label::Key(_) => 8,
             Label::Strip => 96,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_plain() {
+        assert_eq!(FileName::new(b" config.dat ").unwrap().as_str(), "CONFIG.DAT");
+        for bad in ["", "..", ".HIDDEN", "A/B", "A\\B", "A B", "\u{e4}", &"A".repeat(65)] {
+            assert_eq!(FileName::new(bad.as_bytes()), None, "{bad}");
         }
     }
 }

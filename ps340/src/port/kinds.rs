@@ -32,12 +32,14 @@ impl KindSet {
     pub const SQUARE: KindSet = KindSet::of(&[Kind::Matrix2, Kind::Matrix3, Kind::Matrix4]);
     /// All matrices.
     pub const MATRIX: KindSet = KindSet::SQUARE.or(KindSet::of(&[Kind::Matrix4x3]));
-    /// Transformed data.
+    /// Transformed data: a matrix or vectors.
     pub const TRANSFORM: KindSet = KindSet::of(&[Kind::Transform, Kind::Vectors]);
     /// Transformed vectors.
     pub const VECTORS: KindSet = KindSet::of(&[Kind::Vectors]);
     /// Pick lists.
     pub const PICK: KindSet = KindSet::of(&[Kind::Pick]);
+    /// Labels.
+    pub const LABEL: KindSet = KindSet::of(&[Kind::Label]);
 
     /// The set of some kinds.
     pub const fn of(kinds: &[Kind]) -> KindSet {

@@ -7,11 +7,11 @@ mod kinds;
 mod literal;
 mod queue;
 
-pub use effect::{DialSetting, Effect, Label, Stream, TabletCommand};
+pub use effect::{DialSetting, Effect, FileName, Label, MAX_FILE_NAME, Stream, TabletCommand};
 pub use fault::{Cause, Fault, Problem};
 pub use firing::{Elapsed, Firing};
 pub use kinds::KindSet;
-pub use literal::Literal;
+pub use literal::{Literal, PickLiteral};
 pub use queue::{Arrival, MAX_QUEUE, Port};
 
 /// The identity of a named object, function or display node, for as long as the object's name exists.

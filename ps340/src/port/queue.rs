@@ -103,8 +103,11 @@ impl Port {
         !self.filled
     }
 
-    /// Bytes of the strings that wait here.
+    /// Bytes of the strings that wait here. Memory cells, which take no messages, do not count.
     pub fn string_bytes(&self) -> usize {
+        if self.kinds == KindSet::NONE {
+            return 0;
+        }
         let rest = self.rest.iter().flat_map(|rest| rest.messages.iter());
         self.first().into_iter().chain(rest).map(string_bytes).sum()
     }

@@ -383,7 +383,8 @@ fn value<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Value, BinaryErro
         Kind::Matrix4x3 => Value::Matrix4x3(Box::new(matrix4x3(reader)?)),
         Kind::Matrix4 => Value::Matrix4(Box::new(DMat4::from_cols_array(&reader.reals("row by row")?))),
         Kind::Transform => Value::Transform(Box::new(DMat4::from_cols_array(&reader.reals("row by row")?))),
-        Kind::Vectors | Kind::Pick | Kind::Label => {
+        // Only functions make these.
+        Kind::Pick | Kind::Label | Kind::Vectors => {
             return Err(reader.error(1, "kind", BinaryProblem::Unknown(code.into())));
         }
     })

@@ -42,7 +42,7 @@ pub fn rows() -> impl Iterator<Item = &'static FunctionRow> {
 /// The initial instances: each row once, or once a device.
 pub fn initial() -> impl Iterator<Item = Initial> {
     // PICK is an instance of a function that a user can make too.
-    let pick = super::selection::ROWS.iter().filter(|row| row.name == "PICK");
+    let pick = super::picking::ROWS.iter().filter(|row| row.name == "PICK");
     rows().chain(pick).flat_map(|function| {
         let devices = match (function.family, function.name) {
             (Family::Device, "FLABEL") => 0..=12,

@@ -36,7 +36,7 @@ pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<
         }
         Input::Append => {
             let label = match value {
-                Value::Label(label) => (Label { position: label.position, text: label.text.clone() }, label.shown),
+                Value::Label(label) => (Label { position: label.position, text: label.text.clone() }, label.on),
                 Value::String(text) => (Label { position: DVec3::ZERO, text: text.clone() }, true),
                 _ => (Label { position: place(value, input)?, text: Box::default() }, true),
             };
@@ -50,7 +50,7 @@ pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<
             match value {
                 Value::Boolean(on) => *shown = *on,
                 Value::Label(new) => {
-                    (label.position, *shown) = (new.position, new.shown);
+                    (label.position, *shown) = (new.position, new.on);
                     let before = std::mem::replace(&mut label.text, new.text.clone());
                     return Ok(new.text.len() as isize - before.len() as isize);
                 }
