@@ -430,4 +430,6 @@ pub fn time_of_frame(frame: u64) -> Micros {
 }
 
 #[cfg(test)]
+mod answer_tests;
+#[cfg(test)]
 mod tests;
