@@ -1,7 +1,8 @@
 //! Tests of what functions ask of the machine: names, files, picks, transformed data, interpreters.
 
 use super::*;
-use protocol::command::encode;
+use crate::{functions::find, network::Network};
+use protocol::command::{Input as Place, encode};
 
 const LINE: LineId = LineId(1);
 
@@ -137,7 +138,7 @@ fn binary_commands_and_packets_reach_their_interpreters() {
     let to = machine.memory.objects.find("D").unwrap();
     for byte in stream {
         let value = Value::string([byte]);
-        machine.memory.network.send(to, protocol::command::Input::Number(1), value, &mut machine.memory.effects);
+        machine.memory.network.send(to, Place::Number(1), value, &mut machine.memory.effects);
     }
     machine.next_frame();
     assert_eq!(machine.panel().label(crate::port::Label::Dial(1)), b"X");
@@ -203,4 +204,43 @@ fn a_time_out_speaks_once_when_nothing_came_for_a_while() {
     assert_eq!(said(&mut machine), ["LATE"]);
     wait(&mut machine, 200);
     assert!(said(&mut machine).is_empty());
+}
+
+#[test]
+fn what_is_packed_is_unpacked_wherever_the_stream_is_cut() {
+    let data: Vec<u8> = (0..10_000_u32).map(|i| ((i * 7919) >> 3) as u8).collect();
+    for piece in [1, 2, 7, 4096, 20_000] {
+        let mut network = Network::new();
+        let mut effects = Vec::new();
+        let [packer, cutter, unpacker, sink] = [0, 1, 2, 3].map(ObjectId);
+        network.define(packer, find("PACKET").unwrap(), None).unwrap();
+        network.define(unpacker, find("DEPACKET").unwrap(), None).unwrap();
+        network.connect(packer, 1, cutter, Place::Number(1)).unwrap();
+        network.connect(unpacker, 1, sink, Place::Number(1)).unwrap();
+        network.connect(unpacker, 2, sink, Place::Number(2)).unwrap();
+        network.send(packer, Place::Number(2), Value::string("5"), &mut effects);
+        network.send(packer, Place::Number(1), Value::string(&data), &mut effects);
+        network.run(1_000_000, &mut effects);
+        let mut line = b"before".to_vec();
+        for effect in effects.drain(..) {
+            let Effect::Deliver { value: Value::String(packet), .. } = effect else { panic!("{effect:?}") };
+            line.extend_from_slice(&packet);
+        }
+        for bytes in line.chunks(piece) {
+            network.send(unpacker, Place::Number(1), Value::string(bytes), &mut effects);
+            network.run(1_000_000, &mut effects);
+        }
+        let (mut back, mut text) = (Vec::new(), Vec::new());
+        for effect in effects {
+            match effect {
+                Effect::Deliver { input: Place::Number(1), value: Value::String(packet), .. } => {
+                    assert_eq!(packet[0], b'5');
+                    back.extend_from_slice(&packet[1..]);
+                }
+                Effect::Deliver { value: Value::String(outside), .. } => text.extend_from_slice(&outside),
+                other => panic!("{other:?}"),
+            }
+        }
+        assert!(back == data && text == b"before", "in pieces of {piece}");
+    }
 }

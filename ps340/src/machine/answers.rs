@@ -66,7 +66,7 @@ impl Machine {
         if let (Some(name), Some(lines)) = (request.destination, lines(&data)) {
             let mut reader = CommandReader::default();
             reader.push(format!("{name} := {}", lines.join(" ")).as_bytes());
-            while let Some(read) = reader.next() {
+            for read in reader {
                 match read {
                     Ok(read) => {
                         Interpreter::default().execute(read.command, &mut self.memory, &mut self.messages);

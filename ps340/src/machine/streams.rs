@@ -21,7 +21,7 @@ const MAX_WAITING: usize = 4 << 20;
 const MAX_INTERPRETERS: usize = 256;
 /// What interpreting a message costs of the work of a step, besides what it causes: it takes about as long as so many
 /// messages between functions.
-const UNITS_PER_PIECE: u64 = 20;
+const UNITS_PER_PIECE: u64 = 50;
 /// Bytes of it that cost one unit more.
 const BYTES_PER_UNIT: usize = 8;
 
@@ -119,7 +119,7 @@ impl Machine {
     fn interpret_text(&mut self, reader: &mut Reader, text: &[u8]) -> usize {
         let mut completed = 0;
         reader.text.push(text);
-        while let Some(read) = reader.text.next() {
+        for read in reader.text.by_ref() {
             match read {
                 Ok(read) => {
                     self.execute(&mut reader.interpreter, read.command);
