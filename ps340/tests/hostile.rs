@@ -72,6 +72,11 @@ fn streams() -> impl Strategy<Value = Vec<u8>> {
         "C := F:CLFRAMES; SEND FIX(1) TO <1>C; SEND TRUE TO <3>C; SEND TRUE TO <4>C; CONNECT C<1>:<1>C;",
         "M := MATRIX_4X4 0,0,0,0 0,0,0,0 0,0,0,0 0,0,0,0 THEN V;",
         "FORGET A;",
+        "C := F:CI; SEND 'DELETE C; C := F:CI; SEND ''X'' TO <1>C;' TO <1>C;",
+        "K := F:CONSTANT; C := F:CI; CONNECT K<1>:<1>C; SEND 'SEND 1 TO <1>K;' TO <2>K; SEND 1 TO <1>K;",
+        "D := F:DEPACKET; G := F:GATHER_STRING; CONNECT ERROR<1>:<1>D; CONNECT D<2>:<1>G; DELETE G; G := F:LINEEDITOR;",
+        "S := F:SEND; SEND 'S' TO <2>S; SEND FIX(1) TO <3>S; SEND TRUE TO <1>S;",
+        "W := F:WRITEDISK; SEND 'A' TO <2>W; SEND TRUE TO <3>W; CONNECT ERROR<1>:<1>W;",
         "DIALS := NIL;",
     ]);
     let words = prop::collection::vec(words, 1..12).prop_map(|w| w.join(" ").into_bytes());

@@ -92,10 +92,16 @@ pub static ROWS: &[FunctionRow] = &[
             f.remember(LAST, value.clone());
             if edge { f.emit(1, value) } else { Ok(()) }
         },
-        examples: &[Example::of(
-            &[(2, B(true)), (1, B(true)), (1, B(true)), (1, B(false)), (1, B(true))],
-            &[(1, B(true)), (1, B(true))],
-        )],
+        examples: &[
+            Example::of(
+                &[(2, B(true)), (1, B(true)), (1, B(true)), (1, B(false)), (1, B(true))],
+                &[(1, B(true)), (1, B(true))],
+            ),
+            Example::of(
+                &[(2, B(false)), (1, B(true)), (1, B(false)), (1, B(false)), (2, B(true)), (1, B(true))],
+                &[(1, B(false)), (1, B(true))],
+            ),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {

@@ -33,7 +33,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::STRING, FIRST), PortSpec::constant(KindSet::STRING, SECOND)],
         outputs: &["<1> then <2>"],
         behaviour: |f| join(f, 2),
-        examples: &[Example::of(&[(2, S(" mm")), (1, S("3")), (1, S("4"))], &[(1, S("3 mm")), (1, S("4 mm"))])],
+        examples: &[
+            Example::of(&[(2, S(" mm")), (1, S("3")), (1, S("4"))], &[(1, S("3 mm")), (1, S("4 mm"))]),
+            Example::of(&[(2, S("X")), (2, S("")), (1, S("A")), (1, I(1))], &[(1, S("A"))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -43,7 +46,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::constant(KindSet::STRING, FIRST), PortSpec::active(KindSet::STRING, SECOND)],
         outputs: &["<1> then <2>"],
         behaviour: |f| join(f, 2),
-        examples: &[Example::of(&[(1, S("X=")), (2, S("3")), (2, S("4"))], &[(1, S("X=3")), (1, S("X=4"))])],
+        examples: &[
+            Example::of(&[(1, S("X=")), (2, S("3")), (2, S("4"))], &[(1, S("X=3")), (1, S("X=4"))]),
+            Example::of(&[(1, S("")), (2, S("")), (1, S("X")), (2, S("Y"))], &[(1, S("")), (1, S("XY"))]),
+        ],
         ..FunctionRow::PLAIN
     },
     MCAT_STRING,

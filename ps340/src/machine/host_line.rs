@@ -135,7 +135,7 @@ impl Decoders {
 
     fn commands(&mut self, text: &[u8], machine: &mut Machine) {
         self.text.push(text);
-        while let Some(read) = self.text.next() {
+        for read in self.text.by_ref() {
             match read {
                 Ok(spanned) => machine.execute(&mut self.interpreter, spanned.command),
                 Err(error) => machine.report(Message::Syntax(error)),

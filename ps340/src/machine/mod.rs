@@ -463,6 +463,8 @@ pub fn time_of_frame(frame: u64) -> Micros {
 }
 
 #[cfg(test)]
+mod answer_tests;
+#[cfg(test)]
 mod device_tests;
 #[cfg(test)]
 mod tests;

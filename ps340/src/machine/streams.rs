@@ -19,8 +19,11 @@ use std::collections::{BTreeMap, VecDeque};
 const MAX_WAITING: usize = 4 << 20;
 /// Functions with an interpreter of their own. Ours.
 const MAX_INTERPRETERS: usize = 256;
-/// Bytes that cost as much work as one message.
-const BYTES_PER_UNIT: usize = 64;
+/// What interpreting a message costs of the work of a step, besides what it causes: it takes about as long as so many
+/// messages between functions.
+const UNITS_PER_PIECE: u64 = 50;
+/// Bytes of it that cost one unit more.
+const BYTES_PER_UNIT: usize = 8;
 
 /// The interpreters of functions, and what waits for them.
 #[derive(Debug, Default)]
@@ -79,7 +82,7 @@ impl Machine {
         }
         let Some(piece) = self.streams.waiting.pop_front() else { return false };
         self.streams.bytes -= piece.bytes.len() + size_of::<Piece>();
-        self.work_left = self.work_left.saturating_sub(1 + (piece.bytes.len() / BYTES_PER_UNIT) as u64);
+        self.work_left = self.work_left.saturating_sub(UNITS_PER_PIECE + (piece.bytes.len() / BYTES_PER_UNIT) as u64);
         let is_reader = |machine: &Machine, id: ObjectId| {
             let row = machine.memory.network.function(id);
             row.is_some_and(|row| ["CI", "READSTREAM", "RASTERSTREAM"].contains(&row.name))
@@ -116,7 +119,7 @@ impl Machine {
     fn interpret_text(&mut self, reader: &mut Reader, text: &[u8]) -> usize {
         let mut completed = 0;
         reader.text.push(text);
-        while let Some(read) = reader.text.next() {
+        for read in reader.text.by_ref() {
             match read {
                 Ok(read) => {
                     self.execute(&mut reader.interpreter, read.command);
