@@ -105,8 +105,10 @@ impl Machine {
 
     fn extract_label(&mut self, function: ObjectId, name: Name, index: u32) {
         let node = self.memory.target(&name).and_then(|id| self.memory.structures.node(id));
-        let Some(Node::Labels(block)) = node else {
-            return self.messages.push(Refusal::Misfit(name, "no LABELS").into());
+        let block = match node {
+            Some(Node::Labels(block)) => block,
+            Some(_) => return self.messages.push(Refusal::Misfit(name, "no LABELS").into()),
+            None => return self.messages.push(Refusal::NotFound(name).into()),
         };
         let place = usize::try_from(index).ok().and_then(|index| index.checked_sub(1));
         let Some((label, shown)) = place.and_then(|place| block.labels.get(place)) else {
