@@ -178,7 +178,7 @@ pub const ORDERS: &[OrderRow] = &[
     OrderRow {
         word: "strokes",
         arguments: "[N]",
-        summary: "what the latest update drew: x y x y, intensities, red green blue of each stroke, N at most",
+        summary: "what the vector screen shows: x y x y, intensities, red green blue of each stroke, N at most",
         read: |w| Ok(Order::Strokes(w.optional("a number of strokes")?.unwrap_or(STROKES))),
     },
     OrderRow { word: "counters", arguments: "", summary: "counters of the machine", read: |_| Ok(Order::Counters) },
