@@ -1,5 +1,7 @@
 //! The mass memory: names, display structure and function network together, and the operations that touch more than one.
 
+mod initial;
+
 use crate::{
     functions::{self, devices::Initial},
     network::Network,
@@ -7,6 +9,7 @@ use crate::{
     port::{Effect, ObjectId},
     structure::{Node, NodeFault, Structures},
 };
+use initial::InitialStructures;
 use protocol::{Name, Value, command::Input};
 use std::collections::HashSet;
 
@@ -45,10 +48,7 @@ pub struct MassMemory {
     pub network: Network,
     /// What the network wants of its surroundings, in order.
     pub effects: Vec<Effect>,
-    /// The structures that exist from the start, as they are then.
-    initial_nodes: Vec<(ObjectId, Node)>,
-    /// The arcs that exist from the start.
-    initial_arcs: Vec<(ObjectId, u16, ObjectId, Input)>,
+    initial: InitialStructures,
 }
 
 impl MassMemory {
@@ -100,52 +100,6 @@ impl MassMemory {
         let defined = self.network.define(id, row, initial.device);
         defined.map_err(|e| type_name().map_or(Refusal::Full, |t| Refusal::FunctionSize(t, e.to_string())))?;
         Ok(id)
-    }
-
-    /// Makes an initial structure, which exists from the start. The user may redefine it.
-    ///
-    /// # Errors
-    /// [`Refusal`], if the name is none.
-    pub fn define_initial_node(&mut self, name: &str, node: Node) -> Result<(), Refusal> {
-        let name = Name::new(name).map_err(|_| Refusal::Full)?;
-        let id = self.define_node(&name, node.clone())?;
-        self.initial_nodes.push((id, node));
-        Ok(())
-    }
-
-    /// Makes an arc between initial objects, which INITIALIZE restores; nothing if one of them does not exist.
-    pub fn connect_initial(&mut self, from: &str, output: u16, to: &str, input: Input) {
-        if let (Some(from), Some(to)) = (self.objects.find(from), self.objects.find(to)) {
-            self.initial_arcs.push((from, output, to, input));
-            self.restore_arcs();
-        }
-    }
-
-    /// Gives an initial structure the definition that it had at the start. Returns false if the object is none.
-    pub fn restore(&mut self, id: ObjectId) -> bool {
-        let Some((_, node)) = self.initial_nodes.iter().find(|(initial, _)| *initial == id) else { return false };
-        if let Some(before) = self.structures.define(id, node.clone()) {
-            self.undefine_all(before.own_members());
-        }
-        true
-    }
-
-    /// Gives all initial structures the definitions that they had at the start.
-    pub fn restore_structures(&mut self) {
-        let ids: Vec<ObjectId> = self.initial_nodes.iter().map(|(id, _)| *id).collect();
-        for id in ids {
-            self.restore(id);
-        }
-    }
-
-    /// INITIALIZE CONNECTIONS: only the arcs that exist from the start are left.
-    pub fn restore_arcs(&mut self) {
-        self.network.retain_arcs(|_, _, _| false);
-        for (from, output, to, input) in &self.initial_arcs {
-            // The arcs of the start are few and lead to inputs that exist.
-            let connected = self.network.connect(*from, *output, *to, *input);
-            debug_assert!(connected.is_ok(), "{connected:?}");
-        }
     }
 
     /// Makes a function instance the definition of a name. Connections to it stay, its own go.
