@@ -53,7 +53,7 @@ fn user_object(name: &Name, memory: &MassMemory) -> Result<Option<ObjectId>, Mes
 pub(super) fn delete(patterns: &[NamePattern], memory: &mut MassMemory, messages: &mut Vec<Message>) {
     for pattern in patterns {
         match pattern {
-            // An initial structure is as it was at the start.
+            // An initial structure is then as it was at the start.
             NamePattern::Name(name) if memory.objects.find(name.as_str()).is_some_and(|id| memory.restore(id)) => {}
             NamePattern::Name(name) => match user_object(name, memory) {
                 Ok(Some(id)) if memory.is_defined(id) => memory.undefine_all(vec![id]),

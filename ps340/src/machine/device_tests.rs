@@ -137,6 +137,9 @@ fn in_command_mode_lines_are_commands_and_errors_appear_on_the_terminal() {
     tell(&mut machine, "SEND 1 TO <1>ELSEWHERE;");
     let expected = format!("{expected}\nE 2 *** Name not found: ELSEWHERE\n@@ NONS");
     assert_eq!(machine.terminal().text(), expected, "the line goes on below what came in between");
+    let mut unfinished = told("SEND CHAR(27) TO <1>ES_TE;");
+    press(&mut unfinished, "command");
+    assert_eq!(unfinished.terminal().text(), "@@", "a sequence that is not finished takes nothing of the prompt");
     press(&mut machine, "local");
     assert_eq!(machine.keyboard_mode(), KeyboardMode::Interactive);
     tell(&mut machine, "SEND 1 TO <1>ELSEWHERE;");

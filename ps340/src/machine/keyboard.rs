@@ -282,11 +282,10 @@ impl Machine {
         match edit {
             Edit::Echo(echo) => self.terminal.feed(&echo),
             Edit::Done(mut line) => {
-                self.terminal.feed(b"\r\n");
+                self.terminal.feed(b"\x18\r\n");
                 self.keyboard.prompted = false;
                 line.push(b'\n');
                 self.interpret(&line);
-                // A command may have changed the mode's line, but only a key changes the mode.
                 self.prompt();
             }
         }
@@ -296,7 +295,8 @@ impl Machine {
     fn prompt(&mut self) {
         if self.keyboard.mode == KeyboardMode::Command {
             self.keyboard.prompted = true;
-            let line = [PROMPT.as_bytes(), self.keyboard.line.as_slice()].concat();
+            // CAN ends a sequence that somebody else has begun on the terminal.
+            let line = [b"\x18", PROMPT.as_bytes(), self.keyboard.line.as_slice()].concat();
             self.terminal.feed(&line);
         }
     }

@@ -53,7 +53,7 @@ pub const FRAMES_PER_SECOND: u64 = 60;
 /// Messages that functions deliver in one step of the machine: a frame, or some input (at least one a firing). What is
 /// left waits for the next step, so that a network that never rests stops neither the display nor the lines. Ours.
 pub const WORK_PER_STEP: u64 = 200_000;
-/// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames; the rest are logged and
+/// Messages of the machine that reach ERROR, WARNING, INFORMATION and the terminal between two frames; the rest are logged and
 /// counted only, so that a message that causes messages ends.
 pub const REPORTS_PER_FRAME: u64 = 1000;
 /// Messages of the machine between two frames that are written to the log of the process one by one.
@@ -422,8 +422,8 @@ impl Machine {
             tracing::info!("{text}");
         }
         self.log.push_back(text.clone());
-        self.show_message(&text);
         if self.reported <= REPORTS_PER_FRAME {
+            self.show_message(&text);
             self.emit(vec![(instance, 1, Value::string(&text))]);
         }
     }

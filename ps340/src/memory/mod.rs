@@ -2,6 +2,7 @@
 
 mod refusal;
 mod system;
+mod initial;
 mod insertion;
 mod rendering;
 
@@ -15,6 +16,7 @@ use crate::{
     port::{Effect, ObjectId},
     structure::{Node, NodeFault, Operation, Structures},
 };
+use initial::InitialStructures;
 use insertion::Insertions;
 use protocol::{Name, Value, command::Input};
 use std::collections::HashSet;
@@ -37,10 +39,7 @@ pub struct MassMemory {
     pub network: Network,
     /// What the network wants of its surroundings, in order.
     pub effects: Vec<Effect>,
-    /// The structures that exist from the start, as they are then.
-    initial_nodes: Vec<(ObjectId, Node)>,
-    /// The arcs that exist from the start.
-    initial_arcs: Vec<(ObjectId, u16, ObjectId, Input)>,
+    initial: InitialStructures,
     /// Settings of the machine.
     pub system: System,
     /// Whether the command at hand comes from a line in configure mode, which may change what is the system's.
@@ -158,52 +157,6 @@ impl MassMemory {
         Ok(id)
     }
 
-    /// Makes an initial structure, which exists from the start. The user may redefine it.
-    ///
-    /// # Errors
-    /// [`Refusal`], if the name is none.
-    pub fn define_initial_node(&mut self, name: &str, node: Node) -> Result<(), Refusal> {
-        let name = Name::new(name).map_err(|_| Refusal::Full)?;
-        let id = self.define_node(&name, node.clone())?;
-        self.initial_nodes.push((id, node));
-        Ok(())
-    }
-
-    /// Makes an arc between initial objects, which INITIALIZE restores; nothing if one of them does not exist.
-    pub fn connect_initial(&mut self, from: &str, output: u16, to: &str, input: Input) {
-        if let (Some(from), Some(to)) = (self.objects.find(from), self.objects.find(to)) {
-            self.initial_arcs.push((from, output, to, input));
-            self.restore_arcs();
-        }
-    }
-
-    /// Gives an initial structure the definition that it had at the start. Returns false if the object is none.
-    pub fn restore(&mut self, id: ObjectId) -> bool {
-        let Some((_, node)) = self.initial_nodes.iter().find(|(initial, _)| *initial == id) else { return false };
-        if let Some(before) = self.structures.define(id, node.clone()) {
-            self.undefine_all(before.own_members());
-        }
-        true
-    }
-
-    /// Gives all initial structures the definitions that they had at the start.
-    pub fn restore_structures(&mut self) {
-        let ids: Vec<ObjectId> = self.initial_nodes.iter().map(|(id, _)| *id).collect();
-        for id in ids {
-            self.restore(id);
-        }
-    }
-
-    /// INITIALIZE CONNECTIONS: only the arcs that exist from the start are left.
-    pub fn restore_arcs(&mut self) {
-        self.network.retain_arcs(|_, _, _| false);
-        for (from, output, to, input) in &self.initial_arcs {
-            // The arcs of the start are few and lead to inputs that exist.
-            let connected = self.network.connect(*from, *output, *to, *input);
-            debug_assert!(connected.is_ok(), "{connected:?}");
-        }
-    }
-
     /// Makes a function instance the definition of a name. Connections to it stay, its own go.
     ///
     /// # Errors
@@ -214,7 +167,7 @@ impl MassMemory {
             return Err(Refusal::Full);
         }
         let id = self.user_object(name)?;
-        if self.objects.is_system(id) {
+        if self.objects.is_system(id) && !self.privileged {
             return Err(Refusal::System(name.clone()));
         }
         let defined = self.network.define(id, row, size);
@@ -309,8 +262,8 @@ impl MassMemory {
         Ok(self.network.function(group).is_none() && self.structures.include(member, group))
     }
 
-    /// INITIALIZE: user objects, all connections, the display list and the working storage go, initial structures are
-    /// restored.
+    /// INITIALIZE: user objects, all connections, the display list and the working storage go, initial
+    /// structures are restored.
     pub fn initialize(&mut self) {
         self.restore_structures();
         for id in self.objects.users() {
@@ -345,6 +298,3 @@ impl MassMemory {
         Ok(id)
     }
 }
-
-#[cfg(test)]
-mod tests;

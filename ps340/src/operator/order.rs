@@ -71,8 +71,10 @@ pub enum Order {
     },
     /// Describes an object.
     Show(String),
-    /// The strokes that the vector screen shows, the first so many.
+    /// The strokes of the latest update, the first so many.
     Strokes(usize),
+    /// The strokes over the picture, the first so many.
+    Overlay(usize),
     /// Counters of the machine.
     Counters,
     /// Labels of dials and keys, lights, message line, mode of the keyboard, switches of the screen.
@@ -180,6 +182,12 @@ pub const ORDERS: &[OrderRow] = &[
         arguments: "[N]",
         summary: "what the latest update drew: x y x y, intensities, red green blue of each stroke, N at most",
         read: |w| Ok(Order::Strokes(w.optional("a number of strokes")?.unwrap_or(STROKES))),
+    },
+    OrderRow {
+        word: "overlay",
+        arguments: "[N]",
+        summary: "the same of what is drawn over the picture: terminal, message line, cursor",
+        read: |w| Ok(Order::Overlay(w.optional("a number of strokes")?.unwrap_or(STROKES))),
     },
     OrderRow { word: "counters", arguments: "", summary: "counters of the machine", read: |_| Ok(Order::Counters) },
     OrderRow {

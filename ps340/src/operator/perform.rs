@@ -4,6 +4,7 @@ use super::{ORDERS, Order, Screen};
 use crate::{
     calligraphic::Beam,
     machine::{Event, Key, Machine, TabletEvent},
+    traversal::Stroke,
 };
 use std::path::Path;
 
@@ -66,7 +67,8 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         Order::Message(n) => return Outcome::Waiting(Wait::Message(frame.saturating_add(*n))),
         Order::Picture { screen, file, size } => return Outcome::Done(picture(machine, *screen, file, *size)),
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
-        Order::Strokes(most) => return Outcome::Done(Ok(strokes(machine, *most))),
+        Order::Strokes(most) => return Outcome::Done(Ok(strokes(&machine.latest_update().strokes, *most))),
+        Order::Overlay(most) => return Outcome::Done(Ok(strokes(machine.overlay(), *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
         Order::Panel => {
             return Outcome::Done(Ok(format!("{}\n{}", machine.panel(), machine.switches())));
@@ -86,8 +88,7 @@ fn help() -> String {
 }
 
 /// The number of strokes, then on each line x and y of start and end, the intensities there, red, green and blue.
-fn strokes(machine: &Machine, most: usize) -> String {
-    let strokes = machine.visible_strokes();
+fn strokes(strokes: &[Stroke], most: usize) -> String {
     let shown = &strokes[..strokes.len().min(most)];
     let mut text = format!("{} strokes", shown.len());
     for stroke in shown {

@@ -86,3 +86,14 @@ fn a_person_works_at_the_terminal_by_orders() {
     assert!(panel.starts_with("key 2: HELLO\n") && panel.contains("keyboard: command"), "{panel}");
     assert_eq!(performed(&mut machine, "mode"), "command");
 }
+
+#[test]
+fn the_cursor_is_an_overlay_and_no_stroke_of_the_structure() {
+    let mut machine = Machine::new(Settings::default());
+    performed(&mut machine, "stylus move 0.5 0");
+    machine.next_frame();
+    assert_eq!(performed(&mut machine, "strokes"), "0 strokes");
+    let overlay = performed(&mut machine, "overlay");
+    assert!(overlay.starts_with("2 strokes\n0.46 0 0.54 0 1 1 1 1 1\n"), "{overlay}");
+    assert_eq!(performed(&mut machine, "overlay 1").lines().count(), 2);
+}

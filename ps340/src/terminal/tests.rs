@@ -132,6 +132,42 @@ fn the_cursor_stays_on_the_screen_and_in_the_region() {
 }
 
 #[test]
+fn a_frame_is_built_from_moves_erasures_and_a_screen_of_e() {
+    // In the way of the usual test of cursor movements: a frame of stars, inside it one of E, inside that nothing.
+    let mut stream = String::from("\x1b#8");
+    for row in 4..=21 {
+        stream += &format!("\x1b[{row};11H\x1b[60X");
+    }
+    stream += "\x1b[H";
+    stream += &"*\x08\x1b[B".repeat(23);
+    stream += "\x1b[24;80H";
+    // At the last column the cursor stays where it is.
+    stream += &"*\x1b[A".repeat(23);
+    stream += "\x1b[H\x1b[79C*\x1b[24;1H*\x1b[1;2H";
+    stream += &"*".repeat(78);
+    stream += "\x1b[24;79H";
+    stream += &"*\x1b[2D".repeat(78);
+    stream += "\x1b[12;30HINSIDE\x1b[5;15r\x1b[?6h\x1b[1;12HTOP\x1b[99;12HBOTTOM";
+    let expected: Vec<String> = (1..=24)
+        .map(|row: usize| {
+            let at = |column: usize| match (row, column) {
+                (1 | 24, _) | (_, 1 | 80) => '*',
+                (4..=21, 11..=70) => ' ',
+                _ => 'E',
+            };
+            let mut line: Vec<char> = (1..=80).map(at).collect();
+            for (text_row, column, text) in [(12, 30, "INSIDE"), (5, 12, "TOP"), (15, 12, "BOTTOM")] {
+                if row == text_row {
+                    line.splice(column - 1..column - 1 + text.len(), text.chars());
+                }
+            }
+            line.into_iter().collect()
+        })
+        .collect();
+    assert_eq!(screen(&stream), expected.join("\n"));
+}
+
+#[test]
 fn tab_stops_are_set_and_cleared() {
     let place = |text: &str| fed(text).cursor().1;
     assert_eq!(place("\t"), 8);
