@@ -276,6 +276,3 @@ impl MassMemory {
         Ok(id)
     }
 }
-
-#[cfg(test)]
-mod tests;
