@@ -106,7 +106,7 @@ impl Structures {
     /// then keeps what it had.
     pub fn accept(&mut self, id: ObjectId, input: Input, value: Value) -> Result<(), NodeFault> {
         let frame = self.frame;
-        let node = self.node_mut(id).ok_or(NodeFault::NoSuchInput { input })?;
+        let node = self.node_mut(id).ok_or(NodeFault::Undefined { input })?;
         let shown = !matches!(node, Node::Variable(_));
         let grown = inputs::accept(node, input, value, frame)?;
         self.grow(id, grown);

@@ -35,7 +35,7 @@ impl Desk {
     fn tell(&mut self, text: &str) -> Vec<String> {
         let mut reader = CommandReader::default();
         reader.push(text.as_bytes());
-        while let Some(read) = reader.next() {
+        for read in reader {
             let command = read.unwrap_or_else(|error| panic!("{error} in {text}")).command;
             self.interpreter.execute(command, &mut self.memory, &mut self.messages);
         }

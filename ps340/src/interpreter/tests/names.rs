@@ -90,3 +90,20 @@ fn references_of_fonts_attributes_and_descendants_are_scoped() {
     let (own, other) = (Some(desk.id("S.Q")), Some(desk.id("OTHER")));
     assert_eq!(polygons.attributes, [own, own, other], "attributes hold until others are named");
 }
+
+#[test]
+fn a_deleted_function_loses_the_arcs_to_it_and_a_deleted_node_keeps_them() {
+    let mut desk = told("A := F:NOP; B := F:NOP; VARIABLE V; CONNECT A<1>:<1>B; CONNECT A<1>:<1>V; DELETE B;");
+    desk.tell("B := F:NOP; CONNECT B<1>:<1>V; SEND 1 TO <1>A;");
+    assert_eq!(desk.delivered().len(), 1, "straight to V, not by B");
+    desk.tell("DELETE V; VARIABLE V; SEND 1 TO <1>A;");
+    assert_eq!(desk.delivered().len(), 1);
+}
+
+#[test]
+fn a_message_for_a_name_without_definition_says_so() {
+    let mut desk = told("A := NIL; DELETE A;");
+    let (id, input) = (desk.id("A"), protocol::command::Input::Append);
+    let fault = desk.memory.accept(id, input, protocol::Value::Integer(1)).unwrap_err();
+    assert_eq!((fault.number(), fault.text("A").as_str()), (2, "Name not found: A, for a message at <append>"));
+}
