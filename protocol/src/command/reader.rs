@@ -247,7 +247,7 @@ fn find(bytes: &[u8], wanted: [u8; 4]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::{print, strategy::commands};
+    use crate::command::{print, strategy::commands, syntax::Object};
     use proptest::prelude::*;
 
     fn read(pieces: &[&[u8]]) -> Vec<Result<Spanned<Command>, CommandError>> {
@@ -383,8 +383,23 @@ mod tests {
             let all = read(&pieces);
             prop_assert_eq!(&all, &read(&[&text]));
             let good: Vec<Command> = all.into_iter().filter_map(Result::ok).map(|spanned| spanned.command).collect();
-            // A structure that is begun just before the bad statement shares its fate only in its members.
-            prop_assert_eq!(good, commands);
+            // A structure that is begun just before the bad statement shares its fate only in its members; what !RESET
+            // finds unfinished before it is dropped, and that is a word without `;`.
+            let unfinished = |at: usize| {
+                let begins = matches!(
+                    commands[at],
+                    Command::Define { object: Object::BeginStructure | Object::BeginFont, .. }
+                );
+                begins && {
+                    let next = commands[at..].iter().find(|c| {
+                        !matches!(c, Command::Define { object: Object::BeginStructure | Object::BeginFont, .. })
+                    });
+                    next == Some(&Command::Reset)
+                }
+            };
+            let expected: Vec<Command> =
+                (0..commands.len()).filter(|at| !unfinished(*at)).map(|at| commands[at].clone()).collect();
+            prop_assert_eq!(good, expected);
         }
 
         #[test]

@@ -106,7 +106,7 @@ impl Structures {
     /// then keeps what it had.
     pub fn accept(&mut self, id: ObjectId, input: Input, value: Value) -> Result<(), NodeFault> {
         let frame = self.frame;
-        let node = self.node_mut(id).ok_or(NodeFault::NoSuchInput { input })?;
+        let node = self.node_mut(id).ok_or(NodeFault::Undefined { input })?;
         // Neither a variable nor the place of the pick box is part of the picture.
         let pick_box = matches!(node, Node::Operate { operation: Operation::PickLocation { .. }, .. });
         let shown = !pick_box && !matches!(node, Node::Variable(_));
