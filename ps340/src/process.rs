@@ -5,7 +5,8 @@ use crate::{
     machine::{PlainText, Settings},
     shell::{Clock, End, Operator, Options, run},
 };
-use clap::Parser;
+use clap::{Parser, Subcommand};
+use protocol::command::reference;
 use std::{
     io::{IsTerminal, Write},
     process::ExitCode,
@@ -24,6 +25,8 @@ use std::{
                                  (e.g. 'debug', 'warn')."
 )]
 struct Arguments {
+    #[command(subcommand)]
+    order: Option<Order>,
     /// Where hosts attach: tcp:HOST:PORT (port 0 takes a free one) or unix:PATH. May be given several times.
     #[arg(long, value_name = "ADDRESS", default_value = "tcp:127.0.0.1:3400")]
     listen: Vec<Address>,
@@ -41,9 +44,47 @@ struct Arguments {
     threads: Option<u16>,
 }
 
+/// What to do instead of running the machine.
+#[derive(Subcommand, Debug)]
+enum Order {
+    /// Print the table of commands, or all about one.
+    Commands {
+        /// A command, such as 'vector_list' or 'set picking'; may be abbreviated.
+        name: Vec<String>,
+    },
+}
+
+/// Prints a text to the standard output; a reader that goes away early is no fault.
+fn print(text: &str) -> ExitCode {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            eprintln!("ps340: {error}");
+            ExitCode::from(1)
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}
+
+/// The table of commands, or the entries of one.
+fn commands(name: &[String]) -> ExitCode {
+    if name.is_empty() {
+        return print(&reference::list());
+    }
+    match reference::find(&name.join(" ")) {
+        Ok(rows) => print(&rows.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
+        Err(error) => {
+            eprintln!("ps340: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
 /// Reads the arguments, runs the machine, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(Order::Commands { name }) = &arguments.order {
+        return commands(name);
+    }
     let filter = tracing_subscriber::EnvFilter::try_from_env("PS340_LOG");
     tracing_subscriber::fmt()
         .with_env_filter(filter.unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("info")))
