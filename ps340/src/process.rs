@@ -24,9 +24,10 @@ use std::{
                                  The environment variable PS340_LOG sets what is logged on standard error \
                                  (e.g. 'debug', 'warn')."
 )]
+#[command(args_conflicts_with_subcommands = true)]
 struct Arguments {
     #[command(subcommand)]
-    order: Option<Order>,
+    subject: Option<Subject>,
     /// Where hosts attach: tcp:HOST:PORT (port 0 takes a free one) or unix:PATH. May be given several times.
     #[arg(long, value_name = "ADDRESS", default_value = "tcp:127.0.0.1:3400")]
     listen: Vec<Address>,
@@ -44,34 +45,29 @@ struct Arguments {
     threads: Option<u16>,
 }
 
-/// What to do instead of running the machine.
+/// What to tell instead of starting the machine.
 #[derive(Subcommand, Debug)]
-enum Order {
-    /// Print the table of commands, or all about one.
+enum Subject {
+    /// Tells about the commands of the language: all in a table, or one in full.
     Commands {
-        /// A command, such as 'vector_list' or 'set picking'; may be abbreviated.
+        /// Which one, such as 'vector_list' or 'set picking'; may be abbreviated.
         name: Vec<String>,
     },
 }
 
-/// Prints a text to the standard output; a reader that goes away early is no fault.
-fn print(text: &str) -> ExitCode {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            eprintln!("ps340: {error}");
-            ExitCode::from(1)
+/// Tells about the commands on standard output; a reader that goes away early is no failure.
+fn tell_commands(name: &[String]) -> ExitCode {
+    let text = if name.is_empty() {
+        Ok(reference::list())
+    } else {
+        let rows = reference::find(&name.join(" "));
+        rows.map(|rows| rows.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+    };
+    match text {
+        Ok(text) => {
+            let _ = std::io::stdout().lock().write_all(text.as_bytes());
+            ExitCode::SUCCESS
         }
-        _ => ExitCode::SUCCESS,
-    }
-}
-
-/// The table of commands, or the entries of one.
-fn commands(name: &[String]) -> ExitCode {
-    if name.is_empty() {
-        return print(&reference::list());
-    }
-    match reference::find(&name.join(" ")) {
-        Ok(rows) => print(&rows.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
         Err(error) => {
             eprintln!("ps340: {error}");
             ExitCode::from(2)
@@ -82,8 +78,8 @@ fn commands(name: &[String]) -> ExitCode {
 /// Reads the arguments, runs the machine, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if let Some(Order::Commands { name }) = &arguments.order {
-        return commands(name);
+    if let Some(Subject::Commands { name }) = &arguments.subject {
+        return tell_commands(name);
     }
     let filter = tracing_subscriber::EnvFilter::try_from_env("PS340_LOG");
     tracing_subscriber::fmt()
