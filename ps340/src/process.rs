@@ -7,6 +7,7 @@ use crate::{
     shell::{Clock, End, Operator, Options, run},
 };
 use clap::{Parser, Subcommand};
+use protocol::command::reference;
 use std::{
     io::{IsTerminal, Write},
     process::ExitCode,
@@ -57,11 +58,25 @@ enum Subject {
         /// Which one, such as ROUTE or F:ROUTE.
         name: Option<String>,
     },
+    /// Tells about the commands of the language: all in a table, or one in full.
+    Commands {
+        /// Which one, such as 'vector_list' or 'set picking'; may be abbreviated.
+        name: Vec<String>,
+    },
 }
 
-/// Tells about the functions on standard output; a reader that goes away early is no failure.
-fn tell_functions(name: Option<&str>) -> ExitCode {
-    match name.map_or_else(|| Ok(page::table()), page::page) {
+/// What a person wants to know; a reader that goes away early is no failure.
+fn tell(subject: &Subject) -> ExitCode {
+    let text = match subject {
+        Subject::Functions { name: None } => Ok(page::table()),
+        Subject::Functions { name: Some(name) } => page::page(name).map_err(|error| error.to_string()),
+        Subject::Commands { name } if name.is_empty() => Ok(reference::list()),
+        Subject::Commands { name } => match reference::find(&name.join(" ")) {
+            Ok(rows) => Ok(rows.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
+            Err(error) => Err(error.to_string()),
+        },
+    };
+    match text {
         Ok(text) => {
             let _ = std::io::stdout().lock().write_all(text.as_bytes());
             ExitCode::SUCCESS
@@ -76,8 +91,8 @@ fn tell_functions(name: Option<&str>) -> ExitCode {
 /// Reads the arguments, runs the machine, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if let Some(Subject::Functions { name }) = &arguments.subject {
-        return tell_functions(name.as_deref());
+    if let Some(subject) = &arguments.subject {
+        return tell(subject);
     }
     let filter = tracing_subscriber::EnvFilter::try_from_env("PS340_LOG");
     tracing_subscriber::fmt()

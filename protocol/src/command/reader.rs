@@ -366,6 +366,11 @@ mod tests {
         assert_eq!(find(&[b'x'; 99], *b";'{!"), None);
     }
 
+    /// Whether a command is printed without `;`.
+    fn begins(command: &Command) -> bool {
+        matches!(command, Command::Define { object: Object::BeginStructure | Object::BeginFont, .. })
+    }
+
     proptest! {
         #[test]
         fn any_split_gives_the_same_commands(
@@ -383,22 +388,15 @@ mod tests {
             let all = read(&pieces);
             prop_assert_eq!(&all, &read(&[&text]));
             let good: Vec<Command> = all.into_iter().filter_map(Result::ok).map(|spanned| spanned.command).collect();
-            // A structure that is begun just before the bad statement shares its fate only in its members; what !RESET
-            // finds unfinished before it is dropped, and that is a word without `;`.
-            let unfinished = |at: usize| {
-                let begins = matches!(
-                    commands[at],
-                    Command::Define { object: Object::BeginStructure | Object::BeginFont, .. }
-                );
-                begins && {
-                    let next = commands[at..].iter().find(|c| {
-                        !matches!(c, Command::Define { object: Object::BeginStructure | Object::BeginFont, .. })
-                    });
-                    next == Some(&Command::Reset)
+            // A structure that is begun just before the bad statement shares its fate only in its members. What !RESET
+            // finds unfinished before it is dropped: the words without `;`.
+            let mut expected: Vec<Command> = Vec::new();
+            for command in commands {
+                while command == Command::Reset && expected.last().is_some_and(begins) {
+                    expected.pop();
                 }
-            };
-            let expected: Vec<Command> =
-                (0..commands.len()).filter(|at| !unfinished(*at)).map(|at| commands[at].clone()).collect();
+                expected.push(command);
+            }
             prop_assert_eq!(good, expected);
         }
 

@@ -22,7 +22,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: &[input("<1>", "real", "hue"), input("<2>", "real", "saturation")],
         routines: &["PSECOL"],
         example: "PAINT := SET COLOR 120,1 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "SET COLOR BLENDING",
@@ -48,7 +47,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: &[input("<1>", "Boolean", "ON or OFF"), input("<1>", "2D vector", "imin, imax")],
         routines: &["PSEINT"],
         example: "SET INTENSITY ON 0.5:1 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "SET CONTRAST",
@@ -82,7 +80,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: SWITCH,
         routines: &["PSEDCL"],
         example: "CLIP := SET DEPTH_CLIPPING ON APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "SET DISPLAYS",
@@ -122,7 +119,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: SWITCH,
         routines: &["PSEPOF"],
         example: "PICKABLE := SET PICKING ON APPLIED TO MENU;",
-        ..PLAIN
     },
     CommandRow {
         name: "SET PICKING IDENTIFIER",
@@ -187,7 +183,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: SWITCH,
         routines: &["PSEBIT"],
         example: "VISIBLE := SET CONDITIONAL_BIT 2 ON APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "SET RATE",
@@ -243,7 +238,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: SWITCH,
         routines: &["PSEPLT"],
         example: "SET PLOTTER ON APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "SET PRIORITY",

@@ -44,7 +44,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: VECTORS,
         routines: &["PVCBEG", "PVCMAX", "PVCLIS", "PVCEND"],
         example: "SQUARE := VECTOR_LIST ITEMIZED N = 5\n  P 0,0  L 1,0  L 1,1 I=0.5  L 0,1  L 0,0;",
-        ..PLAIN
     },
     CommandRow {
         name: "POLYGON",
@@ -112,7 +111,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         ],
         routines: &["PILLUM"],
         example: "SUN := ILLUMINATION 1,1,-1 COLOR 180,0.2,0.9 AMBIENT 0.3;",
-        ..PLAIN
     },
     CommandRow {
         name: "PATTERN",

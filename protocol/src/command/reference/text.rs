@@ -29,7 +29,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         ],
         routines: &["PCHS"],
         example: "TITLE := CHARACTERS -0.9,0.9 STEP 1,0 'It''s a title';",
-        ..PLAIN
     },
     CommandRow {
         name: "LABELS",

@@ -16,7 +16,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: MATRIX_3,
         routines: &["PROTX", "PROTY", "PROTZ"],
         example: "TURN := ROTATE IN Y 30 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "SCALE",
@@ -28,7 +27,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: MATRIX_3,
         routines: &["PSCALE"],
         example: "SCALE BY 2,2,1 -> CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "TRANSLATE",
@@ -40,7 +38,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: &[input("<1>", "3D or 2D vector", "replaces the translation")],
         routines: &["PTRANS"],
         example: "PLACE := TRANSLATE BY 0,-1.5 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "MATRIX_2X2",
@@ -100,6 +97,5 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: &[input("<1>", "4x3 matrix", "replaces the matrix, as F:LOOKAT makes it")],
         routines: &["PLOOKA"],
         example: "LOOK AT 0,0,0 FROM 3,2,-10 UP 0,1,0 APPLIED TO CAR;",
-        ..PLAIN
     },
 ];

@@ -28,7 +28,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: MATRIX_4,
         routines: &["PWINDO"],
         example: "WINDOW X = -10:10 Y = -10:10 FRONT = 0 BACK = 20 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "FIELD_OF_VIEW",
@@ -40,7 +39,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: MATRIX_4,
         routines: &["PFOV"],
         example: "VIEW := FIELD_OF_VIEW 30 FRONT BOUNDARY = 6 BACK BOUNDARY = 14 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "EYE",
@@ -61,7 +59,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: MATRIX_4,
         routines: &["PEYEBK"],
         example: "LEFT_EYE := EYE BACK 30 LEFT 1.5 FROM SCREEN AREA 12 WIDE FRONT = 20 BACK = 50 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "VIEWPORT",
@@ -80,7 +77,6 @@ pub(super) const ROWS: &[CommandRow] = &[
         inputs: LIMITS,
         routines: &["PVIEWP"],
         example: "CORNER := VIEWPORT HORIZONTAL = 0:1 VERTICAL = 0:1 INTENSITY = 0.5:1 APPLIED TO CAR;",
-        ..PLAIN
     },
     CommandRow {
         name: "LOAD VIEWPORT",

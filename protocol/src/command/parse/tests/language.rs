@@ -1,8 +1,13 @@
 //! Facts about the other commands: structures, attributes, conditions, networks, the system.
 
 use super::*;
-use crate::command::syntax::{CharacterOrientation, Comparison, Destination, Rate, Scopes};
+use crate::command::{
+    print,
+    strategy::commands,
+    syntax::{CharacterOrientation, Comparison, Destination, Rate, Scopes},
+};
 use glam::DVec2;
+use proptest::{prelude::*, sample::Index};
 
 fn command(text: &str) -> Command {
     parse(text.as_bytes()).unwrap_or_else(|error| panic!("{text}: {error}"))
@@ -208,8 +213,29 @@ fn every_example_of_the_reference_is_read() {
     ] {
         let mut reader = CommandReader::default();
         reader.push(text);
-        let commands = reader.by_ref().map(|item| item.unwrap_or_else(|error| panic!("{error}"))).count();
+        let commands: Result<Vec<_>, _> = reader.by_ref().collect();
         assert!(!reader.is_unfinished());
-        assert_eq!(commands, count);
+        assert_eq!(commands.map(|commands| commands.len()), Ok(count));
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_damaged_command_is_read_or_its_error_lies_inside(
+        command in commands(),
+        damage in prop::collection::vec((any::<Index>(), prop::sample::select(b" ;,:=<>()[]*/!-'{}0.EPLSNIHT".to_vec())), 1..4),
+        cut in any::<Index>()
+    ) {
+        let mut text = Vec::new();
+        print(&command, &mut text);
+        for (place, byte) in damage {
+            let at = place.index(text.len());
+            text[at] = byte;
+        }
+        text.truncate(cut.index(text.len()) + 1);
+        if let Err(error) = parse(&text) {
+            prop_assert!(error.span.start <= error.span.end && error.span.end <= text.len());
+            prop_assert!(!error.message().is_empty() && error.line >= 1 && error.column >= 1);
+        }
     }
 }
