@@ -238,6 +238,44 @@ fn a_plain_file_is_sent_as_a_host_would() {
 }
 
 #[test]
+fn the_parallel_interface_listens() {
+    use protocol::parallel::{Frame, FrameReader, write_block, write_word};
+    let process = Process::start(&["--listen", "parallel:127.0.0.1:0"]);
+    let (_, address) = process.lines[0].split_once(':').unwrap();
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_nodelay(true).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let mut reader = FrameReader::default();
+    let mut next = |stream: &mut TcpStream| loop {
+        if let Some(frame) = reader.next() {
+            return frame;
+        }
+        let mut buffer = [0; 512];
+        let count = stream.read(&mut buffer).expect("the machine answers");
+        assert!(count > 0);
+        reader.push(&buffer[..count]);
+    };
+    let mut words = |stream: &mut TcpStream, said: &[u16], answer: &[Frame]| {
+        let mut bytes = Vec::new();
+        said.iter().for_each(|word| write_word(*word, &mut bytes));
+        stream.write_all(&bytes).unwrap();
+        answer.iter().for_each(|frame| assert_eq!(next(stream), *frame));
+    };
+    let word = |word: u16| Frame::Word(word);
+    words(&mut stream, &[], &[word(0x3000)]);
+    words(&mut stream, &[0xe000, 0xc000], &[word(0xe000), word(0xc000)]);
+    let text = format!("{ECHO} SEND 'by words' TO <1>E;");
+    words(&mut stream, &[text.len() as u16, 0], &[]);
+    let mut block = Vec::new();
+    write_block(text.as_bytes(), &mut block);
+    stream.write_all(&block).unwrap();
+    words(&mut stream, &[], &[word(0xca00)]);
+    words(&mut stream, &[0x5000], &[word(0x5000)]);
+    let message = Frame::Block(b"by words".into());
+    words(&mut stream, &[80, 0], &[word(0x5100), word(8), message, word(0x5a00)]);
+}
+
+#[test]
 fn what_cannot_be_opened_is_told() {
     let output = Command::new(PS340).args(["--listen", "serial:/nowhere,9600"]).output().unwrap();
     assert_eq!(output.status.code(), Some(1));

@@ -4,6 +4,7 @@ mod counters;
 mod describe;
 mod devices;
 mod host_line;
+mod parallel;
 mod panel;
 
 pub use counters::Counters;
@@ -24,6 +25,7 @@ use crate::{
 };
 use devices::Devices;
 use host_line::HostLine;
+use parallel::{Mailbox, ParallelLine};
 use protocol::{
     Name, Value,
     wire::{MessageForm, MessageWriter},
@@ -53,6 +55,8 @@ pub type Micros = u64;
 pub enum Input {
     /// A host line opens.
     Attach(LineId),
+    /// A host line opens that speaks the words of the parallel interface.
+    AttachParallel(LineId),
     /// Bytes from a host.
     Bytes(LineId, Vec<u8>),
     /// A host line closes.
@@ -83,6 +87,9 @@ pub struct Machine {
     settings: Settings,
     memory: MassMemory,
     lines: BTreeMap<LineId, HostLine>,
+    parallels: BTreeMap<LineId, ParallelLine>,
+    /// Messages for the hosts of `parallels`.
+    mailboxes: BTreeMap<LineId, Mailbox>,
     /// How messages go to each host.
     writers: BTreeMap<LineId, MessageWriter>,
     devices: Devices,
@@ -118,6 +125,8 @@ impl Machine {
             settings,
             memory,
             lines: BTreeMap::new(),
+            parallels: BTreeMap::new(),
+            mailboxes: BTreeMap::new(),
             writers: BTreeMap::new(),
             devices: Devices::default(),
             panel: Panel::default(),
@@ -147,6 +156,12 @@ impl Machine {
                     self.lines.insert(line, HostLine::new(line, self.settings.plain_text));
                     self.writers.insert(line, MessageWriter::default());
                 }
+                Input::AttachParallel(line) => {
+                    let mut bytes = Vec::new();
+                    let parallel = ParallelLine::new(line, self.settings.plain_text, &mut bytes);
+                    self.parallels.insert(line, parallel);
+                    self.outputs.push(Output { line, bytes });
+                }
                 Input::Bytes(line, bytes) => self.receive(line, &bytes),
                 Input::Detach(line) => self.detach(line),
                 Input::Event(event) => self.event(event),
@@ -156,6 +171,7 @@ impl Machine {
         while time_of_frame(self.frame + 1) <= until {
             self.next_frame();
         }
+        self.with_parallels(|parallel, machine, out| parallel.serve_mail(machine, out));
         std::mem::take(&mut self.outputs)
     }
 
@@ -177,6 +193,7 @@ impl Machine {
         let centiseconds = self.frame * 100 / FRAMES_PER_SECOND;
         self.memory.network.advance(self.frame, centiseconds, &mut self.memory.effects);
         self.settle();
+        self.with_parallels(|parallel, machine, out| parallel.frame(machine, out));
         self.update_picture();
         self.settle();
     }
@@ -256,15 +273,44 @@ impl Machine {
     }
 
     fn receive(&mut self, line: LineId, bytes: &[u8]) {
-        let Some(mut host) = self.lines.remove(&line) else { return };
         self.counters.bytes_in += bytes.len() as u64;
-        host.receive(bytes, self);
-        self.lines.insert(line, host);
+        if let Some(mut host) = self.lines.remove(&line) {
+            host.receive(bytes, self);
+            self.lines.insert(line, host);
+        } else if let Some(mut parallel) = self.parallels.remove(&line) {
+            let mut answer = Vec::new();
+            parallel.receive(bytes, self, &mut answer);
+            self.parallels.insert(line, parallel);
+            self.answer(line, answer);
+        }
+    }
+
+    /// Does something with every host on the parallel interface, and sends what it answers.
+    fn with_parallels(&mut self, action: impl Fn(&mut ParallelLine, &mut Machine, &mut Vec<u8>)) {
+        for (line, mut parallel) in std::mem::take(&mut self.parallels) {
+            let mut answer = Vec::new();
+            action(&mut parallel, self, &mut answer);
+            self.parallels.insert(line, parallel);
+            self.answer(line, answer);
+        }
+    }
+
+    fn answer(&mut self, line: LineId, bytes: Vec<u8>) {
+        if !bytes.is_empty() {
+            self.outputs.push(Output { line, bytes });
+        }
+    }
+
+    fn mailbox(&mut self, line: LineId) -> &mut Mailbox {
+        self.mailboxes.entry(line).or_default()
     }
 
     fn detach(&mut self, line: LineId) {
         self.writers.remove(&line);
-        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon()) {
+        self.mailboxes.remove(&line);
+        let host = self.lines.remove(&line).and_then(|mut host| host.abandon());
+        let parallel = self.parallels.remove(&line).and_then(|mut parallel| parallel.abandon());
+        if let Some(open) = host.or(parallel) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
     }
@@ -327,6 +373,7 @@ impl Machine {
             self.to_host.pop_front();
         }
         self.to_host.push_back(message.to_vec());
+        self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
         for (line, writer) in &self.writers {
             let mut bytes = Vec::new();
             let written = if binary && writer.form() == MessageForm::Text {

@@ -3,9 +3,11 @@
 mod fault;
 mod inputs;
 mod node;
+mod physical;
 
 pub use fault::NodeFault;
 pub use node::{Member, Node, Operation};
+pub use physical::{PhysicalFault, VECTOR_WORDS};
 
 use crate::port::ObjectId;
 use protocol::{Value, command::Input};
