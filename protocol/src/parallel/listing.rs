@@ -51,7 +51,8 @@ impl Listing {
                 }
                 Frame::Reset => {
                     raw.push(b'R');
-                    (self.from_host.clear(), self.from_machine.clear());
+                    self.from_host.clear();
+                    self.from_machine.clear();
                     "pulse of the reset line".into()
                 }
                 Frame::Noise(byte) => {
@@ -83,7 +84,7 @@ impl Listing {
     }
 
     fn answer(&mut self, word: u16) -> String {
-        let name = Code::of(word).map_or("", Code::name);
+        let name = Code::of(word).map_or("no command", Code::name);
         let reply = match word & 0x0ff0 {
             0 if Code::of(word) == Some(Code::Reset) => "ready",
             0 => {

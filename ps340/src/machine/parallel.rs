@@ -129,7 +129,7 @@ impl Addresses {
     fn find(&self, address: u32) -> Result<(&Name, usize), Trouble> {
         let (begin, (name, words)) = self.ranges.range(..=address).next_back().ok_or(Trouble::Address)?;
         let offset = address - begin;
-        if offset % 2 != 0 || offset / 2 > *words {
+        if !offset.is_multiple_of(2) || offset / 2 > *words {
             return Err(Trouble::Address);
         }
         Ok((name, (offset / 2) as usize))
@@ -289,7 +289,8 @@ impl ParallelLine {
         let result = match command.code {
             Code::WriteNet => {
                 self.host.receive(&block, machine);
-                Ok(done(command, out))
+                done(command, out);
+                Ok(())
             }
             Code::Lookup => self.look_up(&block, machine).map(|address| {
                 done(command, out);
@@ -376,7 +377,7 @@ fn check_count(code: Code, count: u16) -> Result<(), Trouble> {
     let allowed = match code {
         Code::Lookup => (1..=MAX_LOOKUP).contains(&count.into()),
         Code::ReadNet | Code::WriteNet => (1..=MAX_BLOCK_BYTES).contains(&count.into()),
-        _ => count > 0 && count % 2 == 0,
+        _ => count > 0 && count.is_multiple_of(2),
     };
     if allowed { Ok(()) } else { Err(Trouble::ByteCount) }
 }
