@@ -202,6 +202,9 @@ fn a_capture_is_what_passed_and_plays_again() {
     let status = within_patience("the end", move || process.child.wait().unwrap());
     assert!(status.success());
     assert_eq!(told(&second), (said, String::new(), 1));
+    let before = fs::read(&first).unwrap();
+    let both = Command::new(PS340).args(["--listen", &format!("file:{first}"), "--capture", &first]).output().unwrap();
+    assert_eq!((both.status.code(), fs::read(&first).unwrap() == before), (Some(1), true));
 }
 
 /// The process with a host on its standard streams, at its end.
