@@ -15,6 +15,9 @@ const PS340: &str = env!("CARGO_BIN_EXE_ps340");
 /// How long any single answer may take.
 const PATIENCE: Duration = Duration::from_secs(30);
 
+/// How long the machine may take to see that a terminal was closed; a host that opens it sooner is the same host.
+const PAUSE: Duration = Duration::from_millis(300);
+
 /// A network that answers: what is sent to `<1>E` comes back.
 const ECHO: &str = "E := F:NOP; CONNECT E<1>:<1>HOST_MESSAGE;\n";
 
@@ -96,14 +99,14 @@ fn a_pseudo_terminal_survives_that_its_host_goes_and_comes() {
     for round in 0..3 {
         // Half a command of a host that goes is no part of what the next one says.
         let word = format!("round {round}");
-        std::thread::sleep(Duration::from_millis(100));
+        std::thread::sleep(PAUSE);
         let mut host = ask(open(&path), &format!("SEND '{word}' TO <1>E;"), &word);
         host.write_all(b"SEND 'half").unwrap();
     }
     // All bytes pass as they are, in both directions.
     let odd = b"\x01\x03\x04\x11\x13\x1a\x7f\r\n\xff\\".to_vec();
+    std::thread::sleep(PAUSE);
     let mut host = open(&path);
-    std::thread::sleep(Duration::from_millis(100));
     host.write_all(&[b"SEND '", &odd[..], b"' TO <1>E;"].concat()).unwrap();
     let found = within_patience("the echo", move || read(&mut host, odd.len() + 2, "the echo"));
     assert_eq!(found, b"\x01\x03\x04\x11\x13\x1a\x7f\r\n\xff\\\r\n");
