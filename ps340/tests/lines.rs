@@ -15,9 +15,6 @@ const PS340: &str = env!("CARGO_BIN_EXE_ps340");
 /// How long any single answer may take.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// How long the machine may take to see that a terminal was closed; a host that opens it sooner is the same host.
-const PAUSE: Duration = Duration::from_millis(300);
-
 /// A network that answers: what is sent to `<1>E` comes back.
 const ECHO: &str = "E := F:NOP; CONNECT E<1>:<1>HOST_MESSAGE;\n";
 
@@ -66,6 +63,16 @@ fn within_patience<T: Send + 'static>(what: &str, action: impl FnOnce() -> T + S
     receiver.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("{what} takes too long"))
 }
 
+/// Waits until a capture says so many times that a host has left.
+fn wait_until_left(capture: &str, times: usize) {
+    let begin = Instant::now();
+    let left = || fs::read_to_string(capture).unwrap_or_default().lines().filter(|line| line.ends_with(" -")).count();
+    while left() < times {
+        assert!(begin.elapsed() < PATIENCE, "{} of {times} hosts have left", left());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 fn open(path: &str) -> File {
     OpenOptions::new().read(true).write(true).open(path).expect("the terminal can be opened")
 }
@@ -91,7 +98,9 @@ fn ask<S: Read + Write + Send + 'static>(mut line: S, commands: &str, answer: &s
 
 #[test]
 fn a_pseudo_terminal_survives_that_its_host_goes_and_comes() {
-    let process = Process::start(&["--listen", "pty:"]);
+    let folder = tempfile::tempdir().unwrap();
+    let capture = folder.path().join("capture").display().to_string();
+    let process = Process::start(&["--listen", "pty:", "--capture", &capture]);
     let path = process.place(0).to_string();
     assert!(path.starts_with("/dev/"), "{path}");
     let host = ask(open(&path), &format!("{ECHO} SEND 'first' TO <1>E;"), "first");
@@ -99,13 +108,13 @@ fn a_pseudo_terminal_survives_that_its_host_goes_and_comes() {
     for round in 0..3 {
         // Half a command of a host that goes is no part of what the next one says.
         let word = format!("round {round}");
-        std::thread::sleep(PAUSE);
+        wait_until_left(&capture, round + 1);
         let mut host = ask(open(&path), &format!("SEND '{word}' TO <1>E;"), &word);
         host.write_all(b"SEND 'half").unwrap();
     }
     // All bytes pass as they are, in both directions.
     let odd = b"\x01\x03\x04\x11\x13\x1a\x7f\r\n\xff\\".to_vec();
-    std::thread::sleep(PAUSE);
+    wait_until_left(&capture, 4);
     let mut host = open(&path);
     host.write_all(&[b"SEND '", &odd[..], b"' TO <1>E;"].concat()).unwrap();
     let found = within_patience("the echo", move || read(&mut host, odd.len() + 2, "the echo"));
@@ -181,7 +190,7 @@ fn a_capture_is_what_passed_and_plays_again() {
     let process = Process::start(&["--listen", "pty:", "--capture", &first]);
     let host = ask(open(process.place(0)), &format!("{ECHO} SEND 'one' TO <1>E;"), "one");
     drop(ask(host, "\x160SEND 'two' TO <1>E;\x16\x16", "two"));
-    std::thread::sleep(Duration::from_millis(200));
+    wait_until_left(&first, 1);
     drop(process);
     let told = |path: &str| {
         let mut reader = CaptureReader::default();
@@ -204,7 +213,7 @@ fn a_capture_is_what_passed_and_plays_again() {
     let mut process = Process::start(&["--listen", &format!("file:{first},pace=captured"), "--capture", &second]);
     let status = within_patience("the end", move || process.child.wait().unwrap());
     assert!(status.success());
-    assert_eq!(told(&second), (said, String::new(), 1));
+    assert_eq!(told(&second), (said, "one\r\ntwo\r\n".into(), 1), "it answers as before");
     let before = fs::read(&first).unwrap();
     let both = Command::new(PS340).args(["--listen", &format!("file:{first}"), "--capture", &first]).output().unwrap();
     assert_eq!((both.status.code(), fs::read(&first).unwrap() == before), (Some(1), true));
@@ -246,7 +255,10 @@ fn a_plain_file_is_sent_as_a_host_would() {
 #[test]
 fn the_parallel_interface_listens() {
     use protocol::parallel::{Frame, FrameReader, write_block, write_word};
-    let process = Process::start(&["--listen", "parallel:127.0.0.1:0"]);
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let (first, second) = (file("first"), file("second"));
+    let process = Process::start(&["--listen", "parallel:127.0.0.1:0", "--capture", &first]);
     let (_, address) = process.lines[0].split_once(':').unwrap();
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_nodelay(true).unwrap();
@@ -279,6 +291,14 @@ fn the_parallel_interface_listens() {
     words(&mut stream, &[0x5000], &[word(0x5000)]);
     let message = Frame::Block(b"by words".into());
     words(&mut stream, &[80, 0], &[word(0x5100), word(8), message, word(0x5a00)]);
+    // The words play again.
+    drop(stream);
+    wait_until_left(&first, 1);
+    drop(process);
+    let mut process = Process::start(&["--listen", &format!("file:{first}"), "--capture", &second]);
+    assert!(within_patience("the end", move || process.child.wait().unwrap()).success());
+    let captured = fs::read_to_string(second).unwrap();
+    assert!(captured.contains("D\\x00\\x08by wordsWZ\\x00\n"), "{captured}");
 }
 
 #[test]

@@ -23,6 +23,8 @@ use tokio::{
 
 /// Bytes read from a file at a time.
 const READ_BYTES: usize = 64 << 10;
+/// How the names of hosts on the parallel interface begin, so that a capture tells them from others.
+pub(super) const PARALLEL: &str = "parallel:";
 /// Pieces that are read ahead.
 const READ_AHEAD: usize = 4;
 
@@ -147,9 +149,10 @@ async fn play(
                         None => {
                             let line = LineId::next();
                             lines.insert(record.line, line);
-                            let peer = format!("{peer} line {}", record.line);
-                            let writer = silent_writer();
-                            if !around.attach(line, peer, Interface::Stream, writer).await {
+                            let (kind, interface) = interface(&record.event);
+                            let peer = format!("{kind}{peer} line {}", record.line);
+                            let writer = silent_writer(line, around.clone());
+                            if !around.attach(line, peer, interface, writer).await {
                                 return;
                             }
                             line
@@ -172,5 +175,13 @@ async fn play(
     }
     for line in lines.into_values() {
         around.close(line, None).await;
+    }
+}
+
+/// What a captured line spoke, and how the names of such hosts begin.
+fn interface(opened: &Event) -> (&'static str, Interface) {
+    match opened {
+        Event::Open(peer) if peer.starts_with(PARALLEL) => (PARALLEL, Interface::Parallel),
+        _ => ("", Interface::Stream),
     }
 }
