@@ -23,6 +23,8 @@ use tokio::{
 
 /// Bytes read from a file at a time.
 const READ_BYTES: usize = 64 << 10;
+/// Latest time in a capture that is waited for: a year. Ours.
+const MAX_MICROS: u64 = 365 * 24 * 3600 * 1_000_000;
 /// How the names of hosts on the parallel interface begin, so that a capture tells them from others.
 pub(super) const PARALLEL: &str = "parallel:";
 /// Pieces that are read ahead.
@@ -134,7 +136,7 @@ async fn play(
                 }
             };
             if timed {
-                sleep_until(begin + Duration::from_micros(record.micros)).await;
+                sleep_until(begin + Duration::from_micros(record.micros.min(MAX_MICROS))).await;
             }
             let sent = match record.event {
                 Event::ToHost(_) => continue,

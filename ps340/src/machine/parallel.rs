@@ -99,21 +99,23 @@ impl Mailbox {
 struct Addresses {
     /// By first address: whose, and how many words long.
     ranges: BTreeMap<u32, (Name, u32)>,
+    /// The latest address of each name.
+    latest: BTreeMap<Name, u32>,
     next: u32,
 }
 
 impl Default for Addresses {
     fn default() -> Addresses {
-        Addresses { ranges: BTreeMap::new(), next: FIRST_ADDRESS }
+        Addresses { ranges: BTreeMap::new(), latest: BTreeMap::new(), next: FIRST_ADDRESS }
     }
 }
 
 impl Addresses {
     /// The address of a named object with so many words.
     fn give(&mut self, name: &Name, words: u32) -> Result<u32, Trouble> {
-        let same = self.ranges.iter().find(|(_, range)| range.0 == *name && range.1 == words);
-        if let Some((address, _)) = same {
-            return Ok(*address);
+        let latest = self.latest.get(name).copied();
+        if let Some(address) = latest.filter(|address| self.ranges.get(address).is_some_and(|range| range.1 == words)) {
+            return Ok(address);
         }
         let bytes = words.checked_mul(2).and_then(|bytes| bytes.checked_next_multiple_of(ADDRESS_STEP));
         let next = bytes.and_then(|bytes| self.next.checked_add(bytes.max(ADDRESS_STEP))).ok_or(Trouble::Address)?;
@@ -122,6 +124,7 @@ impl Addresses {
         }
         let address = std::mem::replace(&mut self.next, next);
         self.ranges.insert(address, (name.clone(), words));
+        self.latest.insert(name.clone(), address);
         Ok(address)
     }
 

@@ -215,6 +215,20 @@ fn an_address_follows_its_name_and_not_its_object() {
 }
 
 #[test]
+fn a_list_that_grew_has_a_new_address_beside_the_old_one() {
+    let mut scene = Scene::new(V);
+    let before = scene.address("V");
+    scene.machine.step([Input::Bytes(TEXT, b"SEND V3D(7,8,9) TO <append>V;".into())], 0);
+    let after = scene.address("V");
+    assert_ne!(after, before);
+    assert_eq!((scene.address("V"), scene.address("V")), (after, after));
+    // The first two vectors are the same memory; the third one is only known by the new address.
+    let first = scene.transfer(0x9000, &list(before, 18));
+    assert_eq!(first, scene.transfer(0x9000, &list(after, 18)));
+    assert_eq!(scene.transfer(0x9000, &list(after + 36, 9)).len(), 4);
+}
+
+#[test]
 fn messages_that_nobody_reads_are_limited() {
     let mut scene = Scene::new("");
     let many = "SEND 'm' TO <1>HOST_MESSAGE;".repeat(MAX_MESSAGES + 7);
