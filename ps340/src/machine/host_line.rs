@@ -121,8 +121,9 @@ impl Decoders {
                 machine.report(Message::Diagnostic(text));
             }
             Route::Message => {
+                // A line without a writer has only one form.
                 let writer = machine.writers.get_mut(&self.line);
-                if !writer.is_some_and(|w| w.request(payload)) {
+                if writer.is_some_and(|w| !w.request(payload)) {
                     machine.report(Message::Line("a packet on the route of messages asks for no form".into()));
                 }
             }

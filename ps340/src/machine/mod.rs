@@ -8,6 +8,7 @@ mod dials;
 mod host_line;
 mod initial;
 mod keyboard;
+mod parallel;
 mod panel;
 mod requests;
 mod streams;
@@ -38,6 +39,7 @@ use crate::{
 use devices::Devices;
 use host_line::HostLine;
 use keyboard::Keyboard;
+use parallel::{Mailbox, ParallelLine};
 use protocol::{
     Value,
     wire::{MessageForm, MessageWriter},
@@ -71,6 +73,8 @@ pub type Micros = u64;
 pub enum Input {
     /// A host line opens.
     Attach(LineId),
+    /// A host line opens that speaks the words of the parallel interface.
+    AttachParallel(LineId),
     /// Bytes from a host.
     Bytes(LineId, Vec<u8>),
     /// A host line closes.
@@ -103,6 +107,9 @@ pub struct Machine {
     settings: Settings,
     memory: MassMemory,
     lines: BTreeMap<LineId, HostLine>,
+    parallels: BTreeMap<LineId, ParallelLine>,
+    /// Messages for the hosts of `parallels`.
+    mailboxes: BTreeMap<LineId, Mailbox>,
     /// How messages go to each host.
     writers: BTreeMap<LineId, MessageWriter>,
     devices: Devices,
@@ -138,6 +145,8 @@ impl Machine {
             settings,
             memory: initial_memory(),
             lines: BTreeMap::new(),
+            parallels: BTreeMap::new(),
+            mailboxes: BTreeMap::new(),
             writers: BTreeMap::new(),
             devices: Devices::default(),
             keyboard: Keyboard::default(),
@@ -175,6 +184,12 @@ impl Machine {
                     self.lines.insert(line, HostLine::new(line, self.settings.plain_text));
                     self.writers.insert(line, MessageWriter::default());
                 }
+                Input::AttachParallel(line) => {
+                    let mut bytes = Vec::new();
+                    let parallel = ParallelLine::new(line, self.settings.plain_text, &mut bytes);
+                    self.parallels.insert(line, parallel);
+                    self.outputs.push(Output { line, bytes });
+                }
                 Input::Bytes(line, bytes) => self.receive(line, &bytes),
                 Input::Detach(line) => self.detach(line),
                 Input::Event(event) => self.event(event),
@@ -184,6 +199,7 @@ impl Machine {
         while time_of_frame(self.frame + 1) <= until {
             self.next_frame();
         }
+        self.with_parallels(|parallel, machine, out| parallel.serve_mail(machine, out));
         std::mem::take(&mut self.outputs)
     }
 
@@ -214,6 +230,7 @@ impl Machine {
         self.memory.structures.set_frame(self.frame);
         self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
         self.settle();
+        self.with_parallels(|parallel, machine, out| parallel.frame(machine, out));
         self.update_picture();
         self.settle();
         self.update_overlay();
@@ -313,17 +330,46 @@ impl Machine {
     }
 
     fn receive(&mut self, line: LineId, bytes: &[u8]) {
-        let Some(mut host) = self.lines.remove(&line) else { return };
         self.activity();
         self.counters.bytes_in += bytes.len() as u64;
-        host.receive(bytes, self);
-        self.lines.insert(line, host);
+        if let Some(mut host) = self.lines.remove(&line) {
+            host.receive(bytes, self);
+            self.lines.insert(line, host);
+        } else if let Some(mut parallel) = self.parallels.remove(&line) {
+            let mut answer = Vec::new();
+            parallel.receive(bytes, self, &mut answer);
+            self.parallels.insert(line, parallel);
+            self.answer(line, answer);
+        }
+    }
+
+    /// Does something with every host on the parallel interface, and sends what it answers.
+    fn with_parallels(&mut self, action: impl Fn(&mut ParallelLine, &mut Machine, &mut Vec<u8>)) {
+        for (line, mut parallel) in std::mem::take(&mut self.parallels) {
+            let mut answer = Vec::new();
+            action(&mut parallel, self, &mut answer);
+            self.parallels.insert(line, parallel);
+            self.answer(line, answer);
+        }
+    }
+
+    fn answer(&mut self, line: LineId, bytes: Vec<u8>) {
+        if !bytes.is_empty() {
+            self.outputs.push(Output { line, bytes });
+        }
+    }
+
+    fn mailbox(&mut self, line: LineId) -> &mut Mailbox {
+        self.mailboxes.entry(line).or_default()
     }
 
     fn detach(&mut self, line: LineId) {
         self.writers.remove(&line);
         self.keyboard.detach(line);
-        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory)) {
+        self.mailboxes.remove(&line);
+        let host = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory));
+        let parallel = self.parallels.remove(&line).and_then(|mut parallel| parallel.abandon(&mut self.memory));
+        if let Some(open) = host.or(parallel) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
     }
@@ -391,6 +437,7 @@ impl Machine {
             self.to_host.pop_front();
         }
         self.to_host.push_back(message.to_vec());
+        self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
         for (line, writer) in &self.writers {
             let mut bytes = Vec::new();
             let written = if binary && writer.form() == MessageForm::Text {

@@ -3,6 +3,7 @@
 mod refusal;
 mod system;
 mod initial;
+mod physical;
 mod insertion;
 mod rendering;
 

@@ -5,11 +5,13 @@ mod operation;
 mod fault;
 mod inputs;
 mod copy;
+mod physical;
 
 pub use copy::{CopyFault, copy};
 pub use fault::{NodeFault, RenderingFault};
 pub use node::{Labels, Member, Node, Polygons, Vectors};
 pub use operation::{CONDITIONAL_BITS, Degenerate, MAX_LEVEL, Operation};
+pub use physical::{PhysicalFault, VECTOR_WORDS};
 
 use crate::{
     pattern::{self, PatternFault},
