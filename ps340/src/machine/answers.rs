@@ -4,10 +4,13 @@ use super::Machine;
 use crate::{
     functions::selection::lines,
     interpreter::{Interpreter, Message},
-    port::{Effect, ObjectId},
+    port::{Cause, Effect, Fault, ObjectId},
 };
 use protocol::{Name, Value, command::CommandReader, value::MAX_STRING};
 use std::sync::Arc;
+
+/// Most requests for transformed data that wait for an update; more are lost and reported. Ours.
+const MAX_TRANSFORMS: usize = 1_000;
 
 /// A function that waits for transformed data of the next update.
 #[derive(Clone, Debug)]
@@ -25,6 +28,11 @@ impl Machine {
     /// Answers a function that asks for something. Returns other effects.
     pub(super) fn answer(&mut self, effect: Effect) -> Option<Effect> {
         match effect {
+            Effect::RequestTransform { function, .. } if self.transforms.len() >= MAX_TRANSFORMS => {
+                let name = self.memory.objects.name(function).to_string();
+                let fault = Fault { function: "XFORMDATA", cause: Cause::Flood { input: 1, lost: 1 } };
+                self.report(Message::Function { name, fault });
+            }
             Effect::RequestTransform { function, node, destination, first, count } => {
                 self.transforms.push(TransformRequest { function, node, destination, first, count });
             }
@@ -60,6 +68,10 @@ impl Machine {
     /// Gives a function the data that it asked for, and makes the object that it named.
     pub(super) fn give_data(&mut self, request: TransformRequest, data: Value) {
         let data = match data {
+            // The whole is shared, not copied.
+            Value::Vectors(all) if request.first == 1 && request.count as usize >= all.ends.len() => {
+                Value::Vectors(all)
+            }
             Value::Vectors(all) => Value::Vectors(Arc::new(all.part(request.first, request.count))),
             other => other,
         };
