@@ -89,7 +89,7 @@ pub const fn is_name_character(byte: u8) -> bool {
 /// ```
 ///
 /// # Source
-/// The edit distance of Levenshtein 1966, by the rows of Wagner and Fischer 1974.
+/// The edit distance of Damerau 1964 for strings of which each letter is edited once, by the rows of Wagner and Fischer 1974.
 pub fn nearest<'n>(wanted: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     if wanted.len() > MAX_NAME {
         return None;
@@ -99,18 +99,23 @@ pub fn nearest<'n>(wanted: &str, names: impl IntoIterator<Item = &'n str>) -> Op
     near.filter(|(edits, name)| *edits <= allowed && *edits < name.len()).min_by_key(|near| near.0).map(|near| near.1)
 }
 
-/// How many characters must be changed, added or left out to make one text of the other; case does not count.
+/// How many characters must be changed, added or left out, or neighbours swapped, to make one text of the other; case does
+/// not count.
 fn edits(a: &[u8], b: &[u8]) -> usize {
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.iter().enumerate() {
-            let changed = diagonal + usize::from(!x.eq_ignore_ascii_case(y));
-            diagonal = row[j + 1];
-            row[j + 1] = changed.min(diagonal + 1).min(row[j] + 1);
+    let same = |x: u8, y: u8| x.eq_ignore_ascii_case(&y);
+    let mut before_last = vec![0; b.len() + 1];
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for (i, &x) in a.iter().enumerate() {
+        let mut row = vec![i + 1; b.len() + 1];
+        for (j, &y) in b.iter().enumerate() {
+            row[j + 1] = (last[j] + usize::from(!same(x, y))).min(last[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && same(x, b[j - 1]) && same(a[i - 1], y) {
+                row[j + 1] = row[j + 1].min(before_last[j - 1] + 1);
+            }
         }
+        before_last = std::mem::replace(&mut last, row);
     }
-    row[b.len()]
+    last[b.len()]
 }
 
 impl Borrow<str> for Name {
@@ -142,8 +147,10 @@ mod tests {
     }
 
     #[test]
-    fn edits_count_changes_additions_and_omissions() {
-        for (a, b, distance) in [("", "ABC", 3), ("KITTEN", "SITTING", 3), ("FLAW", "lawn", 2), ("ADD", "add", 0)] {
+    fn edits_count_changes_additions_omissions_and_swaps() {
+        for (a, b, distance) in
+            [("", "ABC", 3), ("KITTEN", "SITTING", 3), ("FLAW", "lawn", 2), ("ADD", "add", 0), ("SNED", "SEND", 1)]
+        {
             assert_eq!(edits(a.as_bytes(), b.as_bytes()), distance);
             assert_eq!(edits(b.as_bytes(), a.as_bytes()), distance);
         }

@@ -99,6 +99,16 @@ fn a_part_of_transformed_vectors_is_given_and_becomes_a_vector_list() {
 }
 
 #[test]
+fn requests_beyond_the_patience_of_the_machine_are_lost_with_a_warning() {
+    let mut machine = told("F := F:XFORMDATA; SEND 'X' TO <2>F;");
+    for _ in 0..1_001 {
+        tell(&mut machine, "SEND 1 TO <1>F;");
+    }
+    let warnings: Vec<_> = machine.log().filter(|line| line.starts_with('W')).collect();
+    assert_eq!(warnings, ["W 12 *** Queue full at <1>F: 1 messages lost"]);
+}
+
+#[test]
 fn an_interpreter_carries_out_commands_that_come_in_pieces() {
     let mut machine = told("C := F:CI(1); P := F:PRINT; CONNECT C<1>:<1>P; CONNECT P<1>:<1>HOST_MESSAGE;");
     tell(&mut machine, "SEND 'A := F:NOP; SEND ''X'' TO <1>MESSAGE_' TO <1>C; SEND 'DISPLAY; NONSENSE;' TO <1>C;");
