@@ -11,7 +11,7 @@ use crate::{
     },
 };
 use glam::{DMat3, DMat4, DVec3};
-use protocol::command::Axis;
+use protocol::{Kind, Value, command::Axis};
 use std::collections::HashMap;
 
 /// A network whose objects have names; unknown names are objects without a function.
