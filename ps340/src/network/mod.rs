@@ -7,7 +7,7 @@
 //! An object is its own place: instances lie in a table by the numbers of the objects, so an arc leads to its end
 //! without a search, and connections to a name outlive what the name stands for.
 //!
-//! A person may look on, see [`instruments`](Network::snapshot): counters, a trace of messages, breaks, single
+//! A person may look on, see [`Network::snapshot`]: counters, a trace of messages, breaks, single
 //! firings. Nothing of it costs anything while nobody does.
 //!
 //! Used: the execution model of the manuals. Modelled: queues, constants, faults, re-instancing. Not modelled:
@@ -28,9 +28,15 @@ mod clock_tests;
 #[cfg(test)]
 mod contract;
 #[cfg(test)]
+mod extreme_tests;
+#[cfg(test)]
+mod spring_tests;
+#[cfg(test)]
 mod stress;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod watch_tests;
 
 pub use arcs::{Destination, MAX_ARCS};
 pub use instruments::{Activity, TRACE_LINES, TRACED_BYTES, Trace, Traced};
