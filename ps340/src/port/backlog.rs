@@ -51,7 +51,7 @@ impl Backlog {
     /// Moves a message to the end, and lends a queue if there is none yet.
     ///
     /// - Returns false if the queue is full, or there is no number for one more queue; the message stays.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn push(&mut self, lent: &mut Lent, message: &mut Value) -> bool {
         if *lent == Lent::NOTHING {
             let Some(number) = self.free.pop().or_else(|| self.more()) else { return false };
@@ -68,12 +68,16 @@ impl Backlog {
     /// Moves the message that came first to a place; the queue comes back when it is empty.
     ///
     /// - Returns false if there is no message.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn pop(&mut self, lent: &mut Lent, to: &mut Value) -> bool {
         let Some(ring) = self.queues.get_mut(lent.0 as usize) else { return false };
         ring.pop(to);
         if ring.length == 0 {
-            self.take_back(lent);
+            if ring.places.len() > KEPT_PLACES {
+                *ring = Ring::default();
+            }
+            self.free.push(lent.0);
+            *lent = Lent::NOTHING;
         }
         true
     }
@@ -118,7 +122,7 @@ impl Backlog {
 }
 
 impl Ring {
-    #[inline]
+    #[inline(always)]
     fn push(&mut self, message: &mut Value) {
         if self.length == self.places.len() {
             self.grow();
@@ -129,7 +133,7 @@ impl Ring {
     }
 
     /// Moves the first message, which must be there, to a place.
-    #[inline]
+    #[inline(always)]
     fn pop(&mut self, to: &mut Value) {
         place::shift(&mut self.places[self.first], to);
         self.first = (self.first + 1) & (self.places.len() - 1);
