@@ -75,7 +75,8 @@ pub struct Network {
     ready: Ready,
     /// The clocks, in the order of their instancing.
     clocks: Vec<ObjectId>,
-    outbox: Outbox,
+    /// None while it is in use, and before the first firing.
+    outbox: Option<Box<Outbox>>,
     /// Bytes of the strings that wait at inputs or are remembered.
     string_bytes: usize,
     /// Messages lost at each input that ever lost one.
@@ -114,7 +115,7 @@ impl Network {
             outside: BTreeMap::new(),
             ready: Ready::new(),
             clocks: Vec::new(),
-            outbox: Outbox::new(),
+            outbox: None,
             string_bytes: 0,
             lost: BTreeMap::new(),
             counters: Counters { firings: 0, deliveries: 0, lost: 0 },

@@ -79,12 +79,12 @@ impl Network {
     ///
     /// - Returns which it was; none if none is ready.
     pub fn step_one(&mut self, effects: &mut Vec<Effect>) -> Option<ObjectId> {
-        let mut outbox = std::mem::take(&mut self.outbox);
+        let mut outbox = self.outbox.take().unwrap_or_default();
         let first = self.next_ready();
         if let Some(object) = first {
             observed!(self.fire(object, &mut outbox, effects));
         }
-        self.outbox = outbox;
+        self.outbox = Some(outbox);
         self.hold();
         first
     }
@@ -109,7 +109,7 @@ impl Network {
 
     fn run_observed<O: Observer>(&mut self, budget: u64, effects: &mut Vec<Effect>, observer: &mut O) -> Ran {
         let before = self.counters.firings;
-        let mut outbox = std::mem::take(&mut self.outbox);
+        let mut outbox = self.outbox.take().unwrap_or_default();
         let (mut work, mut stopped) = (0, None);
         while work < budget {
             let Some(object) = self.next_ready() else { break };
@@ -121,7 +121,7 @@ impl Network {
             }
             work += self.fire(object, &mut outbox, effects, observer);
         }
-        self.outbox = outbox;
+        self.outbox = Some(outbox);
         Ran { firings: self.counters.firings - before, work, idle: self.ready.is_empty(), stopped }
     }
 
@@ -140,7 +140,7 @@ impl Network {
     }
 
     fn advance_clocks<O: Observer>(&mut self, elapsed: &Elapsed, effects: &mut Vec<Effect>, observer: &mut O) {
-        let mut outbox = std::mem::take(&mut self.outbox);
+        let mut outbox = self.outbox.take().unwrap_or_default();
         for i in 0..self.clocks.len() {
             let object = self.clocks[i];
             let instance = &self.instances[object.index()];
@@ -162,7 +162,7 @@ impl Network {
             }
             self.deliver_results(object, &mut outbox, effects, observer);
         }
-        self.outbox = outbox;
+        self.outbox = Some(outbox);
     }
 
     /// Fires an instance once; returns the work done.
@@ -251,7 +251,7 @@ impl Network {
             (*output, self.instances[object.index()].sole, has_more, matches!(message, Value::String(_)))
         {
             self.deliver(Some(from), arc, message, effects, observer);
-            outbox.clear();
+            outbox.note_delivery();
             return 1;
         }
         let mut work = self.distribute(from, message, effects, observer);

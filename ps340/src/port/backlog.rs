@@ -51,7 +51,7 @@ impl Backlog {
     /// Moves a message to the end, and lends a queue if there is none yet.
     ///
     /// - Returns false if the queue is full, or there is no number for one more queue; the message stays.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn push(&mut self, lent: &mut Lent, message: &mut Value) -> bool {
         if *lent == Lent::NOTHING {
             let Some(number) = self.free.pop().or_else(|| self.more()) else { return false };
@@ -65,17 +65,21 @@ impl Backlog {
         true
     }
 
-    /// Moves the message that came first to a place; the queue comes back when it is empty.
+    /// Moves the message that came first to a place. A queue that is empty comes back.
     ///
     /// - Returns false if there is no message.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn pop(&mut self, lent: &mut Lent, to: &mut Value) -> bool {
-        let Some(ring) = self.queues.get_mut(lent.0 as usize) else { return false };
-        ring.pop(to);
-        if ring.length == 0 {
-            self.take_back(lent);
+        match self.queues.get_mut(lent.0 as usize) {
+            Some(ring) if ring.length > 0 => {
+                ring.pop(to);
+                true
+            }
+            _ => {
+                self.take_back(lent);
+                false
+            }
         }
-        true
     }
 
     /// Moves the message that came last to a place, if there is one; the others go with the queue.
@@ -97,7 +101,7 @@ impl Backlog {
     }
 
     /// Takes a queue back, with whatever is in it.
-    #[inline]
+    #[inline(never)]
     pub(super) fn take_back(&mut self, lent: &mut Lent) {
         if let Some(ring) = self.queues.get_mut(lent.0 as usize) {
             if ring.length > 0 || ring.places.len() > KEPT_PLACES {
@@ -118,7 +122,7 @@ impl Backlog {
 }
 
 impl Ring {
-    #[inline]
+    #[inline(always)]
     fn push(&mut self, message: &mut Value) {
         if self.length == self.places.len() {
             self.grow();
@@ -129,7 +133,7 @@ impl Ring {
     }
 
     /// Moves the first message, which must be there, to a place.
-    #[inline]
+    #[inline(always)]
     fn pop(&mut self, to: &mut Value) {
         place::shift(&mut self.places[self.first], to);
         self.first = (self.first + 1) & (self.places.len() - 1);
@@ -169,6 +173,8 @@ mod tests {
         for i in 0..3 {
             assert!(backlog.pop(&mut a, &mut place) && place == Value::Integer(i));
         }
+        assert_eq!(backlog.lent(), 1, "it comes back when it is asked in vain");
+        assert!(!backlog.pop(&mut a, &mut place));
         assert_eq!((a, backlog.lent()), (Lent::NOTHING, 0));
         backlog.push(&mut b, &mut Value::Integer(5));
         backlog.push(&mut a, &mut Value::Integer(6));

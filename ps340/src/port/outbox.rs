@@ -76,6 +76,12 @@ impl Outbox {
         &mut self.more
     }
 
+    /// Notes that the only result was moved on.
+    #[inline(always)]
+    pub fn note_delivery(&mut self) {
+        self.filled = false;
+    }
+
     /// Forgets all results.
     #[inline]
     pub fn clear(&mut self) {
