@@ -408,3 +408,13 @@ fn every_kind_of_object_is_described() {
         assert_eq!(machine.describe(name).as_deref(), Some(expected));
     }
 }
+
+#[test]
+fn an_initial_structure_that_is_restored_has_no_prefix() {
+    let mut machine = told("PREFIX PICK_LOCATION WITH SCALE BY 2; DELETE PICK_LOCATION;");
+    assert!(errors(&machine).is_empty(), "{:?}", errors(&machine));
+    tell(&mut machine, "SEND V2D(0.1,0.1) TO <2>PICK_LOCATION;");
+    assert!(errors(&machine).is_empty(), "it takes the size of the pick box again: {:?}", errors(&machine));
+    tell(&mut machine, "REMOVE PREFIX OF PICK_LOCATION;");
+    assert_eq!(errors(&machine), ["E 4 *** PICK_LOCATION is a name without a prefix"]);
+}

@@ -34,9 +34,8 @@ impl MassMemory {
     /// Gives an initial structure the definition that it had at the start. Returns false if the object is none.
     pub fn restore(&mut self, id: ObjectId) -> bool {
         let Some((_, node)) = self.initial.nodes.iter().find(|(initial, _)| *initial == id) else { return false };
-        if let Some(before) = self.structures.define(id, node.clone()) {
-            self.undefine_all(before.own_members());
-        }
+        let node = node.clone();
+        self.replace(id, |structures| (structures.define(id, node), Vec::new()));
         true
     }
 
