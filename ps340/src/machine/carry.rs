@@ -7,7 +7,7 @@ use super::{
 use crate::{
     interpreter::Message,
     memory::Refusal,
-    port::{Effect, FileName, ObjectId},
+    port::{Cause, Effect, Fault, FileName, ObjectId},
     structure::Node,
     terminal::Ink,
 };
@@ -25,11 +25,11 @@ impl Machine {
             Effect::RequestTransform { function, node, destination, first, count } => {
                 let request = TransformRequest { function, node, destination, first, count };
                 let room = self.waiting.add_transform(request);
-                self.refuse_without(room);
+                self.lose_without(room, function, "XFORMDATA");
             }
             Effect::RequestPick { function, at, coordinates, frames } => {
                 let room = self.waiting.add_pick(Pick { function, at, coordinates, frames });
-                self.refuse_without(room);
+                self.lose_without(room, function, "PICK");
             }
             Effect::RequestWriteBack { node } => self.waiting.add_write_back(node),
             Effect::Fetch { function, name } => self.fetch(function, &name),
@@ -82,10 +82,12 @@ impl Machine {
         }
     }
 
-    fn refuse_without(&mut self, room: bool) {
+    /// A request for which there was no room is lost, and reported as of a full queue.
+    fn lose_without(&mut self, room: bool, function: ObjectId, row: &'static str) {
         if !room {
-            self.messages
-                .push(Message::Range { name: None, text: "too many requests wait for the next update".into() });
+            let fault = Fault { function: row, cause: Cause::Flood { input: 1, lost: 1 } };
+            let name = self.memory.objects.name(function).to_string();
+            self.messages.push(Message::Function { name, fault });
         }
     }
 

@@ -20,7 +20,7 @@ use protocol::{
 use std::sync::Arc;
 
 /// Requests of one kind that wait for an update; more are refused. Ours.
-const MAX_WAITING: usize = 10_000;
+const MAX_WAITING: usize = 1_000;
 
 /// Requests that wait for the next update.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@ use super::{
     Destination, MAX_STRING_BYTES, Network,
     observe::{Nobody, Observer, Outcome, Source},
 };
-use crate::port::{Arrival, Backlog, Cause, Effect, Elapsed, Fault, Firing, ObjectId, Outbox, Port, Problem};
+use crate::port::{Arrival, Backlog, Cause, Effect, Elapsed, Fault, Firing, KindSet, ObjectId, Outbox, Port, Problem};
 use protocol::{Kind, Value, command::Input};
 
 /// Hundredths of a second in one tick of the system clock.
@@ -323,7 +323,7 @@ impl Network {
         if !port.accepts(kind) {
             return self.refuse(to.object, Cause::Kind { input: place as u16 + 1, kind }, effects);
         }
-        let arrival = if kind == Kind::String || (self.string_bytes > 0 && !port.is_active()) {
+        let arrival = if KindSet::HEAVY.contains(kind) || (self.string_bytes > 0 && !port.is_active()) {
             arrive_with_strings(port, message, &mut self.backlog, &mut self.string_bytes)
         } else {
             port.arrive(message, &mut self.backlog)

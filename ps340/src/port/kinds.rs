@@ -20,6 +20,8 @@ impl KindSet {
     pub const NUMBER: KindSet = KindSet::of(&[Kind::Integer, Kind::Real]);
     /// Strings.
     pub const STRING: KindSet = KindSet::of(&[Kind::String]);
+    /// Kinds whose values are as large as the user makes them; the network keeps an account of their bytes.
+    pub const HEAVY: KindSet = KindSet::of(&[Kind::String, Kind::Vectors, Kind::Pick, Kind::Label]);
     /// 2D vectors.
     pub const VECTOR2: KindSet = KindSet::of(&[Kind::Vector2]);
     /// 3D vectors.
