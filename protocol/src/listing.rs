@@ -4,7 +4,7 @@ use crate::{
     command::{BinaryDecoder, CommandReader},
     raster,
     record::{BinaryError, Witness},
-    wire::{Frame, FrameDecoder, MessageForm, PacketForm, Route, count_header, long_header},
+    wire::{ESCAPE, Frame, FrameDecoder, MessageForm, PacketForm, Route, read_six_bit},
 };
 use std::{
     fmt::{self, Write},
@@ -83,74 +83,93 @@ impl<W: Write> Rows<'_, W> {
                 self.commands(text, commands);
             }
             Frame::Noise { bytes, reason } => self.field(0, bytes, format_args!("dropped: {reason}")),
-            Frame::Packet { form, route, payload } => {
-                self.header(form, route, payload.len());
-                let at = form.overhead().0;
-                match route {
-                    Route::Text => {
-                        self.text(at, payload);
-                        self.commands(payload, commands);
-                    }
-                    Route::Binary => self.records(at, payload, |body, place, fields| {
-                        let command = binary.record(body, place, fields)?;
-                        Ok(command.map(|command| command.to_string()))
-                    }),
-                    Route::Raster => self.records(at, payload, |body, place, fields| {
-                        raster::record(body, place, fields)?;
-                        Ok(None)
-                    }),
-                    Route::Message => {
-                        self.text(at, payload);
-                        if let Some(form) = MessageForm::requested(payload) {
-                            let wish = if form == MessageForm::Text { "text" } else { "packets" };
-                            self.note(format_args!("if it is from the host: messages as {wish}"));
-                        }
-                    }
-                    Route::Terminal | Route::Other(_) => self.text(at, payload),
-                }
+            Frame::Empty(bytes) => {
+                self.field(0, bytes, format_args!("SYN SYN, empty escape packet: the end of the one before"))
+            }
+            Frame::Packet { form, route, payload, raw } => {
+                let body = Body::new(form, payload, raw);
+                self.header(form, route, &raw[..body.at(0)], payload.len());
+                self.body(route, &body, commands, binary);
                 if form == PacketForm::Long {
-                    let check = crc32fast::hash(payload).to_le_bytes();
-                    self.field(at + payload.len(), &check, format_args!("check of the payload"));
+                    let end = body.at(payload.len());
+                    self.field(end, &raw[end..], format_args!("check of the payload"));
                 }
             }
         }
     }
 
-    fn header(&mut self, form: PacketForm, route: Route, length: usize) {
-        // The header says nothing that form, route and length do not; so it is written again.
+    fn body(&mut self, route: Route, body: &Body<'_>, commands: &mut CommandReader, binary: &mut BinaryDecoder) {
+        let mut six_bit = Vec::new();
+        let whole = body.raw(0..body.payload.len());
+        let mut command = |body: &[u8], place: &mut usize, fields: &mut Fields| {
+            let command = binary.record(body, place, fields)?;
+            Ok(command.map(|command| command.to_string()))
+        };
+        let raster = |body: &[u8], place: &mut usize, fields: &mut Fields| {
+            raster::record(body, place, fields)?;
+            Ok(None)
+        };
+        match route {
+            Route::Binary => self.records(body, &mut command),
+            Route::Raster => self.records(body, raster),
+            Route::SixBitBinary | Route::SixBitRaster => {
+                self.text(body.at(0), whole);
+                match read_six_bit(body.payload, &mut six_bit) {
+                    Ok(()) if route == Route::SixBitBinary => self.records(&Body::unseen(&six_bit), &mut command),
+                    Ok(()) => self.records(&Body::unseen(&six_bit), raster),
+                    Err(error) => self.note(format_args!("error: {error}")),
+                }
+            }
+            Route::Text => {
+                self.text(body.at(0), whole);
+                self.commands(body.payload, commands);
+            }
+            Route::Message => {
+                self.text(body.at(0), whole);
+                if let Some(form) = MessageForm::requested(body.payload) {
+                    let wish = if form == MessageForm::Text { "text" } else { "packets" };
+                    self.note(format_args!("if it is from the host: messages as {wish}"));
+                }
+            }
+            Route::Channel(_) | Route::Terminal | Route::Diagnostic | Route::Other(_) => self.text(body.at(0), whole),
+        }
+    }
+
+    fn header(&mut self, form: PacketForm, route: Route, bytes: &[u8], length: usize) {
         let route_row = format!("route '{}': {}", route.code().escape_ascii(), route.word());
         match form {
             PacketForm::Long => {
-                let bytes = long_header(route, length);
                 self.field(0, &bytes[..1], format_args!("GS, start of a long packet"));
                 self.field(1, &bytes[1..2], format_args!("{route_row}"));
                 self.field(2, &bytes[2..6], format_args!("length of the payload: {length}"));
                 self.field(6, &bytes[6..], format_args!("check of the header"));
             }
             PacketForm::Count => {
-                let bytes = count_header(route, length);
                 self.field(0, &bytes[..1], format_args!("FS, start of a count packet"));
                 self.field(1, &bytes[1..3], format_args!("count of route and data: {}", length + 1));
                 self.field(3, &bytes[3..], format_args!("{route_row}"));
             }
+            PacketForm::Escape => {
+                self.field(0, &bytes[..1], format_args!("SYN, start of an escape packet"));
+                self.field(1, &bytes[1..], format_args!("{route_row}"));
+            }
         }
     }
 
-    /// The records of a packet body at `at`.
+    /// The records of a packet body.
     fn records(
         &mut self,
-        at: usize,
-        body: &[u8],
+        body: &Body<'_>,
         mut record: impl FnMut(&[u8], &mut usize, &mut Fields) -> Result<Option<String>, BinaryError>,
     ) {
         let mut place = 0;
-        while place < body.len() {
+        while place < body.payload.len() {
             let mut fields = Fields { rows: Vec::new(), end: place };
             let start = place;
-            let result = record(body, &mut place, &mut fields);
+            let result = record(body.payload, &mut place, &mut fields);
             // A record that stays is read again, without the list that the decoder gave up.
             for (span, meaning) in fields.rows.into_iter().filter(|_| place > start) {
-                self.field(at + span.start, &body[span], format_args!("{meaning}"));
+                self.body_field(body, span, &meaning);
             }
             match result {
                 Ok(Some(command)) => self.note(format_args!("command: {}", shorten(&command))),
@@ -159,10 +178,18 @@ impl<W: Write> Rows<'_, W> {
                     self.note(format_args!("error: {error}"));
                     let read = fields.end.max(start);
                     if place > read {
-                        self.field(at + read, &body[read..place], format_args!("not read"));
+                        self.body_field(body, read..place, "not read");
                     }
                 }
             }
+        }
+    }
+
+    /// A field of a body: its bytes in the stream, or only its meaning if it does not stand there.
+    fn body_field(&mut self, body: &Body<'_>, span: Range<usize>, meaning: &str) {
+        match body.seen {
+            Seen::Nowhere => self.note(format_args!("{meaning}")),
+            _ => self.field(body.at(span.start), body.raw(span), format_args!("{meaning}")),
         }
     }
 
@@ -216,6 +243,61 @@ impl<W: Write> Rows<'_, W> {
     }
 }
 
+/// The data of a packet, and where each byte of it stands in the stream.
+struct Body<'a> {
+    payload: &'a [u8],
+    packet: &'a [u8],
+    seen: Seen,
+}
+
+/// Where the bytes of a body stand in its packet.
+enum Seen {
+    /// One behind the other from here on.
+    From(usize),
+    /// Each with its escape character, if it has one, at these places; the last one is the end.
+    At(Vec<usize>),
+    /// Nowhere: they were decoded.
+    Nowhere,
+}
+
+impl<'a> Body<'a> {
+    fn new(form: PacketForm, payload: &'a [u8], packet: &'a [u8]) -> Body<'a> {
+        let seen = match form {
+            PacketForm::Count | PacketForm::Long => Seen::From(form.overhead().0),
+            PacketForm::Escape => {
+                let mut places = Vec::with_capacity(payload.len() + 2);
+                let mut at = 1; // behind the start byte: the route, then the data
+                while at < packet.len() {
+                    places.push(at);
+                    at += if packet[at] == ESCAPE { 2 } else { 1 };
+                }
+                places.push(packet.len());
+                Seen::At(places.split_off(1))
+            }
+        };
+        Body { payload, packet, seen }
+    }
+
+    /// Bytes that do not stand in the stream.
+    fn unseen(payload: &'a [u8]) -> Body<'a> {
+        Body { payload, packet: &[], seen: Seen::Nowhere }
+    }
+
+    /// The place of byte `index` of the data in its packet; that of its end for their number.
+    fn at(&self, index: usize) -> usize {
+        match &self.seen {
+            Seen::From(start) => start + index,
+            Seen::At(places) => places.get(index).copied().unwrap_or(self.packet.len()),
+            Seen::Nowhere => 0,
+        }
+    }
+
+    /// The bytes of the stream that are a piece of the data.
+    fn raw(&self, span: Range<usize>) -> &'a [u8] {
+        &self.packet[self.at(span.start)..self.at(span.end)]
+    }
+}
+
 /// Collects the fields of a record.
 struct Fields {
     rows: Vec<(Range<usize>, String)>,
@@ -241,7 +323,9 @@ mod tests {
     use super::*;
     use crate::{
         command::{Command, parse, strategy::commands},
-        wire::{write_commands, write_count_packet, write_packet},
+        wire::{
+            DataForm, Sending, write_commands, write_commands_as, write_count_packet, write_escape_packet, write_packet,
+        },
     };
     use proptest::prelude::*;
 
@@ -285,7 +369,10 @@ mod tests {
         write_packet(Route::Binary, &[0x11, 1, 0], &mut stream).unwrap();
         write_packet(Route::Message, b"P", &mut stream).unwrap();
         write_count_packet(Route::Raster, &[1, 9, 9, 9, 77], &mut stream).unwrap();
-        stream.extend([29, b'0', 9, 0]);
+        write_escape_packet(Route::Binary, &[0x40, 1, 0, 22, 0x40, 1, 0, b'A'], &mut stream).unwrap();
+        write_packet(Route::SixBitBinary, b"@040@~", &mut stream).unwrap();
+        write_packet(Route::SixBitRaster, b"p", &mut stream).unwrap();
+        stream.extend([0x16, 0x10, b'0', 0x10, b'X', 0x16, 29, b'0', 9, 0]);
         let listing = list(&stream);
         assert_eq!(bytes_of(&listing), stream);
         for part in ["not read", "messages as packets", "the stream ends inside a packet", "SEND 'a' TO <1>B;"] {
@@ -296,9 +383,12 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(100))]
         #[test]
-        fn the_rows_show_the_stream_byte_by_byte(commands in prop::collection::vec(commands(), 0..5), noise in any::<[u8; 9]>()) {
+        fn the_rows_show_the_stream_byte_by_byte(
+            commands in prop::collection::vec(commands(), 0..5), noise in any::<[u8; 9]>(),
+            packets in prop::sample::select(PacketForm::ALL.to_vec()), data in prop::sample::select(DataForm::ALL.to_vec())
+        ) {
             let mut stream = Vec::new();
-            write_commands(&commands, &mut stream).unwrap();
+            write_commands_as(Sending { packets: packets.0, data: data.0 }, &commands, &mut stream).unwrap();
             stream.extend(noise);
             let listing = list(&stream);
             if listing.contains(" bytes more") || listing.contains(" more\n") {

@@ -6,7 +6,10 @@ use protocol::{
     command::{Command, binary::Opcode, parse},
     listing::Listing,
     raster::{LookupEntry, RasterCommand, RasterOpcode, Run},
-    wire::{MessageForm, MessageWriter, Route, write_commands, write_count_packet, write_packet, write_raster},
+    wire::{
+        DataForm, MessageForm, MessageWriter, PacketForm, Route, Sending, write_commands, write_commands_as,
+        write_count_packet, write_escape_packet, write_packet, write_raster,
+    },
 };
 use std::{fs, path::PathBuf};
 
@@ -81,6 +84,20 @@ fn stream(name: &str) -> Option<Vec<u8>> {
         "text" => out.extend_from_slice(b"DISPLAY WORLD;\r\n"),
         "count packet" => write_count_packet(Route::Text, b"REMOVE A;", &mut out).expect("it is short"),
         "long packet" => write_packet(Route::Text, b"REMOVE A;", &mut out).expect("it is short"),
+        "escape packet" => {
+            write_escape_packet(Route::Text, b"REMOVE A;\x16", &mut out).expect("it is short");
+            write_commands_as(
+                Sending { packets: PacketForm::Escape, data: DataForm::EightBit },
+                [&parse(b"SEND FIX(22) TO <1>A;").expect("it is a command")],
+                &mut out,
+            )
+            .expect("it is short");
+        }
+        "6-bit" => {
+            let sending = Sending { packets: PacketForm::Count, data: DataForm::SixBit };
+            let commands = ["DISPLAY A;", "SEND 0.5 TO <1>B;"].map(|text| parse(text.as_bytes()).expect(text));
+            write_commands_as(sending, &commands, &mut out).expect("they are short");
+        }
         "messages as text" => {
             MessageWriter::default().write(b"1V 0.25,-0.125", &mut out).expect("it is short");
         }
@@ -152,6 +169,14 @@ fn the_dumps_in_the_document_are_what_the_code_produces() {
     }
     for (name, _) in COMMANDS {
         assert!(names.iter().any(|shown| shown == name), "the dump {name} is not in the document");
+    }
+    for (route, word) in Route::KNOWN {
+        let row = if matches!(route, Route::Channel(_)) {
+            "| `3` to `7` |".into()
+        } else {
+            format!("| `{}` |", char::from(route.code()))
+        };
+        assert!(expected.contains(&row), "the table of routes lacks {word}");
     }
     for opcode in Opcode::ALL {
         let row = format!("opcode: {}\n", opcode.word());

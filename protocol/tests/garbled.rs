@@ -10,29 +10,35 @@ use protocol::{
     command::{print, strategy::commands},
     listing::Listing,
     raster::{LookupEntry, RasterCommand, Run},
-    wire::{MessageForm, MessageReader, Route, write_commands, write_count_packet, write_packet, write_raster},
+    wire::{
+        DataForm, MessageForm, MessageReader, PacketForm, Route, Sending, write_commands_as, write_count_packet,
+        write_escape_packet, write_packet, write_raster_as,
+    },
 };
 
 /// A good stream of text, binary commands and raster records.
 fn streams() -> impl Strategy<Value = Vec<u8>> {
-    prop::collection::vec((commands(), 0..5_u8), 1..6).prop_map(|parts| {
+    let sending = (select(PacketForm::ALL.to_vec()), select(DataForm::ALL.to_vec()))
+        .prop_map(|(packets, data)| Sending { packets: packets.0, data: data.0 });
+    prop::collection::vec((commands(), 0..6_u8, sending), 1..6).prop_map(|parts| {
         let mut stream = Vec::new();
-        for (command, kind) in &parts {
+        for (command, kind, sending) in &parts {
             let mut text = Vec::new();
             print(command, &mut text);
             match kind {
                 // Outside packets the start bytes cannot stand in a text.
-                0 => stream.extend(text.iter().filter(|b| !matches!(b, 28 | 29))),
+                0 => stream.extend(text.iter().filter(|b| !matches!(b, 22 | 28 | 29))),
                 1 => write_packet(Route::Text, &text, &mut stream).expect("it is short"),
                 2 => text.chunks(1000).for_each(|text| {
                     write_count_packet(Route::Text, text, &mut stream).expect("it is short");
                 }),
-                3 => write_commands([command], &mut stream).expect("it is short"),
+                3 => write_escape_packet(Route::Text, &text, &mut stream).expect("it is short"),
+                4 => write_commands_as(*sending, [command], &mut stream).expect("it is short"),
                 _ => {
                     let runs = text.iter().map(|b| Run { count: u16::from(*b), color: [*b; 3] }).collect();
                     let entries = vec![LookupEntry { count: 1, color: [1, 2, 3] }];
                     let commands = [RasterCommand::Runs(runs), RasterCommand::LookupTable { index: 9, entries }];
-                    write_raster(&commands, &mut stream).expect("it is short");
+                    write_raster_as(*sending, &commands, &mut stream).expect("it is short");
                 }
             }
         }

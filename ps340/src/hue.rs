@@ -34,9 +34,42 @@ pub fn rgb(hue: f32, saturation: f32) -> [f32; 3] {
     }
 }
 
+/// Hue and saturation of a colour that [`rgb`] made.
+///
+/// - Returns degrees 0..360 (0 for white) and 0..=1.
+pub fn hue_saturation([red, green, blue]: [f32; 3]) -> [f32; 2] {
+    let saturation = 1.0 - red.min(green).min(blue);
+    if saturation <= 0.0 {
+        return [0.0, 0.0];
+    }
+    let part = |c: f32| (c - (1.0 - saturation)) / saturation;
+    let sixths = if red >= 1.0 {
+        if green > blue { part(green) } else { -part(blue) }
+    } else if green >= 1.0 {
+        if blue > red { 2.0 + part(blue) } else { 2.0 - part(red) }
+    } else if red > green {
+        4.0 + part(red)
+    } else {
+        4.0 - part(green)
+    };
+    [(sixths * 60.0 + 120.0).rem_euclid(360.0), saturation]
+}
+
 #[cfg(test)]
 mod tests {
-    use super::rgb;
+    use super::{hue_saturation, rgb};
+
+    #[test]
+    fn hue_and_saturation_come_back() {
+        for hue in 0..360 {
+            for saturation in [0.25, 0.5, 1.0] {
+                let [h, s] = hue_saturation(rgb(hue as f32, saturation));
+                let off = (h - hue as f32).abs();
+                assert!(off.min(360.0 - off) < 1e-3 && (s - saturation).abs() < 1e-6, "{hue} {saturation}: {h} {s}");
+            }
+        }
+        assert_eq!(hue_saturation([1.0; 3]), [0.0, 0.0]);
+    }
 
     #[test]
     fn the_six_corners_of_the_circle_are_pure_primaries_and_their_sums() {

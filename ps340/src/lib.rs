@@ -4,6 +4,8 @@
 
 pub mod hue;
 pub mod matrices;
+pub mod curve;
+pub mod pattern;
 pub mod port;
 pub mod functions;
 pub mod network;

@@ -1,8 +1,8 @@
 //! Frames out of a stream of bytes: text, packets, and noise.
 
 use super::packet::{
-    COUNT_BIAS, COUNT_RADIX, COUNT_START, LONG_HEADER, LONG_START, LONG_TRAILER, MAX_PAYLOAD, PacketForm, Route,
-    header_check,
+    COUNT_BIAS, COUNT_RADIX, COUNT_START, ESCAPE, ESCAPE_START, LONG_HEADER, LONG_START, LONG_TRAILER,
+    MAX_ESCAPE_STREAM, MAX_PAYLOAD, PacketForm, Route, header_check, unescape,
 };
 use std::ops::Range;
 
@@ -22,7 +22,11 @@ pub enum Frame<'a> {
         route: Route,
         /// Its data.
         payload: &'a [u8],
+        /// All its bytes as they stand in the stream.
+        raw: &'a [u8],
     },
+    /// An escape packet without a route: it ends the one before it, and says nothing itself.
+    Empty(&'a [u8]),
     /// Bytes that are dropped.
     Noise {
         /// The bytes.
@@ -36,8 +40,8 @@ impl Frame<'_> {
     /// How many bytes of the stream the frame takes.
     pub fn stream_length(&self) -> usize {
         match self {
-            Frame::Text(bytes) | Frame::Noise { bytes, .. } => bytes.len(),
-            Frame::Packet { form, payload, .. } => payload.len() + form.overhead().0 + form.overhead().1,
+            Frame::Text(bytes) | Frame::Empty(bytes) | Frame::Noise { bytes, .. } => bytes.len(),
+            Frame::Packet { raw, .. } => raw.len(),
         }
     }
 }
@@ -54,6 +58,12 @@ pub enum NoiseReason {
     /// A long packet whose payload does not agree with its check; all of it is dropped.
     #[error("the payload of a long packet does not agree with its check")]
     BadPayload,
+    /// An escape start byte with the start byte of another packet behind it.
+    #[error("no route follows the start byte of an escape packet")]
+    NoRoute,
+    /// An escape packet that does not end.
+    #[error("an escape packet is longer than {MAX_ESCAPE_STREAM} bytes")]
+    TooLong,
     /// The stream ended inside a packet.
     #[error("the stream ends inside a packet")]
     Truncated,
@@ -80,7 +90,8 @@ pub struct Counters {
 /// [`next_frame`](Self::next_frame) until it gives none. [`feed`](Self::feed) does the same for bytes that lie elsewhere.
 ///
 /// A packet with a bad header is one byte of noise, and the search goes on at the next byte; a count packet has no check,
-/// so noise that looks like one swallows up to 4 KiB. Each byte is looked at a constant number of times.
+/// so noise that looks like one swallows up to 4 KiB, and noise that looks like an escape packet swallows what is there
+/// up to the next start byte. Each byte is looked at a constant number of times.
 #[derive(Clone, Debug)]
 pub struct FrameDecoder {
     buffer: Vec<u8>,
@@ -88,14 +99,29 @@ pub struct FrameDecoder {
     end: usize,
     /// Bytes from `start` on that the packet there needs in all, if that is known.
     needed: usize,
-    count_packets: bool,
+    /// How far the escape packet at `start` was looked through for its end.
+    scan: Scan,
+    /// Route and data of the latest escape packet.
+    unescaped: Vec<u8>,
+    historical: bool,
     counters: Counters,
+}
+
+/// How much of an escape packet, from its start byte on, is known to hold no end.
+#[derive(Clone, Copy, Debug, Default)]
+struct Scan {
+    bytes: usize,
+    /// The next byte stands behind an escape character.
+    escaped: bool,
 }
 
 /// What stands at the start of the buffer.
 enum Step {
     Text(usize),
     Packet(PacketForm, Route, Range<usize>, usize),
+    /// The length of an escape packet, up to the start byte that ends it.
+    Escaped(usize),
+    Empty,
     Noise(usize, NoiseReason),
     /// A packet of which bytes are missing; how many it has if that is known, or else 0.
     Wait(usize),
@@ -108,16 +134,18 @@ impl Default for FrameDecoder {
             start: 0,
             end: 0,
             needed: 0,
-            count_packets: true,
+            scan: Scan::default(),
+            unescaped: Vec::new(),
+            historical: true,
             counters: Counters::default(),
         }
     }
 }
 
 impl FrameDecoder {
-    /// A decoder that takes count start bytes for text.
+    /// A decoder that takes the start bytes of count and escape packets for text.
     pub fn long_packets_only() -> Self {
-        FrameDecoder { count_packets: false, ..FrameDecoder::default() }
+        FrameDecoder { historical: false, ..FrameDecoder::default() }
     }
 
     /// Room for more bytes of the stream, at least 256 KiB. Take all frames out first, or the buffer grows.
@@ -149,7 +177,7 @@ impl FrameDecoder {
         if self.start == self.end {
             return None;
         }
-        let step = look(&self.buffer[self.start..self.end], self.count_packets);
+        let step = look(&self.buffer[self.start..self.end], self.historical, &mut self.scan);
         self.take(step)
     }
 
@@ -162,6 +190,22 @@ impl FrameDecoder {
                 self.needed = needed;
                 return None;
             }
+            Step::Escaped(length) => {
+                self.start += length;
+                self.scan = Scan::default();
+                self.counters.packets += 1;
+                self.counters.packet_bytes += length as u64;
+                let raw = &self.buffer[at..at + length];
+                self.unescaped.clear();
+                unescape(&raw[1..], &mut self.unescaped);
+                let (route, payload) = self.unescaped.split_first()?;
+                Frame::Packet { form: PacketForm::Escape, route: Route::from(*route), payload, raw }
+            }
+            Step::Empty => {
+                self.start += 2;
+                self.counters.packet_bytes += 2;
+                Frame::Empty(&self.buffer[at..at + 2])
+            }
             Step::Text(length) => {
                 self.start += length;
                 self.counters.text_bytes += length as u64;
@@ -169,6 +213,7 @@ impl FrameDecoder {
             }
             Step::Noise(length, reason) => {
                 self.start += length;
+                self.scan = Scan::default();
                 self.counters.noise_bytes += length as u64;
                 self.counters.dropped_packets += u64::from(reason == NoiseReason::BadPayload);
                 Frame::Noise { bytes: &self.buffer[at..at + length], reason }
@@ -177,7 +222,8 @@ impl FrameDecoder {
                 self.start += length;
                 self.counters.packets += 1;
                 self.counters.packet_bytes += length as u64;
-                Frame::Packet { form, route, payload: &self.buffer[at + payload.start..at + payload.end] }
+                let raw = &self.buffer[at..at + length];
+                Frame::Packet { form, route, payload: &raw[payload], raw }
             }
         })
     }
@@ -217,12 +263,35 @@ impl FrameDecoder {
 }
 
 /// What stands at the start of `bytes`, which are not empty.
-fn look(bytes: &[u8], count_packets: bool) -> Step {
+fn look(bytes: &[u8], historical: bool, scan: &mut Scan) -> Step {
     match bytes[0] {
         LONG_START => look_long(bytes),
-        COUNT_START if count_packets => look_count(bytes),
-        _ => Step::Text(find_start(bytes, if count_packets { COUNT_START } else { LONG_START })),
+        COUNT_START if historical => look_count(bytes),
+        ESCAPE_START if historical => look_escape(bytes, scan),
+        _ => Step::Text(find_start(bytes, historical)),
     }
+}
+
+fn look_escape(bytes: &[u8], scan: &mut Scan) -> Step {
+    match bytes.get(1) {
+        None => return Step::Wait(0),
+        Some(&ESCAPE_START) => return Step::Empty,
+        Some(&COUNT_START | &LONG_START) => return Step::Noise(1, NoiseReason::NoRoute),
+        Some(_) => {}
+    }
+    let limit = bytes.len().min(MAX_ESCAPE_STREAM + 1);
+    for (at, &byte) in bytes[..limit].iter().enumerate().skip(scan.bytes.max(1)) {
+        if std::mem::take(&mut scan.escaped) {
+            continue;
+        }
+        match byte {
+            ESCAPE => scan.escaped = true,
+            ESCAPE_START | COUNT_START | LONG_START => return Step::Escaped(at),
+            _ => {}
+        }
+    }
+    scan.bytes = limit;
+    if limit > MAX_ESCAPE_STREAM { Step::Noise(limit, NoiseReason::TooLong) } else { Step::Wait(0) }
 }
 
 fn look_long(bytes: &[u8]) -> Step {
@@ -262,10 +331,12 @@ fn look_count(bytes: &[u8]) -> Step {
     Step::Packet(PacketForm::Count, Route::from(bytes[3]), 4..total, total)
 }
 
-/// The number of bytes before the first start byte; `other` is the one beside the long one.
-fn find_start(bytes: &[u8], other: u8) -> usize {
+/// The number of bytes before the first start byte.
+fn find_start(bytes: &[u8], historical: bool) -> usize {
     const BLOCK: usize = 32;
-    let is_start = |b: u8| (b == LONG_START) | (b == other);
+    // Without historical packets the other two are the long one again.
+    let (count, escape) = if historical { (COUNT_START, ESCAPE_START) } else { (LONG_START, LONG_START) };
+    let is_start = |b: u8| (b == LONG_START) | (b == count) | (b == escape);
     let clear = bytes.chunks_exact(BLOCK).take_while(|block| !block.iter().fold(false, |any, &b| any | is_start(b)));
     let skipped = clear.count() * BLOCK;
     let rest = &bytes[skipped..];

@@ -136,7 +136,7 @@ impl MessageReader {
         decoder.feed(bytes, |frame| match frame {
             Frame::Text(text) => lines.push(text),
             Frame::Packet { route: Route::Message, payload, .. } => lines.ready.push_back(Ok(payload.to_vec())),
-            Frame::Packet { .. } => {}
+            Frame::Packet { .. } | Frame::Empty(_) => {}
             // In what is left of the text form a start byte is a character like any other.
             Frame::Noise { bytes, reason: NoiseReason::BadHeader | NoiseReason::BadCount } => lines.push(bytes),
             Frame::Noise { reason, .. } => lines.ready.push_back(Err(MessageError::Lost(reason))),

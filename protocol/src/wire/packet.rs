@@ -11,6 +11,14 @@ pub const COUNT_RADIX: usize = 64;
 /// Most data bytes in a count packet, after the route byte. \[U\]
 pub const MAX_COUNT_DATA: usize = COUNT_RADIX * COUNT_RADIX - 2;
 
+/// Start byte of an escape packet: SYN, control-V. It also ends the escape packet before it. \[U\]
+pub const ESCAPE_START: u8 = 22;
+/// Escape character of escape packets: DLE, control-P. The byte after it is data, whatever it is. \[U\]
+pub const ESCAPE: u8 = 16;
+/// Most bytes of an escape packet in the stream: its start byte, then route and [`MAX_PAYLOAD`] bytes of data, each behind
+/// an escape character. Ours.
+pub const MAX_ESCAPE_STREAM: usize = 3 + 2 * MAX_PAYLOAD;
+
 /// Start byte of a long packet: GS. Ours.
 pub const LONG_START: u8 = 29;
 /// Bytes of a long packet before its payload: start, route, length (4), check of the header (2). Ours.
@@ -21,19 +29,26 @@ pub const LONG_TRAILER: usize = 4;
 pub const MAX_PAYLOAD: usize = MAX_RECORD;
 
 /// Which kind of packet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PacketForm {
     /// The historical one: start byte, two count characters, route, data.
     Count,
+    /// The other historical one: start byte, route, data, up to the next start byte.
+    Escape,
     /// Ours: checked, and up to [`MAX_PAYLOAD`] long.
     Long,
 }
 
 impl PacketForm {
-    /// Bytes before and after the payload.
+    /// The forms with their words.
+    pub const ALL: [(PacketForm, &str); 3] =
+        [(PacketForm::Count, "count"), (PacketForm::Escape, "escape"), (PacketForm::Long, "long")];
+
+    /// Bytes before and after the payload; the route byte of an escape packet may be escaped and take one more.
     pub const fn overhead(self) -> (usize, usize) {
         match self {
             PacketForm::Count => (4, 0),
+            PacketForm::Escape => (2, 0),
             PacketForm::Long => (LONG_HEADER, LONG_TRAILER),
         }
     }
@@ -46,24 +61,41 @@ pub enum Route {
     Text,
     /// `1`: binary commands for the interpreter. The byte is \[M\], the records are ours.
     Binary,
+    /// `2`: binary commands in the 6-bit form. The byte is \[M\], the characters are ours.
+    SixBitBinary,
+    /// `3` to `7`: a channel of the site, 3 to 7, which leaves the initial instance CHANNEL of that number. The bytes
+    /// are \[U\], the instances are ours.
+    Channel(u8),
+    /// `8`: raster records in the 6-bit form. \[U\]
+    SixBitRaster,
     /// `9`: raster records, 8-bit. The byte is \[U\], the records are ours.
     Raster,
     /// `=`: messages to the host, and from the host their form. \[U\]
     Message,
     /// `>`: text for the terminal emulator. \[U\]
     Terminal,
-    /// Any other byte: nobody reads it yet.
+    /// `?`: a text for the log of the machine. The byte is \[U\].
+    Diagnostic,
+    /// Any other byte: nobody reads it.
     Other(u8),
 }
 
 impl Route {
     /// The routes that have a meaning, with the word for listings.
-    pub const KNOWN: [(Route, &str); 5] = [
+    pub const KNOWN: [(Route, &str); 13] = [
         (Route::Text, "command text"),
         (Route::Binary, "binary commands"),
+        (Route::SixBitBinary, "binary commands, 6-bit"),
+        (Route::Channel(3), "channel 3"),
+        (Route::Channel(4), "channel 4"),
+        (Route::Channel(5), "channel 5"),
+        (Route::Channel(6), "channel 6"),
+        (Route::Channel(7), "channel 7"),
+        (Route::SixBitRaster, "raster, 6-bit"),
         (Route::Raster, "raster"),
         (Route::Message, "messages"),
         (Route::Terminal, "terminal emulator"),
+        (Route::Diagnostic, "diagnostic"),
     ];
 
     /// The routing byte.
@@ -71,10 +103,23 @@ impl Route {
         match self {
             Route::Text => b'0',
             Route::Binary => b'1',
+            Route::SixBitBinary => b'2',
+            Route::Channel(number) => b'0'.wrapping_add(number),
+            Route::SixBitRaster => b'8',
             Route::Raster => b'9',
             Route::Message => b'=',
             Route::Terminal => b'>',
+            Route::Diagnostic => b'?',
             Route::Other(code) => code,
+        }
+    }
+
+    /// The same readers, with their data in the 6-bit form; none if they have no such form.
+    pub const fn six_bit(self) -> Option<Route> {
+        match self {
+            Route::Binary => Some(Route::SixBitBinary),
+            Route::Raster => Some(Route::SixBitRaster),
+            _ => None,
         }
     }
 
@@ -114,6 +159,18 @@ pub fn long_header(route: Route, length: usize) -> [u8; LONG_HEADER] {
     header
 }
 
+/// Appends a packet of any form.
+///
+/// # Errors
+/// Data longer than the form allows: [`MAX_COUNT_DATA`] or [`MAX_PAYLOAD`].
+pub fn write_packet_as(form: PacketForm, route: Route, data: &[u8], out: &mut Vec<u8>) -> Result<(), EncodeError> {
+    match form {
+        PacketForm::Count => write_count_packet(route, data, out),
+        PacketForm::Escape => write_escape_packet(route, data, out),
+        PacketForm::Long => write_packet(route, data, out),
+    }
+}
+
 /// Appends a count packet.
 ///
 /// # Errors
@@ -130,6 +187,40 @@ pub fn count_header(route: Route, length: usize) -> [u8; 4] {
     let count = length + 1; // the route byte counts
     let characters = [count / COUNT_RADIX, count % COUNT_RADIX].map(|digit| COUNT_BIAS + digit as u8);
     [COUNT_START, characters[0], characters[1], route.code()]
+}
+
+/// Appends an escape packet and the empty one that ends it.
+///
+/// # Errors
+/// Data longer than [`MAX_PAYLOAD`].
+pub fn write_escape_packet(route: Route, data: &[u8], out: &mut Vec<u8>) -> Result<(), EncodeError> {
+    within("the data of an escape packet", data.len(), MAX_PAYLOAD)?;
+    out.reserve(5 + data.len());
+    out.push(ESCAPE_START);
+    for &byte in [route.code()].iter().chain(data) {
+        if is_escaped(byte) {
+            out.push(ESCAPE);
+        }
+        out.push(byte);
+    }
+    out.extend_from_slice(&[ESCAPE_START; 2]);
+    Ok(())
+}
+
+/// Whether a byte stands in an escape packet behind the escape character only.
+pub const fn is_escaped(byte: u8) -> bool {
+    matches!(byte, ESCAPE_START | ESCAPE | COUNT_START | LONG_START)
+}
+
+/// Appends what an escape packet, from its route on, says without its escape characters.
+pub fn unescape(escaped: &[u8], out: &mut Vec<u8>) {
+    let mut rest = escaped;
+    while let Some(at) = rest.iter().position(|byte| *byte == ESCAPE) {
+        out.extend_from_slice(&rest[..at]);
+        out.extend(rest.get(at + 1));
+        rest = rest.get(at + 2..).unwrap_or_default();
+    }
+    out.extend_from_slice(rest);
 }
 
 /// The check of the first six bytes of a long packet: CRC-16 with polynomial 0x1021 and start value 0xFFFF, bits from the
@@ -159,7 +250,7 @@ mod tests {
             assert_eq!(Route::from(code).code(), code);
         }
         assert_eq!(Route::from(b'1'), Route::Binary);
-        assert_eq!(Route::from(b'7'), Route::Other(b'7'));
+        assert_eq!((Route::from(b'7'), Route::from(b':')), (Route::Channel(7), Route::Other(b':')));
     }
 
     #[test]
@@ -170,5 +261,13 @@ mod tests {
         assert!(write_count_packet(Route::Text, &[0; MAX_COUNT_DATA], &mut out).is_ok());
         assert!(write_count_packet(Route::Text, &[0; MAX_COUNT_DATA + 1], &mut out).is_err());
         assert!(write_packet(Route::Text, &vec![0; MAX_PAYLOAD + 1], &mut out).is_err());
+    }
+
+    #[test]
+    fn escape_packets_escape_what_would_end_them() {
+        let mut out = Vec::new();
+        write_escape_packet(Route::Text, &[b'a', 22, 16, 28, 29, 17], &mut out).unwrap();
+        assert_eq!(out, [22, b'0', b'a', 16, 22, 16, 16, 16, 28, 16, 29, 17, 22, 22]);
+        assert!(write_escape_packet(Route::Text, &vec![0; MAX_PAYLOAD + 1], &mut out).is_err());
     }
 }

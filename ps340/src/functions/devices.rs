@@ -82,6 +82,14 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
     FunctionRow {
+        name: "CHANNEL",
+        summary: "data of a packet that the host sent on route 3 to 7, one string a packet",
+        source: Source::uncertain("the routes are believed to be channels of the site; the instances are ours"),
+        outputs: &["string"],
+        family: Family::Device,
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
         name: "DLABEL",
         summary: "eight characters over a dial",
         source: CONFIRMED,
@@ -230,6 +238,7 @@ pub fn initial() -> impl Iterator<Item = Initial> {
     ROWS.iter().flat_map(|function| {
         let devices = match (function.family, function.name) {
             (Family::Device, "FLABEL") => 0..=12,
+            (Family::Device, "CHANNEL") => 3..=7,
             (Family::Device, _) => 1..=8,
             _ => return vec![Initial { name: function.name.into(), function, device: None }],
         };

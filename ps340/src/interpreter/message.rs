@@ -50,6 +50,8 @@ pub enum Message {
     Update(Trouble),
     /// W 12: bytes on a line that were not a packet.
     Line(String),
+    /// I 13: a packet on the diagnostic route.
+    Diagnostic(String),
     /// W 30 to 33, E 550 to 558: a raster operation.
     Raster(crate::raster::RasterFault),
 }
@@ -61,6 +63,7 @@ impl Message {
             Message::Redefined(_) | Message::Line(_) => Class::Warning,
             Message::Function { fault, .. } if fault.class() == 'W' => Class::Warning,
             Message::Raster(fault) if fault.is_warning() => Class::Warning,
+            Message::Diagnostic(_) => Class::Information,
             _ => Class::Error,
         }
     }
@@ -77,6 +80,7 @@ impl Message {
             Message::Refused(Refusal::Full) | Message::Update(_) => 8,
             Message::Refused(_) => 9,
             Message::Line(_) => 12,
+            Message::Diagnostic(_) => 13,
             Message::Raster(fault) => fault.number(),
         }
     }
@@ -104,6 +108,7 @@ impl std::fmt::Display for Message {
             Message::Refused(refusal) => write!(f, "{refusal}"),
             Message::Update(trouble) => write!(f, "Picture incomplete: {trouble}"),
             Message::Line(text) => f.write_str(text),
+            Message::Diagnostic(text) => write!(f, "Host says: {text}"),
             Message::Raster(fault) => write!(f, "{fault}"),
         }
     }

@@ -4,10 +4,15 @@ use super::Machine;
 use crate::interpreter::{Interpreter, Message};
 use crate::line::LineId;
 use protocol::{
+    Value,
     command::{BinaryDecoder, CommandReader},
     raster,
-    wire::{Frame, FrameDecoder, Route},
+    value::MAX_STRING,
+    wire::{Frame, FrameDecoder, Route, read_six_bit},
 };
+
+/// Characters of a diagnostic packet that are shown.
+const DIAGNOSTIC_CHARACTERS: usize = 240;
 
 /// Who gets text that arrives outside packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -18,6 +23,9 @@ pub enum PlainText {
     /// The terminal emulator, as the standard configuration of the machine did.
     Terminal,
 }
+
+/// The instances of the routes `0` to `9`; only 3 to 7 are channels of the site.
+const CHANNELS: [&str; 10] = ["", "", "", "CHANNEL3", "CHANNEL4", "CHANNEL5", "CHANNEL6", "CHANNEL7", "", ""];
 
 /// What the machine keeps for each host.
 #[derive(Debug)]
@@ -70,25 +78,52 @@ impl Decoders {
                 PlainText::Commands => self.commands(text, machine),
                 PlainText::Terminal => machine.panel.type_text(text),
             },
-            Frame::Packet { route, payload, .. } => match route {
-                Route::Text => self.commands(payload, machine),
-                Route::Binary => self.binary(payload, machine),
-                Route::Raster => raster_records(payload, machine),
-                Route::Terminal => machine.panel.type_text(payload),
-                Route::Message => {
-                    let writer = machine.writers.get_mut(&self.line);
-                    if !writer.is_some_and(|w| w.request(payload)) {
-                        machine.report(Message::Line("a packet on the route of messages asks for no form".into()));
-                    }
-                }
-                Route::Other(code) => {
-                    let route = char::from(code).escape_default();
-                    machine.report(Message::Line(format!("nobody reads packets on route '{route}'")));
-                }
-            },
+            Frame::Packet { route, payload, .. } => self.packet(route, payload, machine),
+            Frame::Empty(_) => {}
             Frame::Noise { bytes, reason } => {
                 machine.counters.noise += bytes.len() as u64;
                 machine.report(Message::Line(format!("{} bytes dropped: {reason}", bytes.len())));
+            }
+        }
+    }
+
+    fn packet(&mut self, route: Route, payload: &[u8], machine: &mut Machine) {
+        match route {
+            Route::Text => self.commands(payload, machine),
+            Route::Binary => self.binary(payload, machine),
+            Route::Raster => raster_records(payload, machine),
+            Route::SixBitBinary | Route::SixBitRaster => {
+                let mut records = Vec::new();
+                match read_six_bit(payload, &mut records) {
+                    Ok(()) if route == Route::SixBitBinary => self.binary(&records, machine),
+                    Ok(()) => raster_records(&records, machine),
+                    Err(error) => machine.report(Message::Line(format!("a 6-bit packet is dropped: {error}"))),
+                }
+            }
+            Route::Channel(number) => {
+                if payload.len() > MAX_STRING {
+                    let text =
+                        format!("{} bytes for CHANNEL{number}, more than {MAX_STRING}, are dropped", payload.len());
+                    return machine.report(Message::Line(text));
+                }
+                machine.emit(vec![(CHANNELS[usize::from(number) % 10], 1, Value::string(payload))]);
+                machine.carry_effects();
+                machine.settle();
+            }
+            Route::Terminal => machine.panel.type_text(payload),
+            Route::Diagnostic => {
+                let text: String = payload.escape_ascii().map(char::from).take(DIAGNOSTIC_CHARACTERS).collect();
+                machine.report(Message::Diagnostic(text));
+            }
+            Route::Message => {
+                let writer = machine.writers.get_mut(&self.line);
+                if !writer.is_some_and(|w| w.request(payload)) {
+                    machine.report(Message::Line("a packet on the route of messages asks for no form".into()));
+                }
+            }
+            Route::Other(code) => {
+                let route = char::from(code).escape_default();
+                machine.report(Message::Line(format!("nobody reads packets on route '{route}'")));
             }
         }
     }

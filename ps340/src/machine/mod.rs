@@ -20,7 +20,7 @@ use crate::{
     picture::Picture,
     port::{Effect, ObjectId},
     raster::FrameBuffer,
-    traversal::{self, Update},
+    traversal::{self, Requests, Stroke, Trouble, Update},
 };
 use devices::Devices;
 use host_line::HostLine;
@@ -200,7 +200,11 @@ impl Machine {
     pub fn vector_picture(&mut self, beam: &Beam) -> Picture {
         self.update_picture();
         self.settle();
-        beam.picture(&self.update.strokes)
+        if self.update.scopes.is_empty() {
+            return beam.picture(&self.update.strokes);
+        }
+        let strokes: Vec<Stroke> = self.update.on_screen(0).copied().collect();
+        beam.picture(&strokes)
     }
 
     /// What the raster screen shows now.
@@ -375,16 +379,24 @@ impl Machine {
 
     fn update_picture(&mut self) {
         let version = self.memory.structures.version();
-        if self.updated == Some(version) && self.transforms.is_empty() {
+        let stays = self.update.next_change.is_none_or(|change| self.frame < change);
+        if self.updated == Some(version) && self.transforms.is_empty() && stays {
             return;
         }
         let requests = std::mem::take(&mut self.transforms);
         let wanted: BTreeSet<ObjectId> =
             requests.iter().filter_map(|(_, name)| self.memory.objects.find(name.as_str())).collect();
-        let update = traversal::update(&self.memory.structures, &wanted);
+        let wanted = Requests { transforms: wanted, ..Requests::default() };
+        let update = traversal::update(&self.memory.structures, self.frame, &wanted);
         self.counters.updates += 1;
-        if let Some(trouble) = update.trouble {
-            self.report(Message::Update(trouble));
+        // What was said of the update before is not said again.
+        match update.trouble.filter(|trouble| self.update.trouble != Some(*trouble)) {
+            Some(Trouble::ContainsItself(id)) => {
+                let name = self.memory.objects.name(id).to_owned();
+                self.report(Message::Structure(format!("{name} contains itself")));
+            }
+            Some(trouble) => self.report(Message::Update(trouble)),
+            None => {}
         }
         for (function, name) in requests {
             // The function may have gone since it asked, and its place may be another object's.

@@ -267,3 +267,44 @@ fn two_machines_do_the_same() {
     let beam = Beam { size: 64, ..Beam::default() };
     assert_eq!(one.vector_picture(&beam).pixels(), two.vector_picture(&beam).pixels());
 }
+
+#[test]
+fn every_packet_mode_and_form_reaches_the_interpreter() {
+    use protocol::command::parse;
+    use protocol::wire::{DataForm, PacketForm, Sending, write_commands_as};
+    let commands = [DOT, "A := INSTANCE OF D;", "DISPLAY A;"].map(|text| parse(text.as_bytes()).unwrap());
+    for (packets, _) in PacketForm::ALL {
+        for (data, _) in DataForm::ALL {
+            let mut stream = Vec::new();
+            write_commands_as(Sending { packets, data }, &commands, &mut stream).unwrap();
+            let mut machine = told("");
+            for byte in stream {
+                machine.step([Input::Bytes(LINE, vec![byte])], 0);
+            }
+            assert_eq!(strokes(&mut machine).len(), 1, "{packets:?} {data:?}");
+            assert!(errors(&machine).is_empty());
+        }
+    }
+}
+
+#[test]
+fn a_channel_of_the_site_reaches_the_network() {
+    let mut machine = told("CONNECT CHANNEL5<1>:<1>HOST_MESSAGE;");
+    assert_eq!(tell(&mut machine, "\x165left\x10\x16\x16\x16\x166lost\x16\x16"), ["left\x16\r\n"]);
+    assert!(tell(&mut machine, "DELETE CHANNEL5;").is_empty());
+    assert_eq!(errors(&machine).len(), 1, "it belongs to the system");
+}
+
+#[test]
+fn a_diagnostic_packet_is_an_information() {
+    let mut machine = told("CONNECT INFORMATION<1>:<1>HOST_MESSAGE;");
+    assert_eq!(tell(&mut machine, "\x16?half\nway\x16\x16"), ["I 13 *** Host says: half\\nway\r\n"]);
+}
+
+#[test]
+fn a_damaged_six_bit_packet_is_dropped_with_a_message() {
+    let mut machine = told("\x162~~\x16\x16\x168 1\x16\x16");
+    let warnings: Vec<&str> = machine.log().filter(|l| l.starts_with("W 12")).collect();
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert!(tell(&mut machine, "SEND 'x' TO <1>HOST_MESSAGE;") == ["x\r\n"]);
+}

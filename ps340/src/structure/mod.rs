@@ -19,6 +19,8 @@ pub struct Structures {
     displayed: BTreeMap<u64, ObjectId>,
     places: HashMap<ObjectId, u64>,
     next_place: u64,
+    /// The structure in which each named member was defined.
+    homes: HashMap<ObjectId, ObjectId>,
     bytes: usize,
     version: u64,
 }
@@ -36,6 +38,7 @@ impl Structures {
         }
         self.bytes += node.bytes();
         self.version += 1;
+        self.homes.extend(node.own_members().into_iter().map(|member| (member, id)));
         let before = self.nodes[id.index()].replace(node);
         self.bytes -= before.as_ref().map_or(0, Node::bytes);
         before
@@ -44,6 +47,7 @@ impl Structures {
     /// Takes the definition of an object away, and returns it.
     pub fn undefine(&mut self, id: ObjectId) -> Option<Node> {
         let before = self.nodes.get_mut(id.index()).and_then(Option::take)?;
+        self.homes.remove(&id);
         self.bytes -= before.bytes();
         self.version += 1;
         Some(before)
@@ -128,6 +132,28 @@ impl Structures {
         self.displayed.clear();
         self.places.clear();
         self.version += 1;
+    }
+
+    /// The members that follow a named member in the structure where it was defined; none if it stands in none.
+    ///
+    /// An operate node there applies to them also when something else refers to it.
+    pub fn followers(&self, member: ObjectId) -> &[Member] {
+        fn find(members: &[Member], wanted: ObjectId) -> Option<&[Member]> {
+            members.iter().enumerate().find_map(|(place, member)| match member {
+                Member::Named(id) if *id == wanted => Some(&members[place + 1..]),
+                Member::Unnamed(Node::Group(inner)) => find(inner, wanted),
+                _ => None,
+            })
+        }
+        match self.homes.get(&member).and_then(|home| self.node(*home)) {
+            Some(Node::Group(members)) => find(members, member).unwrap_or(&[]),
+            _ => &[],
+        }
+    }
+
+    /// One more than the largest number of an object with a node.
+    pub fn extent(&self) -> usize {
+        self.nodes.len()
     }
 
     /// The displayed roots, in the order of DISPLAY.

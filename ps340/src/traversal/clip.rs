@@ -29,6 +29,18 @@ impl Clipper {
         }
     }
 
+    /// The same without depth cueing.
+    pub fn at_full_intensity(mut self) -> Clipper {
+        self.screen.cue = [1.0; 2];
+        self
+    }
+
+    /// The same in another linear colour.
+    pub fn in_color(mut self, color: [f32; 3]) -> Clipper {
+        self.color = color;
+        self
+    }
+
     /// Transforms points (x, y, z, intensity) into clip space; appends (x', y', z', w') to `clip`.
     pub fn transform(matrix: &DMat4, points: &[[f32; 4]], clip: &mut Vec<DVec4>) {
         let (cx, cy, cz, cw) = (matrix.x_axis, matrix.y_axis, matrix.z_axis, matrix.w_axis);

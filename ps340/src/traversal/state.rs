@@ -1,7 +1,16 @@
 //! What the walk carries down the structure: matrices and attributes.
 
-use crate::{hue, structure::Operation};
-use glam::{DMat2, DMat4};
+use super::pick::Identifiers;
+use crate::{hue, port::ObjectId, structure::Operation};
+use glam::{DMat2, DMat4, DVec2};
+use protocol::command::CharacterOrientation;
+
+/// All screens: a bit for each of the four.
+pub const ALL_SCOPES: u8 = 0b1111;
+/// Highest level of detail, as remembered from the manuals.
+const MAX_LEVEL: i32 = 32767;
+/// Frames of a blinking phase where SET BLINK RATE gives none; ours: half a second.
+const DEFAULT_BLINK_RATE: u32 = 30;
 
 /// The state at one place of the display structure.
 ///
@@ -13,6 +22,10 @@ pub struct State {
     pub ctm: DMat4,
     /// Multiplies the strokes of characters, glam form.
     pub characters: DMat2,
+    /// How characters stand.
+    pub orientation: CharacterOrientation,
+    /// The font of characters; none for the standard one.
+    pub font: Option<ObjectId>,
     /// Left and right of the viewport on the screen.
     pub horizontal: [f64; 2],
     /// Bottom and top of the viewport on the screen.
@@ -21,37 +34,85 @@ pub struct State {
     pub viewport_intensity: [f64; 2],
     /// Intensity at the back and at the front that SET INTENSITY set, while it is on.
     pub intensity: Option<[f64; 2]>,
+    /// Multiplies the intensity.
+    pub contrast: f64,
     /// Linear red, green and blue of the colour.
     pub color: [f32; 3],
     /// Hue and saturation of the colour.
     pub hue_saturation: [f64; 2],
+    /// Saturation of lists with a hue for each vector; without it they have the colour of the others.
+    pub blending: Option<f64>,
     /// Whether front and back clip.
     pub depth_clipping: bool,
+    /// A bit for each screen that draws.
+    pub scopes: u8,
+    /// Whether it blinks.
+    pub blinking: bool,
+    /// Frames of a blinking phase, not 0.
+    pub blink_rate: u32,
+    /// Whether what is drawn can be picked.
+    pub picking: bool,
+    /// The pick identifiers on the way.
+    pub identifiers: Identifiers,
+    /// Centre and half size of the pick box, where the structure sets it.
+    pub pick_box: Option<[DVec2; 2]>,
+    /// The level of detail, 0..=32767.
+    pub level: i32,
+    /// The conditional bits.
+    pub bits: u16,
+    /// The phase of the nearest SET RATE above.
+    pub phase: bool,
+    /// Whether it is to be plotted.
+    pub plotter: bool,
+    /// Whether the picture of what is below is written back.
+    pub write_back: bool,
+    /// The XFORM VECTOR node that gathers the vectors below.
+    pub gatherer: Option<ObjectId>,
 }
 
 impl Default for State {
     /// The state at a displayed root: no transformation, an orthographic view of -1..=1 with z 0..=1 from
-    /// front to back, the whole screen, intensity 0..=1, white, no depth clipping.
+    /// front to back, the whole screen, intensity 0..=1, white, no depth clipping, all screens, no picking,
+    /// level of detail 0, all conditional bits off, phase on.
     fn default() -> State {
         State {
             ctm: DMat4::IDENTITY,
             characters: DMat2::IDENTITY,
+            orientation: CharacterOrientation::World,
+            font: None,
             horizontal: [-1.0, 1.0],
             vertical: [-1.0, 1.0],
             viewport_intensity: [0.0, 1.0],
             intensity: None,
+            contrast: 1.0,
             color: [1.0; 3],
             hue_saturation: [0.0, 0.0],
+            blending: None,
             depth_clipping: false,
+            scopes: ALL_SCOPES,
+            blinking: false,
+            blink_rate: DEFAULT_BLINK_RATE,
+            picking: false,
+            identifiers: Identifiers::NONE,
+            pick_box: None,
+            level: 0,
+            bits: 0,
+            phase: true,
+            plotter: false,
+            write_back: false,
+            gatherer: None,
         }
     }
 }
 
 impl State {
-    /// The state below an operate node.
+    /// The state below an operate node. What depends on time or on requests is the walk's matter.
     pub fn apply(&mut self, operation: &Operation) {
         match operation {
             Operation::Character(m) => self.characters *= *m,
+            Operation::TextSize(size) => self.characters = DMat2::from_diagonal(DVec2::splat(*size)),
+            Operation::Font(font) => self.font = *font,
+            Operation::Orientation(orientation) => self.orientation = *orientation,
             Operation::Linear(m) => self.ctm *= DMat4::from_mat3(*m),
             Operation::Translate(by) => self.ctm *= DMat4::from_translation(*by),
             Operation::Affine(m) | Operation::Projective(m) => self.ctm *= *m,
@@ -60,19 +121,65 @@ impl State {
                 self.vertical = inside(self.vertical, *vertical);
                 self.viewport_intensity = intensity.unwrap_or(self.viewport_intensity);
             }
+            Operation::LoadViewport { horizontal, vertical, intensity } => {
+                self.horizontal = *horizontal;
+                self.vertical = *vertical;
+                self.viewport_intensity = intensity.unwrap_or(self.viewport_intensity);
+            }
             Operation::Color { hue, saturation } => {
                 self.hue_saturation = [*hue, *saturation];
                 self.color = hue::rgb(*hue as f32, *saturation as f32);
             }
+            Operation::ColorBlending(saturation) => self.blending = Some(*saturation),
             Operation::Intensity { on, range } => self.intensity = on.then_some(*range),
+            Operation::Contrast(contrast) => self.contrast = contrast.clamp(0.0, 1.0),
             Operation::DepthClipping(on) => self.depth_clipping = *on,
-            _ => {}
+            Operation::Displays { scopes, on: true } => self.scopes |= scopes & ALL_SCOPES,
+            Operation::Displays { scopes, on: false } => self.scopes &= !scopes,
+            Operation::Blinking(on) => self.blinking = *on,
+            Operation::BlinkRate(frames) => self.blink_rate = (*frames).max(1),
+            Operation::Picking(on) => self.picking = *on,
+            Operation::PickLocation { center, size } => self.pick_box = Some([*center, *size]),
+            Operation::LevelOfDetail(level) => self.level = i32::from(*level),
+            Operation::ChangeLevelOfDetail(by) => self.level = self.level.saturating_add(*by).clamp(0, MAX_LEVEL),
+            Operation::ConditionalBit { bit, on } => {
+                let mask = 1_u16.checked_shl(u32::from(*bit)).unwrap_or(0);
+                self.bits = if *on { self.bits | mask } else { self.bits & !mask };
+            }
+            Operation::ExternalRate(phase) => self.phase = *phase,
+            Operation::Plotter(on) => self.plotter = *on,
+            Operation::CancelXform => self.gatherer = None,
+            // These have no state of their own, or the walk sees to them; the tube drive, priorities and line
+            // textures change nothing that is seen here.
+            Operation::XformMatrix
+            | Operation::XformVector
+            | Operation::WriteBack
+            | Operation::PickIdentifier(_)
+            | Operation::Rate { .. }
+            | Operation::IfBit { .. }
+            | Operation::IfLevel { .. }
+            | Operation::IfPhase(_)
+            | Operation::Rendering { .. }
+            | Operation::SectioningPlane
+            | Operation::Csm(_)
+            | Operation::Priority(_)
+            | Operation::LineTexture { .. } => {}
+        }
+    }
+
+    /// Whether an operate node lets the walk through; those without a condition always do.
+    pub fn admits(&self, operation: &Operation) -> bool {
+        match operation {
+            Operation::IfBit { bit, on } => (self.bits.checked_shr(u32::from(*bit)).unwrap_or(0) & 1 == 1) == *on,
+            Operation::IfLevel { comparison, level } => comparison.holds(self.level, i32::from(*level)),
+            Operation::IfPhase(on) => self.phase == *on,
+            _ => true,
         }
     }
 
     /// Intensity at the back and at the front that is in force.
     pub fn depth_cue(&self) -> [f64; 2] {
-        self.intensity.unwrap_or(self.viewport_intensity)
+        self.intensity.unwrap_or(self.viewport_intensity).map(|i| i * self.contrast)
     }
 }
 

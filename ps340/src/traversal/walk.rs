@@ -1,126 +1,251 @@
 //! The walk over the display structure.
 
-use super::{Clipper, State, Stroke, font};
+use super::{
+    Clipper, PickHit, PickedKind, PickedPlace, Requests, State, Stroke, Trouble, Update,
+    outline::{self, Piece},
+    phase,
+    pick::{IdentifierChains, Identifiers, PickBox},
+};
 use crate::{
     port::ObjectId,
     structure::{Member, Node, Operation, Structures},
 };
-use glam::{DMat4, DVec2, DVec4};
-use protocol::command::{Characters, VectorClass, VectorList};
+use glam::{DMat4, DVec3, DVec4};
+use protocol::command::{CharacterOrientation, Fourth, VectorClass, VectorList};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
 
-/// How deep nodes may nest. The real stack held tens of levels; ours ends a structure that contains itself.
-pub const MAX_DEPTH: usize = 500;
+/// How deep nodes may nest. The real stack held tens of levels.
+pub const MAX_DEPTH: usize = 10_000;
 /// How many nodes one update visits, so that instances of instances of instances end.
 pub const MAX_VISITS: u64 = 20_000_000;
 /// How many vectors one update draws; their strokes take 36 bytes each.
 pub const MAX_VECTORS: u64 = 20_000_000;
+/// How many vectors XFORM VECTOR gathers.
+pub const MAX_GATHERED: usize = 1 << 20;
 
 /// Vectors of one list that one thread takes at a time.
 const PIECE: usize = 1 << 14;
 
-/// Why an update is incomplete.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Trouble {
-    /// A structure contains itself, or is deeper than [`MAX_DEPTH`].
-    #[error("the display structure is more than {MAX_DEPTH} levels deep")]
-    TooDeep,
-    /// More than [`MAX_VISITS`] nodes.
-    #[error("an update visits at most {MAX_VISITS} nodes")]
-    TooManyVisits,
-    /// More than [`MAX_VECTORS`] vectors.
-    #[error("an update draws at most {MAX_VECTORS} vectors")]
-    TooManyVectors,
-}
-
-/// What one update made.
-#[derive(Clone, Debug, Default)]
-pub struct Update {
-    /// What the beam draws, in the order of the structure.
-    pub strokes: Vec<Stroke>,
-    /// The accumulated matrix of each XFORM MATRIX node that was asked for and met (the first time).
-    pub transforms: BTreeMap<ObjectId, DMat4>,
-    /// Nodes visited.
-    pub visits: u64,
-    /// Vectors and character strokes that went into the pipeline.
-    pub vectors: u64,
-    /// What was left out, if anything.
-    pub trouble: Option<Trouble>,
-}
-
-/// Walks everything that is displayed, and looks up the matrices of the nodes in `wanted`.
-pub fn update(structures: &Structures, wanted: &BTreeSet<ObjectId>) -> Update {
-    let mut walk = Walk { structures, wanted, update: Update::default(), clip: Vec::new() };
+/// Walks everything that is displayed.
+///
+/// - `frame`: the number of the refresh frame, for SET RATE and blinking.
+pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Update {
+    let mut walk = Walk {
+        structures,
+        frame,
+        requests,
+        update: Update::default(),
+        identifiers: IdentifierChains::default(),
+        entered: vec![0; structures.extent().div_ceil(64)],
+        clip: Vec::new(),
+    };
     for root in structures.displayed() {
-        walk.object(root, &mut State::default(), 0);
+        walk.root(root);
     }
     walk.update
 }
 
 struct Walk<'a> {
     structures: &'a Structures,
-    wanted: &'a BTreeSet<ObjectId>,
+    frame: u64,
+    requests: &'a Requests,
     update: Update,
+    identifiers: IdentifierChains<'a>,
+    /// A bit for each object that the walk is inside of.
+    entered: Vec<u64>,
     /// Clip-space points of the list at hand; kept to save allocations.
     clip: Vec<DVec4>,
 }
 
-impl Walk<'_> {
-    fn object(&mut self, id: ObjectId, state: &mut State, depth: usize) {
-        if let Some(node) = self.structures.node(id) {
-            self.node(Some(id), node, state, depth);
+/// A level of the structure that the walk is inside of.
+struct Level<'a> {
+    items: Items<'a>,
+    next: usize,
+    /// The state of the next item. Operate nodes of a structure change it for the items after them.
+    state: State,
+    /// The object that was entered here.
+    object: Option<ObjectId>,
+}
+
+#[derive(Clone, Copy)]
+enum Items<'a> {
+    /// Members of a structure.
+    Members(&'a [Member]),
+    /// Descendants, each with the state of the level.
+    Objects(&'a [ObjectId]),
+    /// The only descendant.
+    Object(ObjectId),
+}
+
+/// What the walk comes to next.
+struct Visit<'a> {
+    object: Option<ObjectId>,
+    node: &'a Node,
+    /// Whether an operate node applies to the items after it.
+    in_structure: bool,
+}
+
+impl<'a> Level<'a> {
+    /// The next item; none behind the last. An item whose object is undefined is skipped.
+    fn advance(&mut self, structures: &'a Structures) -> Option<Visit<'a>> {
+        loop {
+            let place = self.next;
+            self.next += 1;
+            let (object, in_structure) = match self.items {
+                Items::Members(members) => match members.get(place)? {
+                    Member::Unnamed(node) => return Some(Visit { object: None, node, in_structure: true }),
+                    Member::Named(id) => (*id, true),
+                    // An included object is a descendant, as of an instance: its state ends with it.
+                    Member::Included(id) => (*id, false),
+                },
+                Items::Objects(objects) => (*objects.get(place)?, false),
+                Items::Object(id) => ((place == 0).then_some(id)?, false),
+            };
+            if let Some(node) = structures.node(object) {
+                return Some(Visit { object: Some(object), node, in_structure });
+            }
+        }
+    }
+}
+
+impl<'a> Walk<'a> {
+    fn root(&mut self, root: ObjectId) {
+        let mut levels = vec![Level { items: Items::Object(root), next: 0, state: State::default(), object: None }];
+        while let Some(level) = levels.last_mut() {
+            match level.advance(self.structures) {
+                Some(visit) => {
+                    if self.visit(&visit, &mut levels).is_break() {
+                        return;
+                    }
+                }
+                None => {
+                    if let Some(object) = levels.pop().and_then(|level| level.object) {
+                        self.entered[object.index() / 64] &= !(1 << (object.index() % 64));
+                    }
+                }
+            }
         }
     }
 
-    /// Visits a node. An operate node without a descendant changes `state`, for the members after it.
-    fn node(&mut self, id: Option<ObjectId>, node: &Node, state: &mut State, depth: usize) {
+    /// Visits what the innermost level came to; breaks if the update has to end here.
+    fn visit(&mut self, visit: &Visit<'a>, levels: &mut Vec<Level<'a>>) -> ControlFlow<()> {
         self.update.visits += 1;
         if self.update.visits > MAX_VISITS {
             self.update.trouble = Some(Trouble::TooManyVisits);
-            return;
+            return ControlFlow::Break(());
         }
-        if depth >= MAX_DEPTH {
+        let Some(level) = levels.last_mut() else { return ControlFlow::Break(()) };
+        match visit.node {
+            Node::Instance(members) => {
+                let state = level.state.clone();
+                self.enter(visit.object, Items::Objects(members), state, levels);
+            }
+            Node::Group(members) => {
+                let state = level.state.clone();
+                self.enter(visit.object, Items::Members(members), state, levels);
+            }
+            Node::Operate { operation, descendant } => {
+                if !level.state.admits(operation) {
+                    if visit.in_structure && descendant.is_none() {
+                        level.items = Items::Members(&[]); // it guards everything after it
+                    }
+                    return ControlFlow::Continue(());
+                }
+                if visit.in_structure && descendant.is_none() {
+                    self.apply(operation, visit.object, &mut level.state);
+                    return ControlFlow::Continue(());
+                }
+                let mut state = level.state.clone();
+                self.apply(operation, visit.object, &mut state);
+                let below = match (descendant, visit.object) {
+                    (Some(below), _) => Items::Object(*below),
+                    (None, Some(object)) => Items::Members(self.structures.followers(object)),
+                    (None, None) => return ControlFlow::Continue(()),
+                };
+                self.enter(visit.object, below, state, levels);
+            }
+            data => self.draw(data, visit.object, &level.state),
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Goes a level down, unless the structure is too deep or contains itself.
+    fn enter(&mut self, object: Option<ObjectId>, items: Items<'a>, state: State, levels: &mut Vec<Level<'a>>) {
+        if levels.len() >= MAX_DEPTH {
             self.update.trouble = Some(Trouble::TooDeep);
             return;
         }
-        match node {
-            Node::Nil => {}
-            Node::Instance(members) => {
-                for member in members {
-                    self.object(*member, &mut state.clone(), depth + 1);
+        if let Some(id) = object {
+            let (word, bit) = (&mut self.entered[id.index() / 64], 1 << (id.index() % 64));
+            if *word & bit != 0 {
+                self.update.trouble = Some(Trouble::ContainsItself(id));
+                return;
+            }
+            *word |= bit;
+        }
+        levels.push(Level { items, next: 0, state, object });
+    }
+
+    /// The state below an operate node, with what depends on time and on requests.
+    fn apply(&mut self, operation: &'a Operation, object: Option<ObjectId>, state: &mut State) {
+        match operation {
+            Operation::Rate { rate, since } => {
+                let (phase, change) = phase::rate(rate, self.frame.saturating_sub(*since));
+                state.phase = phase;
+                if let Some(change) = change {
+                    self.update.changes_at(since + change);
                 }
             }
-            Node::Group(members) => self.group(members, &mut state.clone(), depth + 1),
-            Node::Vectors(node) => self.vectors(node.drawn(), state),
-            Node::Characters(characters) => self.characters(characters, state),
-            Node::Operate { operation, descendant } => {
-                if let (Operation::XformMatrix, Some(id)) = (operation, id)
-                    && self.wanted.contains(&id)
-                {
+            Operation::PickIdentifier(name) => state.identifiers = self.identifiers.below(state.identifiers, name),
+            Operation::WriteBack => state.write_back |= object.is_some_and(|o| self.requests.write_back.contains(&o)),
+            Operation::XformMatrix => {
+                if let Some(id) = object.filter(|o| self.requests.transforms.contains(o)) {
                     self.update.transforms.entry(id).or_insert(state.ctm);
                 }
-                match descendant {
-                    Some(below) => {
-                        let mut inner = state.clone();
-                        inner.apply(operation);
-                        self.object(*below, &mut inner, depth + 1);
-                    }
-                    None => state.apply(operation),
+            }
+            Operation::XformVector => {
+                if let Some(id) = object.filter(|o| self.requests.transforms.contains(o)) {
+                    self.update.transformed.entry(id).or_default();
+                    state.gatherer = Some(id);
                 }
             }
-            _ => {}
+            operation => state.apply(operation),
         }
     }
 
-    fn group(&mut self, members: &[Member], state: &mut State, depth: usize) {
-        for member in members {
-            match member {
-                Member::Unnamed(node) => self.node(None, node, state, depth),
-                Member::Named(id) => self.object(*id, state, depth),
-                // An included object is a descendant, as of an instance: its state ends with it.
-                Member::Included(id) => self.object(*id, &mut state.clone(), depth),
+    /// Draws a data node, unless its state hides it.
+    fn draw(&mut self, node: &'a Node, object: Option<ObjectId>, state: &State) {
+        if state.blinking {
+            let (seen, change) = phase::blink(state.blink_rate, self.frame);
+            self.update.changes_at(change);
+            if !seen {
+                return;
             }
+        }
+        if state.scopes != 0 {
+            self.update.drawn_by(state.scopes);
+            let first = self.update.strokes.len();
+            match node {
+                Node::Vectors(vectors) if vectors.list.fourth != Fourth::Hue || state.blending.is_none() => {
+                    self.vectors(vectors.drawn(), state);
+                }
+                node => self.pieces(node, state),
+            }
+            if state.write_back {
+                self.update.written_back_from(first);
+            }
+            if let Some(request) = &self.requests.pick
+                && state.picking
+                && state.identifiers != Identifiers::NONE
+                && self.update.picked.is_none()
+            {
+                let pick_box = PickBox::new(request, state);
+                self.update.picked = self.pick(node, object, state, &pick_box, request.coordinates);
+            }
+        }
+        if let Some(gatherer) = state.gatherer {
+            self.gather(node, state, gatherer);
         }
     }
 
@@ -141,7 +266,7 @@ impl Walk<'_> {
         }
         let clipper = Clipper::new(state);
         if list.points.len() <= PIECE {
-            pieces(list, 0..list.points.len(), &state.ctm, &clipper, &mut self.clip, &mut self.update.strokes);
+            clip(list, 0..list.points.len(), &state.ctm, &clipper, &mut self.clip, &mut self.update.strokes);
             return;
         }
         // Long lists are drawn in pieces by all threads; the order of the strokes stays that of the list.
@@ -151,7 +276,7 @@ impl Walk<'_> {
             .map(|start| {
                 let end = (start + PIECE).min(list.points.len());
                 let mut strokes = Vec::with_capacity(PIECE);
-                pieces(list, start..end, &state.ctm, &clipper, &mut Vec::with_capacity(PIECE + 1), &mut strokes);
+                clip(list, start..end, &state.ctm, &clipper, &mut Vec::with_capacity(PIECE + 1), &mut strokes);
                 strokes
             })
             .collect();
@@ -159,30 +284,85 @@ impl Walk<'_> {
         parts.iter().for_each(|part| self.update.strokes.extend_from_slice(part));
     }
 
-    /// Strokes of character k lie at `position + (k step + stroke) M`, M the character matrix.
-    fn characters(&mut self, characters: &Characters, state: &State) {
-        let clipper = Clipper::new(state);
-        let clip = |cell: usize, p: [f32; 2]| {
-            let at = characters.step * cell as f64 + DVec2::new(f64::from(p[0]), f64::from(p[1]));
-            state.ctm * (characters.position + (state.characters * at).extend(0.0)).extend(1.0)
-        };
-        for (cell, code) in characters.text.iter().enumerate() {
-            for line in font::glyph(*code) {
-                if !self.counted(line.len()) {
-                    return;
-                }
-                if let [only] = line.as_slice() {
-                    self.update.strokes.extend(clipper.dot(clip(cell, *only), 1.0));
-                }
-                let ends = line.windows(2).filter_map(|w| clipper.line(clip(cell, w[0]), clip(cell, w[1]), [1.0; 2]));
-                self.update.strokes.extend(ends);
-            }
+    /// Draws text, polygons and blended lists.
+    fn pieces(&mut self, node: &Node, state: &State) {
+        let mut clipper = Clipper::new(state);
+        let is_text = matches!(node, Node::Characters(_) | Node::Labels(_));
+        if is_text && state.orientation == CharacterOrientation::ScreenFixed {
+            clipper = clipper.at_full_intensity();
         }
+        let structures = self.structures;
+        // That a piece was one too many is told by the account.
+        let _ = outline::pieces(node, state, structures, &mut |piece: Piece| {
+            if !self.counted(1) {
+                return ControlFlow::Break(());
+            }
+            let clipper = piece.color.map_or(clipper, |color| clipper.in_color(color));
+            self.update.strokes.extend(match piece.dot {
+                true => clipper.dot(piece.ends[0], piece.intensity[0]),
+                false => clipper.line(piece.ends[0], piece.ends[1], piece.intensity),
+            });
+            ControlFlow::Continue(())
+        });
+    }
+
+    /// The first piece of a data node that is inside the pick box.
+    fn pick(
+        &self,
+        node: &Node,
+        object: Option<ObjectId>,
+        state: &State,
+        pick_box: &PickBox,
+        coordinates: bool,
+    ) -> Option<PickHit> {
+        let mut hit = None;
+        let _ = outline::pieces(node, state, self.structures, &mut |piece: Piece| {
+            let Some(span) = pick_box.inside(piece.ends) else { return ControlFlow::Continue(()) };
+            hit = Some((piece, span));
+            ControlFlow::Break(())
+        });
+        let (piece, span) = hit?;
+        let (kind, dimension, parameters) = match node {
+            Node::Vectors(vectors) => {
+                let kind = if vectors.parameters.is_some() { PickedKind::Curve } else { PickedKind::Vectors };
+                // In dashes the numbers of the vectors are not those of the curve.
+                let chords = vectors.drawn().points.len().saturating_sub(1) as f64;
+                let parameters = vectors.parameters.filter(|_| vectors.dashed.is_none());
+                (kind, vectors.list.dimension, parameters.map(|range| (range, chords)))
+            }
+            Node::Labels(_) => (PickedKind::Labels, 3, None),
+            Node::Polygons(_) => (PickedKind::Polygons, 3, None),
+            _ => (PickedKind::Characters, 3, None),
+        };
+        let place = coordinates.then(|| {
+            let (point, t) = pick_box.place(&piece, span);
+            let parameter = parameters.map(|([first, last], chords)| {
+                let along = (f64::from(piece.index) - 2.0 + t).max(0.0) / chords.max(1.0);
+                first + (last - first) * along
+            });
+            PickedPlace { point, dimension, parameter }
+        });
+        let identifiers = self.identifiers.names(state.identifiers);
+        Some(PickHit { index: piece.index, identifiers, node: object, kind, place })
+    }
+
+    /// Adds the vectors of a list to what an XFORM VECTOR node gathers. Text and polygons are no vectors.
+    fn gather(&mut self, node: &Node, state: &State, gatherer: ObjectId) {
+        let Node::Vectors(vectors) = node else { return };
+        let list = vectors.drawn();
+        let into = self.update.transformed.entry(gatherer).or_default();
+        if into.points.len() + list.points.len() > MAX_GATHERED {
+            self.update.trouble = Some(Trouble::TooManyGathered);
+            return;
+        }
+        let place = |p: &[f32; 4]| state.ctm.project_point3(DVec3::new(p[0].into(), p[1].into(), p[2].into()));
+        into.points.extend(list.points.iter().map(place));
+        into.lines.extend((0..list.points.len()).map(|i| list.is_line(i)));
     }
 }
 
 /// Transforms and clips the vectors *to* the points of `range`.
-fn pieces(
+fn clip(
     list: &VectorList,
     range: std::ops::Range<usize>,
     ctm: &DMat4,
@@ -193,7 +373,8 @@ fn pieces(
     let first = range.start.saturating_sub(1);
     clip.clear();
     Clipper::transform(ctm, &list.points[first..range.end], clip);
-    let intensity = |i: usize| f64::from(list.points[i][3]);
+    let bright = list.fourth == Fourth::Intensity;
+    let intensity = |i: usize| if bright { f64::from(list.points[i][3]) } else { 1.0 };
     for i in range {
         let to = clip[i - first];
         if list.class == VectorClass::Dots {

@@ -32,9 +32,23 @@ pub fn encode(command: &Command, out: &mut Vec<u8>) -> Result<(), EncodeError> {
 /// # Errors
 /// [`EncodeError`] if the command exceeds a limit of the records; nothing was emitted then.
 pub fn records(command: &Command, scratch: &mut Vec<u8>, emit: &mut dyn FnMut(&[u8])) -> Result<(), EncodeError> {
+    records_in_parts(command, PART_POINTS, scratch, emit)
+}
+
+/// Gives the records of a command as [`records`] does, with at most `part_points` vectors in a part (at least 1, at most
+/// [`PART_POINTS`]), for packets that hold no more.
+///
+/// # Errors
+/// Those of [`records`].
+pub fn records_in_parts(
+    command: &Command,
+    part_points: usize,
+    scratch: &mut Vec<u8>,
+    emit: &mut dyn FnMut(&[u8]),
+) -> Result<(), EncodeError> {
     scratch.clear();
     if let Command::Define { name, object: Object::VectorList(list) } = command {
-        return vector_list(name.as_ref(), list, scratch, emit);
+        return vector_list(name.as_ref(), list, part_points.clamp(1, PART_POINTS), scratch, emit);
     }
     single(command, &mut Writer::new(scratch))?;
     within("the record", scratch.len(), MAX_RECORD)?;
@@ -45,6 +59,7 @@ pub fn records(command: &Command, scratch: &mut Vec<u8>, emit: &mut dyn FnMut(&[
 fn vector_list(
     name: Option<&Name>,
     list: &VectorList,
+    part_points: usize,
     scratch: &mut Vec<u8>,
     emit: &mut dyn FnMut(&[u8]),
 ) -> Result<(), EncodeError> {
@@ -59,13 +74,13 @@ fn vector_list(
     writer.u32(list.estimate.unwrap_or(0));
     writer.u32(list.points.len() as u32);
     emit(scratch);
-    for (index, points) in list.points.chunks(PART_POINTS).enumerate() {
+    for (index, points) in list.points.chunks(part_points).enumerate() {
         scratch.clear();
         let mut writer = Writer::new(scratch);
         writer.u8(Opcode::VectorsPart.code());
         writer.u16(points.len() as u16);
         if list.class == VectorClass::Itemized {
-            let first = (index * PART_POINTS).min(list.lines.len());
+            let first = (index * part_points).min(list.lines.len());
             let lines = &list.lines[first..list.lines.len().min(first + points.len())];
             let mut flags = vec![0_u8; points.len().div_ceil(8)];
             for (flags, lines) in flags.iter_mut().zip(lines.chunks(8)) {

@@ -10,7 +10,7 @@ mod opcode;
 
 pub use crate::record::{BinaryError, BinaryProblem, EncodeError};
 pub use decode::{BinaryDecoder, Commands};
-pub use encode::{encode, records};
+pub use encode::{encode, records, records_in_parts};
 pub use opcode::Opcode;
 
 /// Most vectors in one part of a vector list; larger lists have several parts. Ours: an eighth of a megabyte, which

@@ -1,7 +1,7 @@
 //! Facts about the frame decoder.
 
 use super::*;
-use crate::wire::packet::{write_count_packet, write_packet};
+use crate::wire::packet::{is_escaped, write_count_packet, write_escape_packet, write_packet};
 use proptest::prelude::*;
 
 /// A frame that owns its bytes; neighbouring texts are one.
@@ -9,6 +9,7 @@ use proptest::prelude::*;
 enum Owned {
     Text(Vec<u8>),
     Packet(PacketForm, Route, Vec<u8>),
+    Empty,
     Noise(Vec<u8>, NoiseReason),
 }
 
@@ -21,7 +22,8 @@ fn frames(pieces: &[&[u8]]) -> (Vec<Owned>, FrameDecoder) {
                 Some(Owned::Text(text)) => text.extend_from_slice(bytes),
                 _ => all.push(Owned::Text(bytes.to_vec())),
             },
-            Frame::Packet { form, route, payload } => all.push(Owned::Packet(form, route, payload.to_vec())),
+            Frame::Empty(_) => all.push(Owned::Empty),
+            Frame::Packet { form, route, payload, .. } => all.push(Owned::Packet(form, route, payload.to_vec())),
             Frame::Noise { bytes, reason } => all.push(Owned::Noise(bytes.to_vec(), reason)),
         });
     }
@@ -66,7 +68,7 @@ fn a_bad_payload_is_dropped_and_counted() {
 
 #[test]
 fn a_bad_header_is_one_byte_of_noise() {
-    let mut stream = packet(b"x");
+    let mut stream = packet(b"");
     stream[3] ^= 1;
     let (all, _) = frames(&[&stream, &packet(b"good")]);
     assert_eq!(all[0], Owned::Noise(vec![LONG_START], NoiseReason::BadHeader));
@@ -82,6 +84,71 @@ fn a_start_byte_without_count_is_noise() {
         all,
         [noise.clone(), noise.clone(), Owned::Text(b"A".into()), noise, Owned::Text(b"  ".into())].to_vec()
     );
+}
+
+fn escaped(data: &[u8]) -> Owned {
+    Owned::Packet(PacketForm::Escape, Route::Text, data.to_vec())
+}
+
+#[test]
+fn an_escape_packet_ends_at_the_next_start_byte() {
+    let (all, decoder) = frames(&[b"a\x160one\x160two\x16\x16b\x160three"]);
+    let text = |text: &[u8]| Owned::Text(text.into());
+    assert_eq!(all, [text(b"a"), escaped(b"one"), escaped(b"two"), Owned::Empty, text(b"b")]);
+    assert!(decoder.is_unfinished());
+    // The start byte of another form ends it too.
+    let mut stream = b"\x160one".to_vec();
+    stream.extend(packet(b"long"));
+    stream.extend(b"\x160two");
+    write_count_packet(Route::Text, b"count", &mut stream).unwrap();
+    let count = Owned::Packet(PacketForm::Count, Route::Text, b"count".to_vec());
+    assert_eq!(frames(&[&stream]).0, [escaped(b"one"), long(b"long"), escaped(b"two"), count]);
+}
+
+#[test]
+fn an_escaped_byte_is_data() {
+    let data = [16, 22, 28, 29, 16, 17, 0, 255];
+    let mut stream = Vec::new();
+    write_escape_packet(Route::Text, &data, &mut stream).unwrap();
+    write_escape_packet(Route::Other(ESCAPE_START), b"", &mut stream).unwrap();
+    stream.extend(b"\x16\x100\x10x\x16\x16");
+    let odd = Owned::Packet(PacketForm::Escape, Route::Other(ESCAPE_START), vec![]);
+    let all = [escaped(&data), Owned::Empty, odd, Owned::Empty, escaped(b"x"), Owned::Empty];
+    let (found, decoder) = frames(&[&stream]);
+    assert_eq!(found, all);
+    assert_eq!((decoder.counters().packets, decoder.counters().packet_bytes), (3, stream.len() as u64));
+}
+
+#[test]
+fn an_escape_start_byte_without_a_route_is_noise() {
+    let mut stream = vec![ESCAPE_START];
+    stream.extend(packet(b"good"));
+    let noise = Owned::Noise(vec![ESCAPE_START], NoiseReason::NoRoute);
+    assert_eq!(frames(&[&stream]).0, [noise, long(b"good")]);
+}
+
+#[test]
+fn a_blank_between_empty_packets_brings_any_stream_back_to_text() {
+    // Whatever came before: inside a packet, behind a start byte or an escape character, or in text.
+    for before in [&b""[..], b"x", b"\x16", b"\x160", b"\x160x\x10", b"\x16\x10", b"\x16\x16", b"\x160\x16"] {
+        let (all, decoder) = frames(&[before, b"\x16\x16 \x16\x16", b"\x160good\x16\x16"]);
+        assert!(!decoder.is_unfinished());
+        assert_eq!(all[all.len() - 2..], [escaped(b"good"), Owned::Empty], "{before:?}");
+    }
+}
+
+#[test]
+fn the_longest_escape_packet_arrives_and_a_longer_one_is_noise() {
+    let data = vec![ESCAPE; MAX_PAYLOAD];
+    let mut stream = Vec::new();
+    write_escape_packet(Route::Other(ESCAPE), &data, &mut stream).unwrap();
+    assert_eq!(stream.len() - 2, MAX_ESCAPE_STREAM);
+    let pieces: Vec<&[u8]> = stream.chunks(65_537).collect();
+    let (all, _) = frames(&pieces);
+    assert_eq!(all, [Owned::Packet(PacketForm::Escape, Route::Other(ESCAPE), data), Owned::Empty]);
+    stream.splice(3..3, [ESCAPE, b'x']);
+    let (all, _) = frames(&[&stream]);
+    assert!(matches!(&all[0], Owned::Noise(bytes, NoiseReason::TooLong) if bytes.len() == MAX_ESCAPE_STREAM + 1));
 }
 
 #[test]
@@ -109,14 +176,14 @@ fn the_end_of_the_stream_gives_up_an_unfinished_packet() {
 }
 
 #[test]
-fn without_count_packets_their_start_byte_is_text() {
+fn without_historical_packets_their_start_bytes_are_text() {
     let mut decoder = FrameDecoder::long_packets_only();
     let mut text = Vec::new();
-    decoder.feed(b"a\x1c!!b", |frame| match frame {
+    decoder.feed(b"a\x1c!!\x160b", |frame| match frame {
         Frame::Text(bytes) => text.extend_from_slice(bytes),
         other => panic!("{other:?}"),
     });
-    assert_eq!(text, b"a\x1c!!b");
+    assert_eq!(text, b"a\x1c!!\x160b");
 }
 
 /// Bytes in which start bytes and count characters are frequent.
@@ -136,10 +203,10 @@ proptest! {
     ) {
         let mut stream = noise;
         for (index, payload) in payloads.iter().enumerate() {
-            if index % 3 == 1 {
-                write_count_packet(Route::Text, payload, &mut stream).unwrap();
-            } else {
-                stream.extend(packet(payload));
+            match index % 3 {
+                0 => stream.extend(packet(payload)),
+                1 => write_count_packet(Route::Text, payload, &mut stream).unwrap(),
+                _ => write_escape_packet(Route::Text, payload, &mut stream).unwrap(),
             }
         }
         let mut cuts: Vec<usize> = cuts.iter().map(|cut| cut.index(stream.len())).chain([0, stream.len()]).collect();
@@ -153,16 +220,43 @@ proptest! {
 
     #[test]
     fn packets_behind_noise_arrive(noises in payloads(), payloads in payloads()) {
-        // Noise between packets, but no count start byte: count packets carry no check.
+        // Noise between packets, but no historical start byte: those packets carry no check.
         let mut stream = Vec::new();
         let mut expected = Vec::new();
         for (noise, payload) in noises.iter().zip(&payloads) {
-            stream.extend(noise.iter().map(|b| if *b == COUNT_START { b'!' } else { *b }));
+            stream.extend(noise.iter().map(|b| if matches!(*b, COUNT_START | ESCAPE_START) { b'!' } else { *b }));
             stream.extend(packet(payload));
             expected.push(long(payload));
         }
         let packets: Vec<Owned> = frames(&[&stream]).0.into_iter().filter(|f| matches!(f, Owned::Packet(..))).collect();
         prop_assert_eq!(packets, expected);
+    }
+
+    #[test]
+    fn escape_packets_behind_noise_arrive(noises in payloads(), payloads in payloads()) {
+        // The noise holds start bytes of escape packets and escape characters, but not of the packets with a length.
+        let mut stream = Vec::new();
+        for (noise, payload) in noises.iter().zip(&payloads) {
+            stream.extend(noise.iter().filter(|byte| !matches!(**byte, COUNT_START | LONG_START)));
+            // An escape character would take the first start byte, and a packet the second.
+            stream.extend([b'.', ESCAPE_START, ESCAPE_START, ESCAPE_START, ESCAPE_START]);
+            write_escape_packet(Route::Binary, payload, &mut stream).unwrap();
+        }
+        let all = frames(&[&stream]).0;
+        let mut rest = all.iter();
+        for payload in noises.iter().zip(&payloads).map(|pair| pair.1) {
+            let expected = Owned::Packet(PacketForm::Escape, Route::Binary, payload.clone());
+            prop_assert!(rest.any(|frame| *frame == expected), "{:?} in {:?}", expected, all);
+        }
+    }
+
+    #[test]
+    fn an_escape_packet_holds_no_bare_start_byte(data in bytes(0..100)) {
+        let mut stream = Vec::new();
+        write_escape_packet(Route::Text, &data, &mut stream).unwrap();
+        let inner = &stream[1..stream.len() - 2];
+        let bare = inner.iter().enumerate().filter(|(at, byte)| is_escaped(**byte) && **byte != ESCAPE && inner[at - 1] != ESCAPE);
+        prop_assert_eq!(bare.count(), 0);
     }
 
     #[test]

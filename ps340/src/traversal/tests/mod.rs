@@ -1,5 +1,8 @@
 //! Tests of the walk and of the pipeline behind it.
 
+mod attributes;
+mod picking;
+
 use super::*;
 use crate::{
     matrices,
@@ -35,7 +38,7 @@ fn draw(operations: &[Operation], data: Node) -> Vec<Stroke> {
     let mut structures = Structures::default();
     structures.define(ObjectId::new(0), Node::Group(members));
     structures.display(ObjectId::new(0));
-    update(&structures, &BTreeSet::new()).strokes
+    update(&structures, 0, &Requests::default()).strokes
 }
 
 /// Where a dot at `p` appears.
@@ -177,9 +180,9 @@ fn an_object_included_twice_is_drawn_twice() {
     structures.define(line, list(VectorClass::Connected, &[[0.0; 3], [0.5; 3]]));
     assert!(structures.include(line, frame) && structures.include(line, frame));
     structures.display(frame);
-    assert_eq!(update(&structures, &BTreeSet::new()).strokes.len(), 2);
+    assert_eq!(update(&structures, 0, &Requests::default()).strokes.len(), 2);
     assert!(structures.exclude(line, frame));
-    assert_eq!(update(&structures, &BTreeSet::new()).strokes.len(), 1);
+    assert_eq!(update(&structures, 0, &Requests::default()).strokes.len(), 1);
 }
 
 #[test]
@@ -188,7 +191,7 @@ fn a_structure_that_contains_itself_ends() {
     let id = ObjectId::new(0);
     structures.define(id, Node::Instance(vec![id]));
     structures.display(id);
-    assert_eq!(update(&structures, &BTreeSet::new()).trouble, Some(Trouble::TooDeep));
+    assert_eq!(update(&structures, 0, &Requests::default()).trouble, Some(Trouble::ContainsItself(id)));
 }
 
 #[test]
@@ -199,7 +202,7 @@ fn instances_of_instances_of_instances_end() {
     }
     structures.define(ObjectId::new(0), Node::Nil);
     structures.display(ObjectId::new(63));
-    assert_eq!(update(&structures, &BTreeSet::new()).trouble, Some(Trouble::TooManyVisits));
+    assert_eq!(update(&structures, 0, &Requests::default()).trouble, Some(Trouble::TooManyVisits));
 }
 
 #[test]
@@ -213,7 +216,7 @@ fn an_operate_node_with_a_descendant_spares_its_siblings() {
         vec![Member::Unnamed(Node::Operate { operation: shift, descendant: Some(below) }), Member::Unnamed(data)];
     structures.define(group, Node::Group(members));
     structures.display(group);
-    let strokes = update(&structures, &BTreeSet::new()).strokes;
+    let strokes = update(&structures, 0, &Requests::default()).strokes;
     near(strokes[0].start, [0.5, 0.0]);
     near(strokes[1].start, [0.0, 0.0]);
 }
@@ -229,7 +232,8 @@ fn the_matrix_of_an_xform_node_is_the_product_of_what_is_above() {
     structures.display(group);
     let expected =
         matrices::field_of_view(60.0, [1.0, 9.0]).unwrap() * DMat4::from_mat3(matrices::rotation(Axis::Y, 30.0));
-    let found = update(&structures, &BTreeSet::from([node])).transforms[&node];
+    let found = update(&structures, 0, &Requests { transforms: BTreeSet::from([node]), ..Requests::default() })
+        .transforms[&node];
     assert!(found.abs_diff_eq(expected, 1e-15));
 }
 
@@ -257,5 +261,5 @@ fn text_under_instances_of_instances_ends() {
         structures.define(ObjectId::new(i), Node::Instance(vec![ObjectId::new(i - 1); 100]));
     }
     structures.display(ObjectId::new(3));
-    assert_eq!(update(&structures, &BTreeSet::new()).trouble, Some(Trouble::TooManyVectors));
+    assert_eq!(update(&structures, 0, &Requests::default()).trouble, Some(Trouble::TooManyVectors));
 }
