@@ -5,7 +5,10 @@
 use std::{cell::RefCell, collections::BTreeSet, time::Duration};
 use tests::{
     Machine,
-    conformance::{self, Case, Operator, Report, Target, Way, line::Place, person, person::OrderFault, walk},
+    conformance::{
+        self, Case, Operator, Report, Target, Verdict, Way, line::Place, person, person::OrderFault,
+        report::failure_text, walk,
+    },
 };
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
@@ -45,13 +48,29 @@ fn machine() -> Machine {
 fn play<'c>(machine: Machine, way: Way, cut: Option<u64>, cases: impl IntoIterator<Item = &'c Case>) -> Report {
     let place = Place::Socket(format!("tcp:{}", machine.line).parse().unwrap());
     let machine = RefCell::new(machine);
-    let target = Target { place, way, cut, patience: Duration::from_secs(20), any_fault: false };
+    let target = Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false };
     conformance::run(&target, Some(&mut Here(&machine)), cases, |_| {}).unwrap()
 }
 
+/// The cases that the machine cannot pass yet, one a line. The list only becomes shorter.
+fn waiting() -> BTreeSet<&'static str> {
+    include_str!("../conformance/waiting.txt").lines().filter(|l| !l.is_empty() && !l.starts_with('#')).collect()
+}
+
 fn assert_passed(report: &Report, what: &str) {
-    let tally = report.tally();
-    assert!(tally.failed == 0 && tally.skipped == 0, "{what}\n{}", report.text());
+    let waiting = waiting();
+    let failed: Vec<String> = report
+        .failures()
+        .filter(|(case, _)| !waiting.contains(case.id.as_str()))
+        .map(|(c, f)| failure_text(c, f))
+        .collect();
+    assert!(failed.is_empty(), "{what}: {} cases failed\n{}", failed.len(), failed.concat());
+    assert_eq!(report.tally().skipped, 0, "{what}");
+    let passed = report.outcomes.iter().filter(|o| o.verdict == Verdict::Passed).map(|o| o.case.id.as_str());
+    let ready: Vec<&str> = passed.filter(|id| waiting.contains(id)).collect();
+    if !ready.is_empty() {
+        println!("{what}: take out of waiting.txt: {}", ready.join(" "));
+    }
 }
 
 #[test]

@@ -180,7 +180,8 @@ fn expectation(word: &str, rest: &str) -> Result<Expected, Problem> {
     Ok(match word {
         "<" => Expected::Exact(unescape(rest)?),
         "<=" => Expected::Numbers(required(rest, "words and numbers")?.into()),
-        "<~" => Expected::Glob(required(rest, "a pattern")?.into()),
+        // Leading blanks belong to the message.
+        "<~" => Expected::Glob(required(rest, "a pattern").map(|_| rest.into())?),
         "<!" | "<?" => {
             let class = if word == "<!" { 'E' } else { 'W' };
             let (first, text) = rest.trim().split_once(' ').unwrap_or((rest.trim(), ""));

@@ -162,6 +162,7 @@ impl<'s> Session<'s> {
             Step::Raw(bytes) => {
                 self.note(format!("> {}", bytes.escape_ascii()));
                 self.waiting.extend_from_slice(bytes);
+                self.flush()?;
             }
             Step::Watch { name, output, word } => self.watch(name, *output, word.as_deref())?,
             Step::Expect(expected) => self.expect(expected)?,
