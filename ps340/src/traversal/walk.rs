@@ -377,10 +377,13 @@ fn clip(
     let intensity = |i: usize| if bright { f64::from(list.points[i][3]) } else { 1.0 };
     for i in range {
         let to = clip[i - first];
+        // Each pushes its own: a stroke of two origins would pass through memory on its way.
         if list.class == VectorClass::Dots {
             strokes.extend(clipper.dot(to, intensity(i)));
-        } else if list.is_line(i) {
-            strokes.extend(clipper.line(clip[i - 1 - first], to, [intensity(i - 1), intensity(i)]));
+        } else if list.is_line(i)
+            && let Some(stroke) = clipper.line(clip[i - 1 - first], to, [intensity(i - 1), intensity(i)])
+        {
+            strokes.push(stroke);
         }
     }
 }
