@@ -122,7 +122,7 @@ impl Sender {
         }
         self.reader.push(text);
         let mut commands = Vec::new();
-        while let Some(read) = self.reader.next() {
+        for read in self.reader.by_ref() {
             commands.push(read.map_err(WayError::Text)?.command);
         }
         let data = if self.way.form == Form::Binary6 { DataForm::SixBit } else { DataForm::EightBit };
