@@ -388,14 +388,11 @@ impl Network {
     }
 }
 
-/// Lets a message arrive where strings are involved, whose bytes are counted and limited.
+/// Lets a message arrive where values of any size are involved, whose bytes are counted and limited.
 #[cold]
 fn arrive_with_strings(port: &mut Port, message: &mut Value, backlog: &mut Backlog, bytes: &mut usize) -> Arrival {
     let replaced = if port.is_active() { 0 } else { port.string_bytes(backlog) };
-    let added = match message {
-        Value::String(text) => text.len(),
-        _ => 0,
-    };
+    let added = message.heap_bytes();
     if added > 0 && *bytes - replaced + added > MAX_STRING_BYTES {
         return Arrival::Lost;
     }
