@@ -1,10 +1,14 @@
 //! How many vectors a second the emulator transforms, clips and draws. Each figure's result is checked first.
 
 use glam::{DMat4, DVec4};
+use protocol::command::{Fourth, VectorClass, VectorList};
 use ps340::{
     calligraphic::{self, Beam},
+    machine::{Input, Machine, Settings},
     matrices,
-    traversal::{Clipper, State, Stroke},
+    port::ObjectId,
+    structure::{Member, Node, Operation, Structures},
+    traversal::{self, Clipper, Requests, State, Stroke, Update},
 };
 use std::time::Instant;
 
@@ -77,7 +81,95 @@ fn rayon_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
+fn node(points: &[[f32; 4]]) -> Node {
+    let list = VectorList {
+        block_normalized: false,
+        fourth: Fourth::Intensity,
+        internal_units: false,
+        class: VectorClass::Separate,
+        dimension: 3,
+        estimate: None,
+        points: points.to_vec(),
+        lines: Vec::new(),
+    };
+    Node::Vectors(Box::new(list.into()))
+}
+
+fn operate(operation: Operation) -> Member {
+    Member::Unnamed(Node::Operate { operation, descendant: None })
+}
+
+/// A display of `count` vectors in lists of `length`, in perspective; the same number below a condition that is off.
+fn displayed(count: usize, length: usize, hidden: bool) -> Structures {
+    let points = vectors(length, 0.02);
+    let mut structures = Structures::default();
+    let [root, list] = [ObjectId::new(0), ObjectId::new(1)];
+    structures.define(list, node(&points));
+    let view = matrices::field_of_view(60.0, [0.5, 4.0]).unwrap_or(DMat4::IDENTITY);
+    let back = Operation::Translate(glam::DVec3::new(0.0, 0.0, 2.0));
+    let mut members = vec![operate(Operation::Projective(view)), operate(back)];
+    let instances = count / length;
+    members.extend((0..instances).map(|_| Member::Included(list)));
+    if hidden {
+        members.push(operate(Operation::IfBit { bit: 0, on: true }));
+        members.extend((0..instances).map(|_| Member::Included(list)));
+    }
+    structures.define(root, Node::Group(members));
+    structures.display(root);
+    structures
+}
+
+/// Whole updates: the walk over the structure, transformation, clipping, projection; on one thread.
+fn updates() {
+    println!("whole updates in perspective: walk, transform, clip, project; one thread");
+    let Ok(one) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
+    for (count, length) in [(10_000, 100), (100_000, 100), (1_000_000, 100), (100_000, 100_000), (1_000_000, 1_000_000)]
+    {
+        let mut seconds = [0.0; 2];
+        for (hidden, seconds) in [false, true].into_iter().zip(&mut seconds) {
+            let structures = displayed(count, length, hidden);
+            let mut update = Update::default();
+            *seconds = one.install(|| {
+                best(|| {
+                    let room = std::mem::take(&mut update.strokes);
+                    update = traversal::update_into(&structures, 0, &Requests::default(), room);
+                })
+            });
+            assert_eq!(update.strokes.len(), count, "all are seen");
+        }
+        println!(
+            "{count:>10} vectors in lists of {length:>9}: {:6.1} M/s; with as many more behind a condition that is off {:6.1} M/s",
+            count as f64 / seconds[0] / 1e6,
+            count as f64 / seconds[1] / 1e6,
+        );
+    }
+}
+
+/// What a frame costs while nothing changes.
+fn still() {
+    for count in [1_000, 1_000_000] {
+        let mut machine = Machine::new(Settings::default());
+        let line = ps340::line::LineId(1);
+        let coordinates: Vec<String> =
+            vectors(count, 0.02).iter().map(|p| format!("{},{},{}", p[0], p[1], p[2])).collect();
+        let text = format!("A := VECTOR_LIST SEPARATE_LINES {}; DISPLAY A;", coordinates.join(" "));
+        machine.step([Input::Attach(line), Input::Bytes(line, text.into_bytes())], 0);
+        machine.next_frame();
+        let updates = machine.counters().updates;
+        const FRAMES: u32 = 10_000;
+        let seconds = best(|| (0..FRAMES).for_each(|_| machine.next_frame()));
+        assert_eq!(machine.counters().updates, updates, "the picture was made again");
+        assert_eq!(machine.latest_update().strokes.len(), count);
+        println!(
+            "{count:>10} vectors that stand still: {:6.2} microseconds a frame",
+            seconds / f64::from(FRAMES) * 1e6
+        );
+    }
+}
+
 fn main() {
+    updates();
+    still();
     println!("vectors of the emulator, 1024 x 1024 pixels");
     for count in [1_000, 10_000, 100_000, 1_000_000] {
         rows(count);

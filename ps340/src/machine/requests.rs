@@ -117,7 +117,8 @@ impl Machine {
             write_back: waiting.write_backs.iter().copied().flatten().collect(),
             pick: pick.as_ref().map(|pick| self.pick_request(pick)),
         };
-        let update = traversal::update(&self.memory.structures, self.frame, &requests);
+        let room = std::mem::take(&mut self.update.strokes);
+        let update = traversal::update_into(&self.memory.structures, self.frame, &requests, room);
         self.counters.updates += 1;
         self.say_trouble(&update);
         for request in waiting.transforms {

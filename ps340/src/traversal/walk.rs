@@ -24,14 +24,21 @@ pub const MAX_VECTORS: u64 = 20_000_000;
 /// How many vectors XFORM VECTOR gathers.
 pub const MAX_GATHERED: usize = 1 << 20;
 
-/// Vectors of one list that one thread takes at a time.
-const PIECE: usize = 1 << 14;
+/// Vectors of one list that one thread takes at a time: so few that they stay in its cache.
+const PIECE: usize = 1 << 11;
 
 /// Walks everything that is displayed.
 ///
 /// - `frame`: the number of the refresh frame, for SET RATE and blinking.
 pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Update {
+    update_into(structures, frame, requests, Vec::new())
+}
+
+/// The same, with the room of the strokes of an earlier update; most of the time of a fresh one goes into its memory.
+pub fn update_into(structures: &Structures, frame: u64, requests: &Requests, mut strokes: Vec<Stroke>) -> Update {
     let mut walk = Walk::new(structures, frame, requests);
+    strokes.clear();
+    walk.update.strokes = strokes;
     for root in structures.displayed() {
         walk.root(root, State::default());
     }
@@ -281,8 +288,15 @@ impl<'a> Walk<'a> {
             clip(list, 0..list.points.len(), &state.ctm, &clipper, &mut self.clip, &mut self.update.strokes);
             return;
         }
-        // Long lists are drawn in pieces by all threads; the order of the strokes stays that of the list.
         let starts: Vec<usize> = (0..list.points.len()).step_by(PIECE).collect();
+        if rayon::current_num_threads() == 1 {
+            for start in starts {
+                let end = (start + PIECE).min(list.points.len());
+                clip(list, start..end, &state.ctm, &clipper, &mut self.clip, &mut self.update.strokes);
+            }
+            return;
+        }
+        // Long lists are drawn in pieces by all threads; the order of the strokes stays that of the list.
         let parts: Vec<Vec<Stroke>> = starts
             .into_par_iter()
             .map(|start| {
