@@ -50,11 +50,14 @@ pub enum BinaryProblem {
         /// What is allowed.
         limit: usize,
     },
+    /// A command as text that cannot be read; its message with the place in the text.
+    #[error("{0}")]
+    Text(String),
     /// A part or an end of a vector list that was never begun (or was given up).
     #[error("no vector list is open")]
     NotOpen,
-    /// Another record while a vector list is open; the list is given up.
-    #[error("a vector list is open, and only its parts and its end may follow")]
+    /// Another record while a vector list or a text is open; what was open is given up.
+    #[error("a vector list or a text is open, and only its parts and its end may follow")]
     StillOpen,
     /// The end of a vector list that is not as long as it said; the list is given up.
     #[error("{announced} vectors were announced and {received} received")]

@@ -143,6 +143,34 @@ pub fn field_of_view(degrees: f64, z: [f64; 2]) -> Option<DMat4> {
     matrix.is_finite().then_some(matrix)
 }
 
+/// The view of a pyramid that need not be upright: the eye before a screen in the plane z = 0, whose middle is the
+/// origin.
+///
+/// ```text
+/// s = z + back   x' = ((x - right) back + right s) 2/width   y' likewise with up   w' = s
+/// z' = (z[1] + back)(z - z[0])/(z[1] - z[0])                 0 at the front, w' at the back
+/// ```
+///
+/// - `back`: distance of the eye before the screen, above 0.
+/// - `right`, `up`: how far the eye is from the middle of the screen.
+/// - `width`: width and height of the screen, above 0.
+/// - `z`: front and back boundary, in the coordinates of the data. Ours; measured from the screen, not from the eye.
+/// - Returns none for other values or a matrix that is not finite.
+pub fn eye(back: f64, right: f64, up: f64, width: f64, z: [f64; 2]) -> Option<DMat4> {
+    if !(back > 0.0 && width > 0.0) {
+        return None;
+    }
+    let half = 2.0 / width;
+    let depth = (z[1] + back) / extent(z)?;
+    let matrix = DMat4::from_cols(
+        DVec4::new(half * back, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, half * back, 0.0, 0.0),
+        DVec4::new(half * right, half * up, depth, 1.0),
+        DVec4::new(0.0, 0.0, 0.0 - z[0] * depth, back),
+    );
+    matrix.is_finite().then_some(matrix)
+}
+
 /// A 3x3 matrix from the machine's rows.
 fn rows3(first: [f64; 3], second: [f64; 3], third: [f64; 3]) -> DMat3 {
     DMat3::from_cols_array_2d(&[first, second, third])
@@ -268,5 +296,29 @@ mod tests {
             assert_eq!(field_of_view(angle, [1.0, 2.0]), None);
         }
         assert_eq!(field_of_view(30.0, [2.0, 2.0]), None);
+    }
+
+    #[test]
+    fn eye_keeps_the_screen_and_looks_from_its_side() {
+        let (back, right, up, width) = (3.0, 0.5, -0.25, 4.0);
+        let m = eye(back, right, up, width, [-1.0, 7.0]).unwrap();
+        // Points of the screen stay where they are: its right edge at 1, its top at 1.
+        for (x, y) in [(2.0, 2.0), (-2.0, 0.0), (0.0, 1.0)] {
+            let p = m * DVec4::new(x, y, 0.0, 1.0);
+            assert!((p / p.w).truncate().abs_diff_eq(DVec3::new(x / 2.0, y / 2.0, p.z / p.w), 1e-15));
+        }
+        // What lies on a line through the eye falls on one point of the screen.
+        let (eye_at, direction) = (DVec3::new(right, up, -back), DVec3::new(0.3, 0.2, 1.0));
+        let seen = [2.0, 5.0, 9.0].map(|t| {
+            let p = m * (eye_at + t * direction).extend(1.0);
+            (p / p.w).truncate().truncate()
+        });
+        assert!(seen.iter().all(|p| p.abs_diff_eq(seen[0], 1e-14)), "{seen:?}");
+        for (z, depth) in [(-1.0, 0.0), (7.0, 1.0)] {
+            let p = m * DVec4::new(1.0, 1.0, z, 1.0);
+            assert!((p.z / p.w - depth).abs() < 1e-15);
+        }
+        assert_eq!(eye(0.0, 0.0, 0.0, 1.0, [0.0, 1.0]), None);
+        assert_eq!(eye(1.0, 0.0, 0.0, f64::NAN, [0.0, 1.0]), None);
     }
 }

@@ -16,9 +16,22 @@ pub struct TooManyObjects;
 #[derive(Debug, Default)]
 pub struct Objects {
     ids: BTreeMap<Name, ObjectId>,
-    /// The name of each object; none if it was forgotten.
-    names: Vec<Option<Name>>,
+    identities: Vec<Identity>,
+    /// Numbers of anonymous objects that were given back.
+    free: Vec<ObjectId>,
     system: usize,
+}
+
+/// What an object is known by.
+#[derive(Debug)]
+enum Identity {
+    Named(Name),
+    /// It had a name; what refers to it keeps it.
+    Forgotten,
+    /// It never had a name: PREFIX, FOLLOW or a structure without a name made it.
+    Anonymous,
+    /// Given back.
+    Free,
 }
 
 impl Objects {
@@ -30,12 +43,45 @@ impl Objects {
         if let Some(id) = self.ids.get(name) {
             return Ok(*id);
         }
-        if self.names.len() >= MAX_OBJECTS {
+        let id = self.make(Identity::Named(name.clone()))?;
+        self.ids.insert(name.clone(), id);
+        Ok(id)
+    }
+
+    /// An object without a name. Its maker sees to it that nothing refers to it any more when it is
+    /// [released](Self::release).
+    ///
+    /// # Errors
+    /// [`TooManyObjects`].
+    pub fn anonymous(&mut self) -> Result<ObjectId, TooManyObjects> {
+        match self.free.pop() {
+            Some(id) => {
+                self.identities[id.index()] = Identity::Anonymous;
+                Ok(id)
+            }
+            None => self.make(Identity::Anonymous),
+        }
+    }
+
+    /// Gives an anonymous object back, for its number to be used again. Others stay as they are.
+    pub fn release(&mut self, id: ObjectId) {
+        if let Some(identity @ Identity::Anonymous) = self.identities.get_mut(id.index()) {
+            *identity = Identity::Free;
+            self.free.push(id);
+        }
+    }
+
+    /// Whether an object never had a name.
+    pub fn is_anonymous(&self, id: ObjectId) -> bool {
+        matches!(self.identities.get(id.index()), Some(Identity::Anonymous))
+    }
+
+    fn make(&mut self, identity: Identity) -> Result<ObjectId, TooManyObjects> {
+        if self.identities.len() >= MAX_OBJECTS {
             return Err(TooManyObjects);
         }
-        let id = ObjectId::new(self.names.len());
-        self.names.push(Some(name.clone()));
-        self.ids.insert(name.clone(), id);
+        let id = ObjectId::new(self.identities.len());
+        self.identities.push(identity);
         Ok(id)
     }
 
@@ -44,14 +90,17 @@ impl Objects {
         self.ids.get(name).copied()
     }
 
-    /// The name of an object; `?` for one that was forgotten.
+    /// The name of an object; `?` for one that has none.
     pub fn name(&self, id: ObjectId) -> &str {
-        self.names.get(id.index()).and_then(Option::as_ref).map_or("?", Name::as_str)
+        match self.identities.get(id.index()) {
+            Some(Identity::Named(name)) => name.as_str(),
+            _ => "?",
+        }
     }
 
     /// All objects so far belong to the system: INITIALIZE and wildcards spare them.
     pub fn seal_system(&mut self) {
-        self.system = self.names.len();
+        self.system = self.identities.len();
     }
 
     /// Whether an object belongs to the system.
@@ -63,7 +112,7 @@ impl Objects {
     /// [`clear_user`](Self::clear_user) only.
     pub fn forget(&mut self, name: &str) -> Option<ObjectId> {
         let id = self.ids.remove(name)?;
-        self.names[id.index()] = None;
+        self.identities[id.index()] = Identity::Forgotten;
         Some(id)
     }
 
@@ -74,18 +123,35 @@ impl Objects {
         matching.map(|(_, id)| *id).filter(|id| !self.is_system(*id)).collect()
     }
 
+    /// The names that a unit holds: the name itself and all that begins with `unit.`, by name.
+    pub fn unit(&self, unit: &str) -> Vec<Name> {
+        let from = self.ids.range::<str, _>((Bound::Included(unit), Bound::Unbounded)).map(|(name, _)| name);
+        let near = from.take_while(|name| name.as_str().starts_with(unit));
+        let inside = |name: &&Name| matches!(name.as_str().as_bytes().get(unit.len()), None | Some(b'.'));
+        near.filter(inside).cloned().collect()
+    }
+
+    /// All user objects, also those without a name.
+    pub fn users(&self) -> impl Iterator<Item = ObjectId> + use<> {
+        (self.system..self.identities.len()).map(ObjectId::new)
+    }
+
     /// Gives up all user objects; their numbers are used again.
-    pub fn clear_user(&mut self) -> impl Iterator<Item = ObjectId> + use<> {
+    pub fn clear_user(&mut self) {
         let system = self.system;
         self.ids.retain(|_, id| id.index() < system);
-        let end = self.names.len();
-        self.names.truncate(system);
-        (system..end).map(ObjectId::new)
+        self.identities.truncate(system);
+        self.free.clear();
     }
 
     /// How many objects there are, the system's included.
     pub fn len(&self) -> usize {
-        self.names.len()
+        self.identities.len() - self.free.len()
+    }
+
+    /// How many objects belong to the system.
+    pub fn system_len(&self) -> usize {
+        self.system
     }
 
     /// Whether there are none.
@@ -119,8 +185,34 @@ mod tests {
         objects.seal_system();
         let t1 = objects.object(&name("T1")).unwrap();
         assert_eq!(objects.user_objects("T"), [t1]);
-        assert_eq!(objects.clear_user().collect::<Vec<_>>(), [t1]);
+        assert_eq!(objects.users().collect::<Vec<_>>(), [t1]);
+        objects.clear_user();
         assert_eq!(objects.find("TABLETIN"), Some(tablet));
         assert_eq!(objects.find("T1"), None);
+    }
+
+    #[test]
+    fn anonymous_objects_are_used_again_and_named_ones_are_not() {
+        let mut objects = Objects::default();
+        let a = objects.object(&name("A")).unwrap();
+        let anonymous = objects.anonymous().unwrap();
+        assert_eq!(objects.name(anonymous), "?");
+        objects.release(a);
+        objects.release(anonymous);
+        objects.release(anonymous);
+        assert_eq!(objects.len(), 1);
+        assert_eq!(objects.anonymous().unwrap(), anonymous);
+        assert_ne!(objects.anonymous().unwrap(), anonymous);
+        assert_eq!(objects.find("A"), Some(a));
+    }
+
+    #[test]
+    fn a_unit_is_a_name_and_what_is_named_inside_it() {
+        let mut objects = Objects::default();
+        for text in ["S", "S.A", "S.A.B", "S1", "SA.S", "S$"] {
+            objects.object(&name(text)).unwrap();
+        }
+        assert_eq!(objects.unit("S"), [name("S"), name("S.A"), name("S.A.B")]);
+        assert!(objects.unit("T").is_empty());
     }
 }

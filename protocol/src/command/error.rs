@@ -1,7 +1,11 @@
 //! What is wrong with a command text, and where.
 
-use super::{MAX_POINTS, MAX_STATEMENT};
-use crate::{name::NameError, value::MAX_STRING};
+use super::{
+    MAX_POINTS, MAX_STATEMENT, MAX_TEXT,
+    syntax::{Bspline, Pattern, Polygon},
+    words::Word,
+};
+use crate::name::NameError;
 use std::{fmt, ops::Range};
 
 /// Longest piece of the offending text that an error quotes, in bytes.
@@ -13,6 +17,12 @@ pub enum Problem {
     /// Something else was expected here.
     #[error("unexpected")]
     Unexpected,
+    /// An abbreviation that is too short for the word that it begins.
+    #[error("too short for {}, which needs {}", .0.upper(), .0.least())]
+    TooShort(Word),
+    /// Nearly a word that can stand here.
+    #[error("did you mean {}?", .0.upper())]
+    Misspelt(Word),
     /// A byte that begins nothing.
     #[error("this character has no meaning")]
     BadCharacter,
@@ -29,7 +39,7 @@ pub enum Problem {
     #[error("the comment has no closing brace")]
     OpenComment,
     /// A text that is too long.
-    #[error("the text is longer than {MAX_STRING} characters")]
+    #[error("the text is longer than {MAX_TEXT} characters")]
     LongString,
     /// A name that is none.
     #[error(transparent)]
@@ -40,6 +50,27 @@ pub enum Problem {
     /// Too many vectors.
     #[error("a list holds at most {MAX_POINTS} vectors")]
     TooManyPoints,
+    /// A polygon without an inside.
+    #[error("a polygon has at least 3 vertices")]
+    FewVertices,
+    /// Too many vertices.
+    #[error("a polygon has at most {} vertices", Polygon::MAX_VERTICES)]
+    ManyVertices,
+    /// Normals at some vertices of a polygon only.
+    #[error("give a normal for each vertex of a polygon, or for none")]
+    MixedNormals,
+    /// Too many vertices or knots of a curve.
+    #[error("a curve has at most {} vertices", Bspline::MAX_VERTICES)]
+    LongCurve,
+    /// Rows of coefficients that do not fit the order.
+    #[error("a polynomial of order {order} has {} rows of coefficients", order + 1)]
+    Rows {
+        /// The order that was given.
+        order: u8,
+    },
+    /// Too many lengths in a pattern.
+    #[error("a pattern has at most {} lengths", Pattern::MAX_SEGMENTS)]
+    LongPattern,
     /// A statement without an end in sight.
     #[error("the statement is longer than {MAX_STATEMENT} bytes")]
     LongStatement,
@@ -94,7 +125,12 @@ impl CommandError {
     /// The message without the place.
     pub fn message(&self) -> String {
         let mut message = String::new();
-        if self.problem != Problem::Unexpected {
+        let hint = match self.problem {
+            Problem::TooShort(_) => format!(", {}", self.problem),
+            Problem::Misspelt(_) => format!("; {}", self.problem),
+            _ => String::new(),
+        };
+        if self.problem != Problem::Unexpected && hint.is_empty() {
             message = format!("{}, ", self.problem);
         }
         match self.expected {
@@ -107,7 +143,7 @@ impl CommandError {
         } else {
             message += &format!("found `{}`", self.found);
         }
-        message
+        message + &hint
     }
 }
 
@@ -138,6 +174,20 @@ mod tests {
         let fault = Fault { span: 17..18, problem: Problem::Unexpected, expected: &["X", "Y", "Z"] };
         let error = CommandError::new(text, fault);
         assert_eq!(error.to_string(), "2:6: expected X, Y or Z, found `Q`");
+    }
+
+    #[test]
+    fn the_message_says_which_word_was_meant() {
+        let message =
+            |problem| CommandError::new(b"CHA", Fault { span: 0..3, problem, expected: &["a command"] }).to_string();
+        assert_eq!(
+            message(Problem::TooShort(Word::Characters)),
+            "1:1: expected a command, found `CHA`, too short for CHARACTERS, which needs CHAR"
+        );
+        assert_eq!(
+            message(Problem::Misspelt(Word::Characters)),
+            "1:1: expected a command, found `CHA`; did you mean CHARACTERS?"
+        );
     }
 
     #[test]

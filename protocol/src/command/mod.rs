@@ -2,6 +2,7 @@
 
 pub mod syntax;
 pub mod number;
+pub mod spelling;
 pub mod words;
 pub mod token;
 pub mod error;
@@ -24,3 +25,7 @@ pub const MAX_POINTS: usize = 16 << 20;
 
 /// Longest statement in bytes, from its first character to its `;`. Ours: enough for two million vectors as text.
 pub const MAX_STATEMENT: usize = 64 << 20;
+
+/// Longest text in quotes, in bytes, as remembered from the manuals. Values that functions and binary records make are
+/// limited by [`MAX_STRING`](crate::value::MAX_STRING) instead.
+pub const MAX_TEXT: usize = 240;

@@ -12,6 +12,9 @@ use std::ops::Range;
 /// Room that the buffer keeps after a long statement, in bytes.
 const KEPT_ROOM: usize = 1 << 20;
 
+/// What gives up an unfinished statement.
+const RESET: &[u8] = b"!RESET";
+
 /// A command and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spanned<T> {
@@ -37,7 +40,8 @@ enum Place {
 ///
 /// [`push`](Self::push) takes the bytes as they come, and the iterator gives the commands of all statements that are
 /// complete; it gives none when the next `;` is still to come, and goes on after more was pushed. After an error it
-/// resumes behind the next `;`.
+/// resumes behind the next `;`. `!RESET`, at the beginning of a line also inside a text or a comment, drops what is
+/// unfinished before it.
 ///
 /// ```
 /// use protocol::command::CommandReader;
@@ -61,6 +65,8 @@ pub struct CommandReader {
     complete: Option<usize>,
     parsed: usize,
     last: Range<usize>,
+    /// The byte before the buffer.
+    before: u8,
 }
 
 impl Default for CommandReader {
@@ -73,6 +79,7 @@ impl Default for CommandReader {
             complete: None,
             parsed: 0,
             last: 0..0,
+            before: b'\n',
         }
     }
 }
@@ -81,6 +88,7 @@ impl CommandReader {
     /// Takes more of the stream. Take the commands out before pushing more, or the bytes pile up.
     pub fn push(&mut self, bytes: &[u8]) {
         if self.start == self.buffer.len() || self.start > self.buffer.len() / 2 {
+            self.before = self.byte_before(self.start);
             self.buffer.drain(..self.start);
             self.scanned -= self.start;
             self.complete = self.complete.map(|end| end - self.start);
@@ -119,11 +127,11 @@ impl CommandReader {
             }
             let rest = &self.buffer[self.scanned..];
             let (found, dropping) = match self.place {
-                Place::Code => (find(rest, [b';', b'\'', b'{']), false),
-                Place::Text => (find(rest, [b'\''; 3]), false),
-                Place::Comment => (find(rest, [b'}'; 3]), false),
-                Place::FirstComment => (find(rest, [b'}'; 3]), true),
-                Place::Dropped => (find(rest, [b';'; 3]), true),
+                Place::Code => (find(rest, [b';', b'\'', b'{', b'!']), false),
+                Place::Text => (find(rest, [b'\'', b'!', b'!', b'!']), false),
+                Place::Comment => (find(rest, [b'}', b'!', b'!', b'!']), false),
+                Place::FirstComment => (find(rest, [b'}', b'!', b'!', b'!']), true),
+                Place::Dropped => (find(rest, [b';', b'!', b'!', b'!']), true),
             };
             let at = found.map(|offset| self.scanned + offset);
             self.scanned = at.map_or(self.buffer.len(), |at| at + 1);
@@ -133,6 +141,22 @@ impl CommandReader {
             let Some(at) = at else {
                 return false;
             };
+            if self.buffer[at] == b'!' {
+                match self.reset_at(at) {
+                    Some(true) => {
+                        self.start = at;
+                        self.scanned = at + RESET.len();
+                        self.place = Place::Code;
+                    }
+                    Some(false) => {}
+                    None => {
+                        self.scanned = at;
+                        self.start = self.start.min(at);
+                        return false;
+                    }
+                }
+                continue;
+            }
             self.place = match (self.place, self.buffer[at]) {
                 (Place::Code, b'\'') => Place::Text,
                 (Place::Code, b'{') if at == self.start => Place::FirstComment,
@@ -145,6 +169,20 @@ impl CommandReader {
                 _ => Place::Code,
             };
         }
+    }
+
+    /// Whether the `!` at an offset is a `!RESET` that counts; none if more of the stream must come to tell.
+    fn reset_at(&self, at: usize) -> Option<bool> {
+        let counts = self.place == Place::Code || matches!(self.byte_before(at), b'\n' | b'\r');
+        let text = &self.buffer[at..self.buffer.len().min(at + RESET.len())];
+        if !counts || !text.eq_ignore_ascii_case(&RESET[..text.len()]) {
+            return Some(false);
+        }
+        (text.len() == RESET.len()).then_some(true)
+    }
+
+    fn byte_before(&self, at: usize) -> u8 {
+        at.checked_sub(1).map_or(self.before, |before| self.buffer[before])
     }
 
     /// Gives up a statement whose end is too far away.
@@ -195,12 +233,12 @@ impl Iterator for CommandReader {
     }
 }
 
-/// The offset of the first of three bytes.
+/// The offset of the first of four bytes.
 ///
 /// Blocks without any of them are passed over in one vector comparison each.
-fn find(bytes: &[u8], wanted: [u8; 3]) -> Option<usize> {
+fn find(bytes: &[u8], wanted: [u8; 4]) -> Option<usize> {
     const BLOCK: usize = 32;
-    let is_wanted = |b: u8| (b == wanted[0]) | (b == wanted[1]) | (b == wanted[2]);
+    let is_wanted = |b: u8| wanted.iter().fold(false, |any, w| any | (b == *w));
     let clear = bytes.chunks_exact(BLOCK).take_while(|block| !block.iter().fold(false, |any, &b| any | is_wanted(b)));
     let skipped = clear.count() * BLOCK;
     bytes[skipped..].iter().position(|&b| is_wanted(b)).map(|offset| skipped + offset)
@@ -237,6 +275,45 @@ mod tests {
         let kinds: Vec<bool> = all.iter().map(Result::is_ok).collect();
         assert_eq!(kinds, [true, true, true, true, false, true]);
         assert_eq!(all[1].as_ref().unwrap().span, 21..33);
+    }
+
+    #[test]
+    fn a_font_gives_its_characters_one_by_one() {
+        let all = read(&[b"F := BEGIN_FONT C[65]: N=2 P0,0 L1,1; c[66] : P 0,0 L .5,1 L 1,0; END_FONT; DISPLAY A;"]);
+        let commands: Vec<Command> = all.into_iter().map(|item| item.unwrap().command).collect();
+        let codes: Vec<u8> = commands
+            .iter()
+            .filter_map(|c| if let Command::FontCharacter(c) = c { Some(c.code) } else { None })
+            .collect();
+        assert_eq!((commands.len(), codes), (5, vec![65, 66]));
+        assert_eq!(commands[3], Command::EndFont);
+    }
+
+    #[test]
+    fn begin_needs_no_semicolon() {
+        for text in ["BEGIN DISPLAY A; END;", "BEGIN; DISPLAY A; END;"] {
+            let all: Vec<Command> = read(&[text.as_bytes()]).into_iter().map(|item| item.unwrap().command).collect();
+            assert!(matches!(all[..], [Command::Begin, Command::Display(_), Command::End]), "{text}");
+        }
+    }
+
+    #[test]
+    fn reset_gives_up_what_is_unfinished() {
+        for text in [
+            "V := VECTOR_LIST 1,1 !RESET;",
+            "SEND 'an open text\n!RESET;",
+            "A { an open comment;\r\n!reset;",
+            "{ an open comment\n!RESET ;",
+            "!RESET;",
+        ] {
+            for cut in 0..text.len() {
+                let all = read(&[&text.as_bytes()[..cut], &text.as_bytes()[cut..]]);
+                let commands: Vec<_> = all.iter().map(|item| item.as_ref().unwrap().command.clone()).collect();
+                assert_eq!(commands, [Command::Reset], "{text}");
+            }
+        }
+        let all = read(&[b"SEND 'no !RESET; here' TO <1>A; { nor !RESET; here } DISPLAY !; DISPLAY A;"]);
+        assert_eq!(all.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, false, true]);
     }
 
     #[test]
@@ -284,9 +361,9 @@ mod tests {
         for at in 0..100 {
             let mut bytes = vec![b'x'; 100];
             bytes[at] = b';';
-            assert_eq!(find(&bytes, *b";'{"), Some(at));
+            assert_eq!(find(&bytes, *b";'{!"), Some(at));
         }
-        assert_eq!(find(&[b'x'; 99], *b";'{"), None);
+        assert_eq!(find(&[b'x'; 99], *b";'{!"), None);
     }
 
     proptest! {

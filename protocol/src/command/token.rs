@@ -31,6 +31,16 @@ pub enum TokenKind {
     Close,
     /// `*`
     Star,
+    /// `/`
+    Slash,
+    /// `!`
+    Bang,
+    /// `[`
+    OpenBracket,
+    /// `]`
+    CloseBracket,
+    /// `->`
+    Arrow,
     /// `;`
     Semicolon,
     /// The end of the text.
@@ -90,6 +100,7 @@ impl<'t> Lexer<'t> {
                 let end = length.map_or(self.text.len(), |length| start + length);
                 return self.cut(start, end, TokenKind::Name);
             }
+            b'-' if self.text.get(start + 1) == Some(&b'>') => return self.cut(start, start + 2, TokenKind::Arrow),
             _ if Decimal::begins_with(byte) => return self.number(start),
             b'\'' => return self.string(start),
             b':' if self.text.get(start + 1) == Some(&b'=') => return self.cut(start, start + 2, TokenKind::Assign),
@@ -101,6 +112,10 @@ impl<'t> Lexer<'t> {
             b'(' => TokenKind::Open,
             b')' => TokenKind::Close,
             b'*' => TokenKind::Star,
+            b'/' => TokenKind::Slash,
+            b'!' => TokenKind::Bang,
+            b'[' => TokenKind::OpenBracket,
+            b']' => TokenKind::CloseBracket,
             b';' => TokenKind::Semicolon,
             _ => TokenKind::Bad(Problem::BadCharacter),
         };
@@ -179,6 +194,23 @@ mod tests {
     fn a_connection_is_cut_into_its_tokens() {
         let texts: Vec<&str> = tokens("CONNECT A.B<1>:<append>c$_1;").into_iter().map(|t| t.1).collect();
         assert_eq!(texts, ["CONNECT", "A.B", "<", "1", ">", ":", "<", "append", ">", "c$_1", ";"]);
+    }
+
+    #[test]
+    fn an_arrow_is_one_token_and_no_sign_of_a_number() {
+        let kinds: Vec<TokenKind> = tokens("[1]->A/!").into_iter().map(|t| t.0).collect();
+        assert!(matches!(
+            kinds[..],
+            [
+                TokenKind::OpenBracket,
+                TokenKind::Number(_),
+                TokenKind::CloseBracket,
+                TokenKind::Arrow,
+                TokenKind::Name,
+                TokenKind::Slash,
+                TokenKind::Bang
+            ]
+        ));
     }
 
     #[test]

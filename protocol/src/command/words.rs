@@ -7,7 +7,7 @@
 macro_rules! words {
     ($($(#[$meta:meta])* $word:ident $form:literal,)*) => {
         /// A keyword of the command language.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Word {
             $(#[doc = concat!("`", $form, "`")] $word,)*
         }
@@ -28,71 +28,181 @@ macro_rules! words {
 
 words! {
     // Commands.
+    AllowVecnorm "ALLOW_VECNORM",
+    Begin "BEGIN",
+    Cness "CNESS",
+    Command "COMMAND",
+    Configuration "CONFIGURATION",
+    Configure "CONFIGURE",
     Connect "CONNect",
     Delete "DELete",
     Disconnect "DISCONNect",
     Display "DISPlay",
+    End "END",
+    EndFont "END_Font",
     EndStructure "END_Structure",
+    Erase "ERASE",
+    Finish "FINISH",
+    Follow "FOLLow",
+    Follower "FOLLOWer",
     Forget "FORget",
+    GiveUpCpu "GIVE_UP_CPU",
     Include "INCLude",
     Initialize "INITialize",
+    Interface "INTERFACE",
+    Interrupts "INTERRUPTS",
+    Memory "MEMORY",
+    Optimize "OPTIMIZE",
+    Password "PASSWORD",
+    Prefix "PREfix",
+    Reboot "REBOOT",
     Remove "REMove",
+    ReserveWorkingStorage "RESERVE_WORKING_STORAGE",
+    Reset "RESET",
     Send "SEND",
+    Setup "SETUP",
+    Show "SHOW",
+    Status "STATus",
+    Store "STORE",
+    Structure "STRUCTURE",
+    Variable "VARIABLE",
     // What a name can be.
+    Attributes "ATTRibutes",
+    BeginFont "BEGIN_Font",
     BeginStructure "BEGIN_Structure",
+    Bspline "BSpline",
+    Cancel "CANCEL",
     Characters "CHARacters",
+    Copy "COPY",
+    Decrement "DECRement",
+    Eye "EYE",
     FieldOfView "FIELD_OF_VIEW",
+    Font "FONT",
+    Function "F",
+    If "IF",
+    Illumination "ILLUMination",
+    Increment "INCRement",
     Instance "INSTance",
+    Labels "LABELS",
+    Load "LOAD",
     Look "LOOK",
     Matrix2 "MATRIX_2x2",
     Matrix3 "MATRIX_3x3",
     Matrix4x3 "MATRIX_4X3",
     Matrix4 "MATRIX_4X4",
     Nil "NIL",
+    Pattern "PATtern",
+    Polygon "POLYGon",
+    Polynomial "POLYnomial",
+    Rational "RATIONAL",
+    RawBlock "RAWBLOCK",
     Rotate "ROTate",
     Scale "SCAle",
+    SectioningPlane "SECTioning_plane",
     Set "SET",
+    SolidRendering "SOLID_rendering",
+    Standard "STANdard",
+    SurfaceRendering "SURFace_rendering",
+    Text "TEXT",
     Translate "TRANslate",
     VectorList "VECtor_list",
     Viewport "VIEWport",
     Window "WINDOW",
+    WriteBack "WRITEBACK",
     Xform "XFORM",
     // Options and settings.
     All "ALL",
+    Ambient "AMBIENT",
+    And "AND",
     Applied "APPLied",
+    Area "AREA",
+    AroundCorners "AROUND_corners",
     At "AT",
     Back "BACK",
+    Blending "BLENDING",
+    Blinking "BLINKing",
     BlockNormalized "BLOCK_normalized",
     Boundary "BOUNDary",
     By "BY",
+    Chords "CHORDS",
+    Closed "CLOSED",
+    CodeOfCharacter "C",
+    Coefficients "COEFFicients",
     Color "COLOR",
+    ConditionalBit "CONDitional_bit",
     Connected "CONNected_lines",
     Connections "CONNections",
+    Contrast "CONTRAST",
+    Coplanar "COPLANar",
+    Count "COUNT",
+    Csm "CSM",
     DepthClipping "DEPTH_CLipping",
+    Diffuse "DIFFUSE",
     Displays "DISPlays",
     Dots "DOTs",
+    Down "DOWN",
     Dy "DY",
     Dz "DZ",
+    External "EXTernal",
+    Fixed "FIXED",
     From "FROM",
     Front "FRONT",
-    Function "F",
     Horizontal "HORizontal",
+    HueOfPoint "H",
+    Identifier "IDentifier",
     In "IN",
     Intensity "INTENsity",
     IntensityOfPoint "I",
+    InternalUnits "INTERNAL_units",
+    Is "IS",
     Itemized "ITEMized",
+    Knots "KNOTS",
+    Left "LEFT",
+    Length "LENgth",
+    LevelOfDetail "LEVel_of_detail",
+    LineMark "L",
+    LineTexture "LINE_texture",
+    Location "LOCation",
+    Match "MATCH",
     Matrix "MATRIX",
     Names "NAMES",
+    NoMatch "NOMATCH",
+    NonPeriodic "NONPERIODIC",
     Number "N",
     Of "OF",
     Off "OFF",
     On "ON",
+    Opaque "OPAQUE",
+    Open "OPEN",
+    Order "ORDER",
+    Outline "OUTLINE",
+    Periodic "PERIODIC",
+    Phase "PHASE",
+    Picking "PICKing",
+    Plotter "PLOTter",
+    PositionMark "P",
+    Priority "PRIORity",
+    Rate "RATE",
+    Right "RIGHT",
+    Screen "SCREEN",
+    ScreenOriented "SCREEN_oriented",
     Separate "SEParate_lines",
+    Size "SIZE",
+    SoftMark "S",
+    Specular "SPECular",
+    Start "START",
     Step "STEP",
+    TableOfPoint "T",
+    Tabulated "TABulated",
     Then "THEN",
     To "TO",
     Up "UP",
+    Vector "VECtor",
     Vertical "VERTical",
+    Vertices "VERTICES",
+    Wide "WIDE",
+    With "WITH",
+    WorldOriented "WORLD_oriented",
     X "X",
     Y "Y",
     Z "Z",
@@ -100,18 +210,21 @@ words! {
     Char "CHAR",
     False "FALSE",
     Fix "FIX",
+    ListValue "VL",
     Matrix2Value "M2D",
     Matrix3Value "M3D",
     Matrix4x3Value "M4X3D",
     Matrix4Value "M4D",
     TransformValue "XFORMED",
     True "TRUE",
+    VariableValue "VALUE",
     Vector2Value "V2D",
     Vector3Value "V3D",
     Vector4Value "V4D",
 }
 
-/// The words that begin a command.
+/// The words that begin a command which defines nothing; `!` stands before RESET, and PATTERN, which also begins a
+/// definition, before a name.
 pub const COMMANDS: &[Word] = &[
     Word::Connect,
     Word::Send,
@@ -123,6 +236,24 @@ pub const COMMANDS: &[Word] = &[
     Word::Forget,
     Word::Initialize,
     Word::EndStructure,
+    Word::Store,
+    Word::Variable,
+    Word::Begin,
+    Word::End,
+    Word::EndFont,
+    Word::Prefix,
+    Word::Follow,
+    Word::Erase,
+    Word::Optimize,
+    Word::ReserveWorkingStorage,
+    Word::Setup,
+    Word::Show,
+    Word::Command,
+    Word::Configure,
+    Word::Finish,
+    Word::Reboot,
+    Word::GiveUpCpu,
+    Word::AllowVecnorm,
 ];
 
 /// The words that begin the definition of an object.
@@ -145,24 +276,119 @@ pub const OBJECTS: &[Word] = &[
     Word::Matrix4,
     Word::Xform,
     Word::Nil,
+    Word::Polygon,
+    Word::With,
+    Word::Outline,
+    Word::Attributes,
+    Word::Illumination,
+    Word::Bspline,
+    Word::Polynomial,
+    Word::Rational,
+    Word::Labels,
+    Word::BeginFont,
+    Word::Pattern,
+    Word::RawBlock,
+    Word::Copy,
+    Word::Eye,
+    Word::Load,
+    Word::Font,
+    Word::Standard,
+    Word::Text,
+    Word::Increment,
+    Word::Decrement,
+    Word::If,
+    Word::Cancel,
+    Word::WriteBack,
+    Word::SurfaceRendering,
+    Word::SolidRendering,
+    Word::SectioningPlane,
+];
+
+/// The words that are a whole object on their own, so that a lone one is no name of another object.
+pub const COMPLETE: &[Word] = &[
+    Word::Nil,
+    Word::BeginStructure,
+    Word::BeginFont,
+    Word::Instance,
+    Word::VectorList,
+    Word::WriteBack,
+    Word::SurfaceRendering,
+    Word::SolidRendering,
+    Word::SectioningPlane,
 ];
 
 /// The words after `SET`.
-pub const SETTINGS: &[Word] = &[Word::Color, Word::Intensity, Word::DepthClipping];
+pub const SETTINGS: &[Word] = &[
+    Word::Color,
+    Word::Intensity,
+    Word::DepthClipping,
+    Word::Picking,
+    Word::ConditionalBit,
+    Word::LevelOfDetail,
+    Word::Rate,
+    Word::Characters,
+    Word::Contrast,
+    Word::Csm,
+    Word::Displays,
+    Word::Blinking,
+    Word::Plotter,
+    Word::Priority,
+    Word::LineTexture,
+];
+
+/// The words after `IF`.
+pub const CONDITIONS: &[Word] = &[Word::ConditionalBit, Word::LevelOfDetail, Word::Phase];
 
 /// The words before the vectors of a list.
 pub const VECTOR_OPTIONS: &[Word] = &[
     Word::BlockNormalized,
+    Word::Color,
     Word::Connected,
     Word::Dots,
     Word::Itemized,
     Word::Separate,
+    Word::Tabulated,
     Word::Y,
     Word::Dy,
     Word::Z,
     Word::Dz,
+    Word::InternalUnits,
     Word::Number,
 ];
+
+/// The words in front of a polygon.
+pub const POLYGON_OPTIONS: &[Word] = &[Word::With, Word::Outline, Word::Polygon];
+
+/// The words of one side of ATTRIBUTES.
+pub const SURFACE_OPTIONS: &[Word] = &[Word::Color, Word::Diffuse, Word::Specular, Word::Opaque];
+
+/// The words of ILLUMINATION.
+pub const LIGHT_OPTIONS: &[Word] = &[Word::Color, Word::Ambient];
+
+/// The words of BSPLINE.
+pub const BSPLINE_OPTIONS: &[Word] = &[
+    Word::Order,
+    Word::Open,
+    Word::Closed,
+    Word::NonPeriodic,
+    Word::Periodic,
+    Word::Number,
+    Word::Vertices,
+    Word::Knots,
+    Word::Chords,
+];
+
+/// The words of POLYNOMIAL.
+pub const POLYNOMIAL_OPTIONS: &[Word] = &[Word::Order, Word::Coefficients, Word::Chords];
+
+/// The words of PATTERN.
+pub const PATTERN_OPTIONS: &[Word] = &[Word::AroundCorners, Word::Match, Word::NoMatch, Word::Length];
+
+/// The words after `SETUP`.
+pub const SETUP: &[Word] = &[Word::Cness, Word::Password, Word::Interface];
+
+/// The words after `SHOW`.
+pub const SHOW: &[Word] = &[Word::Interface, Word::Interrupts];
 
 /// The words after `INITIALIZE`.
 pub const INITIALIZE: &[Word] = &[Word::Connections, Word::Displays, Word::Names];
@@ -181,12 +407,19 @@ pub const VALUES: &[Word] = &[
     Word::Matrix4x3Value,
     Word::Matrix4Value,
     Word::TransformValue,
+    Word::VariableValue,
+    Word::ListValue,
 ];
 
 impl Word {
     /// The whole word in capitals, as the printer writes it.
     pub fn upper(self) -> String {
         self.form().to_ascii_uppercase()
+    }
+
+    /// The shortest form.
+    pub fn least(self) -> &'static str {
+        &self.form()[..self.shortest()]
     }
 
     /// The length of the shortest form: all before the first small letter and an underscore there, or the whole word.
@@ -214,6 +447,11 @@ impl Word {
             }
         }
         at >= shortest
+    }
+
+    /// The list of this word alone.
+    pub fn alone(self) -> &'static [Word] {
+        &Word::ALL[self as usize..][..1]
     }
 
     /// The word among `words` that `text` is.
@@ -244,6 +482,13 @@ mod tests {
     }
 
     #[test]
+    fn a_word_alone_is_the_list_of_it() {
+        for &word in Word::ALL {
+            assert_eq!(word.alone(), [word]);
+        }
+    }
+
+    #[test]
     fn underscores_may_be_dropped_behind_the_shortest_form_only() {
         assert!(Word::VectorList.accepts(b"VECTORLIST"));
         assert!(Word::VectorList.accepts(b"vectorl"));
@@ -259,7 +504,22 @@ mod tests {
     #[test]
     fn no_abbreviation_means_two_words_in_one_place() {
         let statements: Vec<Word> = COMMANDS.iter().chain(OBJECTS).copied().collect();
-        for context in [statements.as_slice(), SETTINGS, VECTOR_OPTIONS, INITIALIZE, VALUES] {
+        for context in [
+            statements.as_slice(),
+            SETTINGS,
+            CONDITIONS,
+            VECTOR_OPTIONS,
+            POLYGON_OPTIONS,
+            SURFACE_OPTIONS,
+            LIGHT_OPTIONS,
+            BSPLINE_OPTIONS,
+            POLYNOMIAL_OPTIONS,
+            PATTERN_OPTIONS,
+            SETUP,
+            SHOW,
+            INITIALIZE,
+            VALUES,
+        ] {
             for &word in context {
                 let upper = word.upper();
                 for length in word.shortest()..=upper.len() {

@@ -1,158 +1,157 @@
 //! A structure between BEGIN_STRUCTURE and END_STRUCTURE.
 //!
-//! Nothing of it is in the mass memory before its END, so that a picture never shows half of it.
+//! Nothing of it is in the mass memory before its END, so that a picture never shows half of it. What was read is kept
+//! as a flat list, and carried out with a stack of its own: the depth of a structure takes no stack of the computer.
 
-use super::{Message, node};
+use super::{
+    Message,
+    definition::{Content, Scope, define, node},
+};
 use crate::{
     memory::MassMemory,
-    port::ObjectId,
     structure::{Member, Node},
 };
-use protocol::{Name, command::Object};
+use protocol::Name;
 use std::collections::HashSet;
 
-/// An open structure.
+/// How deep BEGIN_STRUCTURE may nest. Ours.
+pub const MAX_NESTING: usize = 4096;
+
+/// An open structure, with the structures inside it.
 #[derive(Debug)]
 pub(super) struct Draft {
-    /// The full name; for a structure without a name, that of the structure around it.
-    path: Name,
-    named: bool,
-    members: Vec<Item>,
+    steps: Vec<Step>,
+    /// The full names of the structures that are open, the outermost first; one without a name has that of the
+    /// structure around it.
+    open: Vec<Name>,
+    /// The full names of everything named inside.
+    names: HashSet<Name>,
+    bytes: usize,
 }
 
 #[derive(Debug)]
-enum Item {
-    /// A node; the name is the full one.
-    Object(Option<Name>, Object),
-    Structure(Draft),
+enum Step {
+    Begin { path: Name, named: bool },
+    Member(Option<Name>, Content),
+    End,
 }
 
 impl Draft {
-    pub(super) fn new(path: Name, named: bool) -> Draft {
-        Draft { path, named, members: Vec::new() }
+    /// BEGIN_STRUCTURE outside of others.
+    pub(super) fn new(name: Name) -> Draft {
+        let begin = Step::Begin { path: name.clone(), named: true };
+        Draft { steps: vec![begin], open: vec![name], names: HashSet::new(), bytes: 0 }
     }
 
-    pub(super) fn path(&self) -> &Name {
-        &self.path
+    /// The names of the structures that are open, the outermost first.
+    pub(super) fn open(&self) -> &[Name] {
+        &self.open
     }
 
     /// What to call it in messages.
     pub(super) fn title(&self) -> String {
-        self.path.to_string()
+        self.open.first().map_or_else(String::new, Name::to_string)
+    }
+
+    /// Bytes that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        self.bytes
     }
 
     /// The full name of something named inside.
-    pub(super) fn inner_name(&self, inner: &Name) -> Result<Name, Message> {
-        self.path.join(inner).map_err(|e| Message::Structure(e.to_string()))
+    fn inner_name(&mut self, name: Option<Name>) -> Result<Option<Name>, Message> {
+        let (Some(name), Some(outer)) = (name, self.open.last()) else { return Ok(None) };
+        let full = outer.join(&name).map_err(|e| Message::Structure(e.to_string()))?;
+        Ok(Some(full))
     }
 
-    /// Adds a member.
-    pub(super) fn push(&mut self, name: Option<Name>, object: Object) -> Result<(), Message> {
-        let name = name.map(|n| self.inner_name(&n)).transpose()?;
-        self.members.push(Item::Object(name, object));
+    /// BEGIN_STRUCTURE inside.
+    pub(super) fn begin(&mut self, name: Option<Name>) -> Result<(), Message> {
+        if self.open.len() >= MAX_NESTING {
+            return Err(Message::Structure(format!("structures nest at most {MAX_NESTING} deep")));
+        }
+        let full = self.inner_name(name)?;
+        let named = full.is_some();
+        let Some(path) = full.or_else(|| self.open.last().cloned()) else { return Ok(()) };
+        if named {
+            self.names.insert(path.clone());
+        }
+        self.open.push(path.clone());
+        self.add(Step::Begin { path, named }, 0);
         Ok(())
     }
 
-    /// Adds an inner structure that has come to its end.
-    pub(super) fn push_structure(&mut self, inner: Draft) {
-        self.members.push(Item::Structure(inner));
+    /// Adds a member to the innermost open structure.
+    pub(super) fn push(&mut self, name: Option<Name>, content: Content) -> Result<(), Message> {
+        let name = self.inner_name(name)?;
+        self.names.extend(name.clone());
+        let bytes = content.bytes();
+        self.add(Step::Member(name, content), bytes);
+        Ok(())
+    }
+
+    /// END_STRUCTURE. Returns whether the outermost structure is complete.
+    pub(super) fn end(&mut self) -> bool {
+        self.open.pop();
+        self.add(Step::End, 0);
+        self.open.is_empty()
+    }
+
+    fn add(&mut self, step: Step, bytes: usize) {
+        self.bytes += size_of::<Step>() + bytes;
+        self.steps.push(step);
     }
 
     /// Brings the whole structure into the mass memory.
     ///
     /// A reference to `X` made inside `A.B` means `A.B.X` if that is named in this structure, else `A.X`,
-    /// else the global `X`.
-    pub(super) fn commit(self, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<(), Message> {
-        let mut names = HashSet::new();
-        self.collect_names(&mut names);
-        let name = self.path.clone();
-        let known = memory.objects.find(name.as_str()).is_some_and(|id| memory.is_defined(id));
-        self.define(&names, memory, messages)?;
-        if known {
-            messages.push(Message::Redefined(name));
-        }
-        Ok(())
-    }
-
-    fn collect_names(&self, names: &mut HashSet<Name>) {
-        for item in &self.members {
-            match item {
-                Item::Object(Some(name), _) => {
-                    names.insert(name.clone());
+    /// else the global `X`. A member that cannot be made is reported and left out; the rest of the structure stands.
+    pub(super) fn commit(self, memory: &mut MassMemory, messages: &mut Vec<Message>) {
+        let mut open: Vec<(Name, bool, Vec<Member>)> = Vec::new();
+        let mut made: HashSet<Name> = HashSet::new();
+        let known = |name: &Name, memory: &MassMemory| {
+            memory.objects.find(name.as_str()).is_some_and(|id| memory.is_defined(id))
+        };
+        for step in self.steps {
+            let member = match step {
+                Step::Begin { path, named } => {
+                    open.push((path, named, Vec::new()));
+                    continue;
                 }
-                Item::Object(None, _) => {}
-                Item::Structure(inner) => {
-                    if inner.named {
-                        names.insert(inner.path.clone());
-                    }
-                    inner.collect_names(names);
-                }
-            }
-        }
-    }
-
-    fn define(
-        self,
-        names: &HashSet<Name>,
-        memory: &mut MassMemory,
-        messages: &mut Vec<Message>,
-    ) -> Result<ObjectId, Message> {
-        let path = self.path.clone();
-        let group = self.group(names, memory, messages)?;
-        Ok(memory.define_node(&path, group)?)
-    }
-
-    fn group(
-        self,
-        names: &HashSet<Name>,
-        memory: &mut MassMemory,
-        messages: &mut Vec<Message>,
-    ) -> Result<Node, Message> {
-        let mut members = Vec::with_capacity(self.members.len());
-        for item in self.members {
-            let member = match item {
-                Item::Structure(inner) if inner.named => inner.define(names, memory, messages).map(Member::Named),
-                Item::Structure(inner) => inner.group(names, memory, messages).map(Member::Unnamed),
-                Item::Object(name, object) => {
-                    let made = node(object, &mut |reference| memory.object(&scoped(&self.path, reference, names)));
-                    match (made, name) {
-                        (Ok(node), Some(name)) => {
-                            memory.define_node(&name, node).map(Member::Named).map_err(Message::from)
+                Step::Member(name, content) => {
+                    let Some((path, ..)) = open.last() else { continue };
+                    let scope = Scope::Inside { path, names: &self.names };
+                    match name {
+                        Some(name) => {
+                            let id = define(&name, content, scope, memory).map(Member::Named);
+                            if !made.insert(name.clone()) {
+                                messages.push(Message::Redefined(name));
+                            }
+                            id
                         }
-                        (made, _) => made.map(Member::Unnamed),
+                        None => node(None, content, scope, memory).map(Member::Unnamed),
+                    }
+                }
+                Step::End => {
+                    let Some((path, named, members)) = open.pop() else { continue };
+                    let group = Node::Group(members);
+                    if !named {
+                        memory.add_anonymous(group).map(Member::Named).map_err(Message::from)
+                    } else {
+                        let again = if open.is_empty() { known(&path, memory) } else { !made.insert(path.clone()) };
+                        let id = memory.define_node(&path, group);
+                        if again && id.is_ok() {
+                            messages.push(Message::Redefined(path));
+                        }
+                        id.map(Member::Named).map_err(Message::from)
                     }
                 }
             };
-            // A member that cannot be made is reported and left out; the rest of the structure stands.
-            match member {
-                Ok(member) => members.push(member),
-                Err(message) => messages.push(message),
+            match (member, open.last_mut()) {
+                (Ok(member), Some((.., members))) => members.push(member),
+                (Ok(_), None) => {}
+                (Err(message), _) => messages.push(message),
             }
         }
-        Ok(Node::Group(members))
     }
-}
-
-/// Bytes that an object takes while its structure is open.
-pub(super) fn bytes(object: &Object) -> usize {
-    size_of::<Item>()
-        + match object {
-            Object::VectorList(list) => list.points.len() * size_of::<[f32; 4]>() + list.lines.len(),
-            Object::Characters(characters) => characters.text.len(),
-            Object::Instance(names) => names.len() * size_of::<Name>(),
-            _ => 0,
-        }
-}
-
-/// What a reference made inside the structure `path` means.
-fn scoped(path: &Name, reference: &Name, names: &HashSet<Name>) -> Name {
-    let mut scope = Some(path.as_str());
-    while let Some(outer) = scope {
-        let inner = Name::new(outer).and_then(|o| o.join(reference));
-        if let Some(found) = inner.ok().and_then(|n| names.get(&n)) {
-            return found.clone();
-        }
-        scope = outer.rsplit_once('.').map(|(rest, _)| rest);
-    }
-    reference.clone()
 }

@@ -24,8 +24,6 @@ pub enum Message {
     Syntax(CommandError),
     /// E 1: a binary command that cannot be read.
     Binary(BinaryError),
-    /// E 2: a name that has to exist does not.
-    NotFound(Name),
     /// W 3: a name got a new definition.
     Redefined(Name),
     /// E 4: structure commands in the wrong place.
@@ -44,8 +42,17 @@ pub enum Message {
         /// What is wrong.
         fault: NodeFault,
     },
-    /// E 2, E 8, E 9: an operation on the mass memory that was refused.
+    /// E 6: numbers of a definition that go together to nothing, or are out of range.
+    Range {
+        /// Of which name, if it has one.
+        name: Option<Name>,
+        /// What is wrong.
+        text: String,
+    },
+    /// E 2, E 4, E 6, E 8, E 9: an operation on the mass memory that was refused.
     Refused(Refusal),
+    /// I 11: an answer to COMMAND STATUS, SHOW INTERFACE and the like.
+    Information(String),
     /// E 8: an update could not show everything.
     Update(Trouble),
     /// W 12: bytes on a line that were not a packet.
@@ -63,7 +70,7 @@ impl Message {
             Message::Redefined(_) | Message::Line(_) => Class::Warning,
             Message::Function { fault, .. } if fault.class() == 'W' => Class::Warning,
             Message::Raster(fault) if fault.is_warning() => Class::Warning,
-            Message::Diagnostic(_) => Class::Information,
+            Message::Diagnostic(_) | Message::Information(_) => Class::Information,
             _ => Class::Error,
         }
     }
@@ -72,13 +79,14 @@ impl Message {
     pub fn number(&self) -> u16 {
         match self {
             Message::Syntax(_) | Message::Binary(_) => 1,
-            Message::NotFound(_) | Message::Refused(Refusal::NoFunction(_)) => 2,
             Message::Redefined(_) => 3,
             Message::Structure(_) => 4,
             Message::Function { fault, .. } => fault.number(),
             Message::Node { fault, .. } => fault.number(),
-            Message::Refused(Refusal::Full) | Message::Update(_) => 8,
-            Message::Refused(_) => 9,
+            Message::Range { .. } => 6,
+            Message::Refused(refusal) => refusal.number(),
+            Message::Update(_) => 8,
+            Message::Information(_) => 11,
             Message::Line(_) => 12,
             Message::Diagnostic(_) => 13,
             Message::Raster(fault) => fault.number(),
@@ -100,7 +108,9 @@ impl std::fmt::Display for Message {
         match self {
             Message::Syntax(error) => write!(f, "{error}"),
             Message::Binary(error) => write!(f, "{error}"),
-            Message::NotFound(name) => write!(f, "Name not found: {name}"),
+            Message::Range { name: Some(name), text } => write!(f, "Value out of range in {name}: {text}"),
+            Message::Range { name: None, text } => write!(f, "Value out of range: {text}"),
+            Message::Information(text) => f.write_str(text),
             Message::Redefined(name) => write!(f, "{name} redefined"),
             Message::Structure(text) => f.write_str(text),
             Message::Function { .. } => Ok(()),
@@ -111,5 +121,11 @@ impl std::fmt::Display for Message {
             Message::Diagnostic(text) => write!(f, "Host says: {text}"),
             Message::Raster(fault) => write!(f, "{fault}"),
         }
+    }
+}
+
+impl From<Refusal> for Message {
+    fn from(refusal: Refusal) -> Message {
+        Message::Refused(refusal)
     }
 }

@@ -1,47 +1,71 @@
 //! Commands become edits of objects, network and structure.
 
-mod draft;
 mod message;
+mod definition;
+mod draft;
+mod edit;
+mod flow;
+mod service;
 
+#[cfg(test)]
+mod tests;
+
+pub use definition::MAX_RAWBLOCK;
+pub use draft::MAX_NESTING;
 pub use message::{Class, Message};
 
-use crate::{
-    memory::{MASS_MEMORY, MassMemory, Refusal},
-    network::Destination,
-    port::{Cause, ObjectId},
-    structure::{Node, Operation},
-};
+use crate::memory::{MASS_MEMORY, MassMemory, Refusal};
+use definition::{Content, Scope};
 use draft::Draft;
 use protocol::{
     Name,
-    command::{self, Command, Initialize, NamePattern, Object},
+    command::{Command, FontCharacter, Initialize, Object},
 };
+use std::collections::BTreeMap;
 
-/// How deep BEGIN_STRUCTURE may nest.
-pub const MAX_NESTING: usize = 64;
+/// How deep BEGIN may nest. Ours.
+pub const MAX_BEGINS: u32 = 1000;
 
-/// The command interpreter of one line: it holds the structures that are open there.
+/// The command interpreter of one line: it holds what is open there.
 #[derive(Debug, Default)]
 pub struct Interpreter {
-    open: Vec<Draft>,
-    /// Bytes in the open structures.
-    open_bytes: usize,
+    structure: Option<Draft>,
+    font: Option<Font>,
+    /// How many BEGIN wait for their END.
+    begun: u32,
+    /// Between OPTIMIZE STRUCTURE and END OPTIMIZE. Nothing is built in another way there.
+    optimizing: bool,
+    /// Between CONFIGURE and FINISH CONFIGURATION.
+    privileged: bool,
+}
+
+/// A font between BEGIN_FONT and END_FONT.
+#[derive(Debug)]
+struct Font {
+    name: Option<Name>,
+    characters: BTreeMap<u8, FontCharacter>,
 }
 
 impl Interpreter {
-    /// Gives up what is open, as when the line closes. Returns the name of the outermost open structure.
-    pub fn abandon(&mut self) -> Option<String> {
-        let name = self.open.first().map(|d| d.title());
-        self.open.clear();
-        self.open_bytes = 0;
-        name
+    /// Gives up what is open, as when the line closes. Returns what that was, if anything.
+    pub fn abandon(&mut self, memory: &mut MassMemory) -> Option<String> {
+        let font = self.font.take().map(|font| font.name.map_or_else(|| "BEGIN_FONT".into(), |name| name.to_string()));
+        let structure = self.structure.take().map(|draft| draft.title());
+        let begun = std::mem::take(&mut self.begun);
+        if begun > 0 {
+            memory.structures.release();
+        }
+        self.optimizing = false;
+        structure.or(font).or((begun > 0).then(|| "BEGIN".into()))
     }
 
     /// Carries out one command; what it has to say goes to `messages`.
     pub fn execute(&mut self, command: Command, memory: &mut MassMemory, messages: &mut Vec<Message>) {
+        memory.privileged = self.privileged;
         if let Err(message) = self.try_execute(command, memory, messages) {
             messages.push(message);
         }
+        memory.privileged = false;
     }
 
     fn try_execute(
@@ -53,62 +77,52 @@ impl Interpreter {
         match command {
             Command::Define { name, object } => self.define(name, object, memory, messages)?,
             Command::EndStructure => self.end_structure(memory, messages)?,
-            Command::Display(name) => {
-                let id = memory.object(&name)?;
-                memory.structures.display(id);
+            Command::FontCharacter(character) => self.font_character(character, memory)?,
+            Command::EndFont => self.end_font(memory, messages)?,
+            Command::Begin => self.begin(memory)?,
+            Command::End => self.end(memory)?,
+            Command::Display(name) => edit::display(&name, memory)?,
+            Command::Remove(name) => edit::remove(&name, memory),
+            Command::Include { name, into } => edit::include(&name, &into, memory)?,
+            Command::RemoveFrom { name, from } => edit::remove_from(&name, &from, memory),
+            Command::Delete(patterns) => edit::delete(&patterns, memory, messages),
+            Command::Forget(name) => edit::forget(&name, memory)?,
+            Command::ForgetUnit(unit) => edit::forget_unit(&unit, memory)?,
+            Command::Prefix { name, operate } => edit::prefix(&name, &operate, memory)?,
+            Command::Follow { name, operate } => edit::follow(&name, &operate, memory)?,
+            Command::RemovePrefix(name) => memory.remove_prefix(&name)?,
+            Command::RemoveFollower(name) => memory.remove_follower(&name)?,
+            Command::PatternWith { name, pattern } => edit::pattern_with(&name, &pattern, memory)?,
+            Command::ErasePattern(name) => edit::erase_pattern(&name, memory)?,
+            Command::Connect(arc) => flow::connect(&arc.source, arc.output, &arc.destination, memory)?,
+            Command::ConnectSeveral { source, output, destinations } => {
+                flow::connect_several(&source, output, &destinations, memory, messages);
             }
-            Command::Remove(name) => {
-                if let Some(id) = memory.objects.find(name.as_str()) {
-                    memory.structures.remove(id);
-                }
-            }
-            Command::Include { name, into } => {
-                if !memory.include(&name, &into)? {
-                    return Err(Message::Structure(format!("{into} is no instance that could include {name}")));
-                }
-            }
-            Command::RemoveFrom { name, from } => {
-                // Removing what is not there is normal for the clients of the time.
-                if let (Some(member), Some(group)) =
-                    (memory.objects.find(name.as_str()), memory.objects.find(from.as_str()))
-                {
-                    memory.structures.exclude(member, group);
-                }
-            }
-            Command::Delete(patterns) => {
-                for pattern in patterns {
-                    delete(&pattern, memory)?;
-                }
-            }
-            Command::Forget(name) => {
-                let id = user_object(&name, memory)?.ok_or(Message::NotFound(name.clone()))?;
-                debug_assert!(memory.objects.find(name.as_str()) == Some(id));
-                memory.objects.forget(name.as_str());
-            }
-            Command::Connect(arc) => connect(&arc, memory)?,
             Command::Disconnect { source, output, destination } => {
-                disconnect(&source, output, destination.as_ref(), memory);
+                flow::disconnect(&source, output, destination.as_ref(), memory);
             }
-            Command::Send { value, destination } => {
-                let to = memory.objects.find(destination.name.as_str()).filter(|id| memory.is_defined(*id));
-                let to = to.ok_or_else(|| Message::NotFound(destination.name.clone()))?;
-                let sent = memory.send(to, destination.input, value);
-                sent.map_err(|fault| Message::Node { name: destination.name.to_string(), fault })?;
-            }
+            Command::Send { value, destination } => flow::send(value, &destination, memory)?,
+            Command::SendVectors { list, destination } => flow::send_vectors(&list, &destination, memory)?,
+            Command::SendMarks { count, lines, destination } => flow::send_marks(count, lines, &destination, memory)?,
+            Command::SendVariable { variable, destination } => flow::send_variable(&variable, &destination, memory)?,
+            Command::Variable(names) => flow::variables(names, memory, messages),
+            Command::SetupCness { constant, destination } => flow::setup_cness(constant, &destination, memory)?,
             Command::Initialize(what) => self.initialize(what, memory),
-            _ => return Err(Message::Structure("this command is not there yet".into())),
-        }
-        Ok(())
-    }
-
-    fn end_structure(&mut self, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<(), Message> {
-        let without = || Message::Structure("END_STRUCTURE without BEGIN_STRUCTURE".into());
-        let done = self.open.pop().ok_or_else(without)?;
-        match self.open.last_mut() {
-            Some(outer) => outer.push_structure(done),
-            None => {
-                self.open_bytes = 0;
-                done.commit(memory, messages)?;
+            Command::OptimizeStructure => self.optimize(true)?,
+            Command::EndOptimize => self.optimize(false)?,
+            Command::ReserveWorkingStorage(bytes) => memory.reserve(bytes)?,
+            Command::CommandStatus => self.status(memory, messages),
+            Command::Configure(password) => self.configure(&password, memory)?,
+            Command::FinishConfiguration => self.finish_configuration()?,
+            Command::SetupPassword(password) => self.setup_password(password, memory)?,
+            Command::Reboot(password) => self.reboot(&password, memory)?,
+            Command::SetupInterface { port, options } => service::setup_interface(port, options, memory)?,
+            Command::ShowInterface(port) => service::show_interface(&port, memory, messages),
+            Command::ShowInterrupts => service::show_interrupts(memory, messages),
+            // The memory needs no packing, the network runs between any two commands, and all vectors are reals.
+            Command::OptimizeMemory | Command::GiveUpCpu | Command::AllowVecnorm => {}
+            Command::Reset => {
+                self.abandon(memory);
             }
         }
         Ok(())
@@ -121,53 +135,123 @@ impl Interpreter {
         memory: &mut MassMemory,
         messages: &mut Vec<Message>,
     ) -> Result<(), Message> {
-        if let Object::BeginStructure = object {
-            if self.open.len() >= MAX_NESTING {
-                return Err(Message::Structure(format!("structures nest at most {MAX_NESTING} deep")));
+        match object {
+            Object::BeginStructure => self.begin_structure(name, memory),
+            Object::BeginFont if self.font.is_some() => {
+                Err(Message::Structure("BEGIN_FONT before END_FONT of the font before".into()))
             }
-            if self.open.is_empty() && name.is_none() {
-                return Err(Message::Structure("BEGIN_STRUCTURE needs a name".into()));
+            Object::BeginFont => {
+                self.font = Some(Font { name, characters: BTreeMap::new() });
+                Ok(())
             }
-            let path = match (self.open.last(), &name) {
-                (Some(outer), Some(inner)) => outer.inner_name(inner)?,
-                (Some(outer), None) => outer.path().clone(),
-                (None, Some(name)) => name.clone(),
-                (None, None) => return Ok(()),
-            };
-            self.open.push(Draft::new(path, name.is_some()));
-            return Ok(());
+            Object::Function { function, size } => {
+                // A function is made at once, also while a structure is open: its name is a full path.
+                let name = name.ok_or_else(|| Message::Structure("a function needs a name".into()))?;
+                flow::instance(name, &function, size, memory, messages)
+            }
+            object => self.add(name, Content::Object(object), memory, messages),
         }
-        if let Object::Function { function, size } = object {
-            // A function is made at once, also while a structure is open: its name is a full path.
-            let name = name.ok_or_else(|| Message::Structure("a function needs a name".into()))?;
-            let known = memory.objects.find(name.as_str()).is_some_and(|id| memory.is_defined(id));
-            memory.define_function(&name, &function, size)?;
-            if known {
-                messages.push(Message::Redefined(name));
-            }
-            return Ok(());
-        }
-        if let Some(draft) = self.open.last_mut() {
-            self.open_bytes += draft::bytes(&object);
-            if memory.bytes() + self.open_bytes > MASS_MEMORY {
+    }
+
+    /// Makes an object, or keeps it for the structure that is open.
+    fn add(
+        &mut self,
+        name: Option<Name>,
+        content: Content,
+        memory: &mut MassMemory,
+        messages: &mut Vec<Message>,
+    ) -> Result<(), Message> {
+        if let Some(draft) = &mut self.structure {
+            if memory.bytes() + draft.bytes() + content.bytes() > MASS_MEMORY {
                 return Err(Refusal::Full.into());
             }
-            return draft.push(name, object);
+            return draft.push(name, content);
         }
         let name = name.ok_or_else(|| Message::Structure("only a structure holds objects without names".into()))?;
         let known = memory.objects.find(name.as_str()).is_some_and(|id| memory.is_defined(id));
-        let node = node(object, &mut |reference| memory.object(reference))?;
-        memory.define_node(&name, node)?;
+        definition::define(&name, content, Scope::Outside, memory)?;
         if known {
             messages.push(Message::Redefined(name));
         }
         Ok(())
     }
 
+    fn begin_structure(&mut self, name: Option<Name>, memory: &MassMemory) -> Result<(), Message> {
+        match (&mut self.structure, name) {
+            (Some(draft), _) if memory.bytes() + draft.bytes() > MASS_MEMORY => Err(Refusal::Full.into()),
+            (Some(draft), name) => draft.begin(name),
+            (None, Some(name)) => {
+                self.structure = Some(Draft::new(name));
+                Ok(())
+            }
+            (None, None) => Err(Message::Structure("BEGIN_STRUCTURE needs a name".into())),
+        }
+    }
+
+    fn end_structure(&mut self, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<(), Message> {
+        let mut draft =
+            self.structure.take().ok_or_else(|| Message::Structure("END_STRUCTURE without BEGIN_STRUCTURE".into()))?;
+        if draft.end() {
+            draft.commit(memory, messages);
+        } else {
+            self.structure = Some(draft);
+        }
+        Ok(())
+    }
+
+    fn font_character(&mut self, character: FontCharacter, memory: &MassMemory) -> Result<(), Message> {
+        let without = || Message::Structure("a character of a font without BEGIN_FONT".into());
+        let font = self.font.as_mut().ok_or_else(without)?;
+        let held = font.characters.values().map(definition::font_bytes).sum::<usize>();
+        if memory.bytes() + held + definition::font_bytes(&character) > MASS_MEMORY {
+            return Err(Refusal::Full.into());
+        }
+        font.characters.insert(character.code, character);
+        Ok(())
+    }
+
+    fn end_font(&mut self, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<(), Message> {
+        let font = self.font.take().ok_or_else(|| Message::Structure("END_FONT without BEGIN_FONT".into()))?;
+        self.add(font.name, Content::Font(Box::new(font.characters)), memory, messages)
+    }
+
+    /// BEGIN: the picture stands still until the END of it. What is commanded and sent in between acts in order.
+    fn begin(&mut self, memory: &mut MassMemory) -> Result<(), Message> {
+        if self.begun >= MAX_BEGINS {
+            return Err(Message::Structure(format!("BEGIN nests at most {MAX_BEGINS} deep")));
+        }
+        if self.begun == 0 {
+            memory.structures.hold();
+        }
+        self.begun += 1;
+        Ok(())
+    }
+
+    fn end(&mut self, memory: &mut MassMemory) -> Result<(), Message> {
+        match self.begun {
+            0 => return Err(Message::Structure("END without BEGIN".into())),
+            1 => memory.structures.release(),
+            _ => {}
+        }
+        self.begun -= 1;
+        Ok(())
+    }
+
+    fn optimize(&mut self, on: bool) -> Result<(), Message> {
+        match (self.optimizing, on) {
+            (true, true) => Err(Message::Structure("OPTIMIZE STRUCTURE before END OPTIMIZE".into())),
+            (false, false) => Err(Message::Structure("END OPTIMIZE without OPTIMIZE STRUCTURE".into())),
+            _ => {
+                self.optimizing = on;
+                Ok(())
+            }
+        }
+    }
+
     fn initialize(&mut self, what: Initialize, memory: &mut MassMemory) {
         match what {
             Initialize::All => {
-                self.abandon();
+                self.abandon(memory);
                 memory.initialize();
             }
             Initialize::Connections => memory.network.retain_arcs(|_, _, _| false),
@@ -177,72 +261,5 @@ impl Interpreter {
                 memory.undefine_all(users);
             }
         }
-    }
-}
-
-/// The node of a command object; `resolve` finds what its references mean.
-fn node(object: Object, resolve: &mut dyn FnMut(&Name) -> Result<ObjectId, Refusal>) -> Result<Node, Message> {
-    Ok(match object {
-        Object::Nil => Node::Nil,
-        Object::Instance(names) => Node::Instance(names.iter().map(resolve).collect::<Result<_, _>>()?),
-        Object::VectorList(list) => Node::Vectors(Box::new(list.into())),
-        Object::Characters(characters) => Node::Characters(Box::new(characters)),
-        Object::Operate { operate, applied_to } => Node::Operate {
-            operation: Operation::new(&operate).map_err(|e| Message::Structure(e.into()))?,
-            descendant: applied_to.as_ref().map(resolve).transpose()?,
-        },
-        _ => {
-            return Err(Message::Structure("this object cannot stand here".into()));
-        }
-    })
-}
-
-/// The object of a name that is known and not the system's.
-fn user_object(name: &Name, memory: &MassMemory) -> Result<Option<ObjectId>, Message> {
-    match memory.objects.find(name.as_str()) {
-        Some(id) if memory.objects.is_system(id) => Err(Refusal::System(name.clone()).into()),
-        found => Ok(found),
-    }
-}
-
-fn delete(pattern: &NamePattern, memory: &mut MassMemory) -> Result<(), Message> {
-    match pattern {
-        NamePattern::Name(name) => {
-            let id = user_object(name, memory)?.filter(|id| memory.is_defined(*id));
-            memory.undefine_all(vec![id.ok_or_else(|| Message::NotFound(name.clone()))?]);
-        }
-        NamePattern::Prefix(prefix) => {
-            let found = memory.objects.user_objects(prefix);
-            memory.undefine_all(found);
-        }
-    }
-    Ok(())
-}
-
-/// Takes arcs away. Those that are not there are no matter: the clients of the time do that all along.
-fn disconnect(source: &Name, output: Option<u16>, destination: Option<&command::Destination>, memory: &mut MassMemory) {
-    let Some(id) = memory.objects.find(source.as_str()) else { return };
-    let to = match destination {
-        None => None,
-        Some(d) => match memory.objects.find(d.name.as_str()) {
-            Some(object) => Some(Destination { object, input: d.input }),
-            None => return,
-        },
-    };
-    memory.network.disconnect(id, output, to);
-}
-
-fn connect(arc: &command::Arc, memory: &mut MassMemory) -> Result<(), Message> {
-    let (from, to) = (memory.object(&arc.source)?, memory.object(&arc.destination.name)?);
-    let connected = memory.network.connect(from, arc.output, to, arc.destination.input);
-    connected.map_err(|fault| {
-        let blamed = if let Cause::NoSuchInput(_) = fault.cause { &arc.destination.name } else { &arc.source };
-        Message::Function { name: blamed.to_string(), fault }
-    })
-}
-
-impl From<Refusal> for Message {
-    fn from(refusal: Refusal) -> Message {
-        Message::Refused(refusal)
     }
 }

@@ -5,13 +5,21 @@ use crate::{
     port::ObjectId,
     structure::{Member, Node, Operation},
 };
+use protocol::command::CharacterOrientation;
 use std::fmt::Write;
+
+/// Members, names and labels that are shown of each object.
+const SHOWN: usize = 20;
 
 /// What the object is.
 pub(super) fn describe(memory: &MassMemory, id: ObjectId) -> String {
     let name = memory.objects.name(id);
     if let Some(row) = memory.network.function(id) {
         return format!("{name} := F:{}", row.name);
+    }
+    let target = memory.structures.follow(id);
+    if target != id {
+        return format!("{name} := {}", memory.objects.name(target));
     }
     match memory.structures.node(id) {
         None => format!("{name} is not defined"),
@@ -23,32 +31,88 @@ fn of_node(memory: &MassMemory, node: &Node) -> String {
     match node {
         Node::Nil => "NIL".into(),
         Node::Instance(members) => format!("INSTANCE OF {}", names(memory, members)),
-        Node::Group(members) => {
-            let mut text = format!("BEGIN_STRUCTURE, {} members:", members.len());
-            for member in members.iter().take(20) {
-                let _ = match member {
-                    Member::Named(id) | Member::Included(id) => write!(text, " {}", memory.objects.name(*id)),
-                    Member::Unnamed(Node::Operate { operation, .. }) => write!(text, " ({})", word(operation)),
-                    Member::Unnamed(_) => write!(text, " (data)"),
-                };
+        Node::Group(members) => group(memory, members),
+        Node::Vectors(v) => {
+            let mut text = format!("VECTOR_LIST {:?}, {} vectors", v.list.class, v.list.points.len());
+            if let Some([first, last]) = v.parameters {
+                let _ = write!(text, ", a curve over {first}:{last}");
+            }
+            if let Some((_, dashes)) = &v.dashed {
+                let _ = write!(text, ", in {} vectors of a pattern", dashes.points.len());
             }
             text
         }
-        Node::Vectors(v) => format!("VECTOR_LIST {:?}, {} vectors", v.list.class, v.list.points.len()),
         Node::Characters(c) => format!("CHARACTERS '{}'", String::from_utf8_lossy(&c.text)),
+        Node::Labels(block) => {
+            let texts = block.labels.iter().take(SHOWN).map(|(l, _)| format!("'{}'", String::from_utf8_lossy(&l.text)));
+            format!("LABELS, {}: {}", block.labels.len(), texts.collect::<Vec<_>>().join(" "))
+        }
         Node::Operate { operation, descendant } => {
-            let mut text = format!("{} {}", word(operation), values(operation));
+            let mut text = of_operation(memory, operation);
             if let Some(below) = descendant {
-                let _ = write!(text, " APPLIED TO {}", memory.objects.name(*below));
+                let _ = write!(text, " APPLIED TO {}", of_descendant(memory, *below));
             }
             text
         }
-        _ => "a node".into(),
+        Node::Polygons(p) => {
+            let vertices: usize = p.polygons.iter().map(|p| p.vertices.len()).sum();
+            format!("POLYGON, {} polygons, {vertices} vertices", p.polygons.len())
+        }
+        Node::Attributes(a) => {
+            let [hue, saturation, intensity] = a.front.color;
+            format!(
+                "ATTRIBUTES COLOR {hue},{saturation},{intensity} DIFFUSE {} SPECULAR {} OPAQUE {}{}",
+                a.front.diffuse,
+                a.front.specular,
+                a.front.opaque,
+                if a.back.is_some() { " AND others at the back" } else { "" }
+            )
+        }
+        Node::Illumination(light) => {
+            let ([hue, saturation, intensity], d) = (light.color, light.direction);
+            let ambient = light.ambient;
+            format!("ILLUMINATION {},{},{} COLOR {hue},{saturation},{intensity} AMBIENT {ambient}", d.x, d.y, d.z)
+        }
+        Node::Font(font) => format!("BEGIN_FONT, {} characters", font.len()),
+        Node::Pattern(pattern) => {
+            let lengths = pattern.segments.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+            let around = if pattern.around_corners { " AROUND_CORNERS" } else { "" };
+            let matched = if pattern.matched { " MATCH" } else { "" };
+            format!("PATTERN {lengths}{around}{matched} LENGTH {}", pattern.length)
+        }
+        Node::RawBlock(bytes) => format!("RAWBLOCK {}", bytes.len()),
+        Node::Variable(None) => "VARIABLE without a value".into(),
+        Node::Variable(Some(value)) => format!("VARIABLE, {}: {value:?}", value.kind()),
+    }
+}
+
+fn group(memory: &MassMemory, members: &[Member]) -> String {
+    let mut text = format!("BEGIN_STRUCTURE, {} members:", members.len());
+    for member in members.iter().take(SHOWN) {
+        let _ = match member {
+            Member::Named(id) if memory.objects.is_anonymous(*id) => write!(text, " {}", of_descendant(memory, *id)),
+            Member::Named(id) | Member::Included(id) => write!(text, " {}", memory.objects.name(*id)),
+            Member::Unnamed(Node::Operate { operation, .. }) => write!(text, " ({})", word(operation)),
+            Member::Unnamed(_) => write!(text, " (data)"),
+        };
+    }
+    text
+}
+
+/// The name of an object, or what kind of node one without a name is.
+fn of_descendant(memory: &MassMemory, id: ObjectId) -> String {
+    match memory.structures.node(id) {
+        Some(node) if memory.objects.is_anonymous(id) => match node {
+            Node::Operate { operation, .. } => format!("({})", word(operation)),
+            Node::Group(_) => "(structure)".into(),
+            _ => "(data)".into(),
+        },
+        _ => memory.objects.name(id).to_owned(),
     }
 }
 
 fn names(memory: &MassMemory, ids: &[ObjectId]) -> String {
-    ids.iter().take(20).map(|id| memory.objects.name(*id)).collect::<Vec<_>>().join(", ")
+    ids.iter().take(SHOWN).map(|id| memory.objects.name(*id)).collect::<Vec<_>>().join(", ")
 }
 
 fn word(operation: &Operation) -> &'static str {
@@ -59,20 +123,67 @@ fn word(operation: &Operation) -> &'static str {
         Operation::Affine(_) => "MATRIX_4X3",
         Operation::Projective(_) => "MATRIX_4X4",
         Operation::Viewport { .. } => "VIEWPORT",
+        Operation::LoadViewport { .. } => "LOAD VIEWPORT",
+        Operation::TextSize(_) => "TEXT SIZE",
+        Operation::Font(Some(_)) => "CHARACTER FONT",
+        Operation::Font(None) => "STANDARD FONT",
         Operation::Color { .. } => "SET COLOR",
+        Operation::ColorBlending(_) => "SET COLOR BLENDING",
         Operation::Intensity { .. } => "SET INTENSITY",
+        Operation::Contrast(_) => "SET CONTRAST TO",
+        Operation::Csm(_) => "SET CSM",
         Operation::DepthClipping(_) => "SET DEPTH_CLIPPING",
+        Operation::Displays { .. } => "SET DISPLAY",
+        Operation::Orientation(_) => "SET CHARACTERS",
+        Operation::Picking(_) => "SET PICKING",
+        Operation::PickIdentifier(_) => "SET PICKING IDENTIFIER =",
+        Operation::PickLocation { .. } => "SET PICKING LOCATION =",
+        Operation::LevelOfDetail(_) => "SET LEVEL_OF_DETAIL TO",
+        Operation::ChangeLevelOfDetail(1..) => "INCREMENT LEVEL_OF_DETAIL",
+        Operation::ChangeLevelOfDetail(_) => "DECREMENT LEVEL_OF_DETAIL",
+        Operation::ConditionalBit { .. } => "SET CONDITIONAL_BIT",
+        Operation::Rate { .. } => "SET RATE",
+        Operation::ExternalRate(_) => "SET RATE EXTERNAL",
+        Operation::Blinking(_) => "SET BLINKING",
+        Operation::BlinkRate(_) => "SET BLINK RATE",
+        Operation::Plotter(_) => "SET PLOTTER",
+        Operation::Priority(_) => "SET PRIORITY",
+        Operation::LineTexture { .. } => "SET LINE_TEXTURE",
+        Operation::IfBit { .. } => "IF CONDITIONAL_BIT",
+        Operation::IfLevel { .. } => "IF LEVEL_OF_DETAIL",
+        Operation::IfPhase(_) => "IF PHASE IS",
         Operation::XformMatrix => "XFORM MATRIX",
-        _ => "operate node",
+        Operation::XformVector => "XFORM VECTOR",
+        Operation::CancelXform => "CANCEL XFORM",
+        Operation::WriteBack => "WRITEBACK",
+        Operation::Rendering { solid: false, .. } => "SURFACE_RENDERING",
+        Operation::Rendering { solid: true, .. } => "SOLID_RENDERING",
+        Operation::SectioningPlane => "SECTIONING_PLANE",
     }
 }
 
-/// The values, matrices row by row as the machine has them.
-fn values(operation: &Operation) -> String {
-    let rows = |columns: &[&[f64]]| {
-        let row = |c: &&[f64]| c.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-        columns.iter().map(row).collect::<Vec<_>>().join("  ")
+/// The word of an operation with its values.
+fn of_operation(memory: &MassMemory, operation: &Operation) -> String {
+    let values = match operation {
+        Operation::Font(Some(font)) => memory.objects.name(*font).to_owned(),
+        operation => values(operation),
     };
+    let word = word(operation);
+    if values.is_empty() { word.into() } else { format!("{word} {values}") }
+}
+
+const fn on(on: bool) -> &'static str {
+    if on { "ON" } else { "OFF" }
+}
+
+/// Numbers with commas between, rows with two blanks.
+fn rows(rows: &[&[f64]]) -> String {
+    let row = |c: &&[f64]| c.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    rows.iter().map(row).collect::<Vec<_>>().join("  ")
+}
+
+/// The values, matrices row by row as the machine has them; empty for an operation without values.
+fn values(operation: &Operation) -> String {
     match operation {
         Operation::Character(m) => rows(&[&m.x_axis.to_array(), &m.y_axis.to_array()]),
         Operation::Linear(m) => rows(&[&m.x_axis.to_array(), &m.y_axis.to_array(), &m.z_axis.to_array()]),
@@ -85,12 +196,44 @@ fn values(operation: &Operation) -> String {
             rows(&[&c[0], &c[1], &c[2], &c[3]])
         }
         Operation::Translate(by) => rows(&[&by.to_array()]),
-        Operation::Viewport { horizontal, vertical, intensity } => {
+        Operation::Viewport { horizontal, vertical, intensity }
+        | Operation::LoadViewport { horizontal, vertical, intensity } => {
             rows(&[horizontal, vertical, intensity.as_ref().map_or(&[], |i| &i[..])])
         }
         Operation::Color { hue, saturation } => rows(&[&[*hue, *saturation]]),
-        Operation::Intensity { on, range } => format!("{} {}", if *on { "ON" } else { "OFF" }, rows(&[range])),
-        Operation::DepthClipping(on) => if *on { "ON" } else { "OFF" }.into(),
-        _ => String::new(),
+        Operation::Intensity { on: used, range } => format!("{} {}", on(*used), rows(&[range])),
+        Operation::TextSize(x) | Operation::ColorBlending(x) | Operation::Contrast(x) => x.to_string(),
+        Operation::DepthClipping(x)
+        | Operation::Csm(x)
+        | Operation::Picking(x)
+        | Operation::ExternalRate(x)
+        | Operation::Blinking(x)
+        | Operation::Plotter(x)
+        | Operation::IfPhase(x) => on(*x).into(),
+        Operation::Displays { scopes, on: lit } => {
+            let screens = (0..4).filter(|n| scopes & (1 << n) != 0).map(|n| n.to_string()).collect::<Vec<_>>();
+            format!("{} {}", screens.join(","), on(*lit))
+        }
+        Operation::Orientation(CharacterOrientation::World) => "WORLD_ORIENTED".into(),
+        Operation::Orientation(CharacterOrientation::Screen) => "SCREEN_ORIENTED".into(),
+        Operation::Orientation(CharacterOrientation::ScreenFixed) => "SCREEN_ORIENTED/FIXED".into(),
+        Operation::PickIdentifier(id) => id.to_string(),
+        Operation::PickLocation { center, size } => rows(&[&center.to_array(), &size.to_array()]),
+        Operation::LevelOfDetail(level) => level.to_string(),
+        Operation::ConditionalBit { bit, on: set } => format!("{bit} {}", on(*set)),
+        Operation::IfBit { bit, on: set } => format!("{bit} IS {}", on(*set)),
+        Operation::IfLevel { comparison, level } => format!("{} {level}", comparison.sign()),
+        Operation::Rate { rate, .. } => format!("{} {} {} {}", rate.on, rate.off, on(rate.initial), rate.delay),
+        Operation::BlinkRate(frames) => frames.to_string(),
+        Operation::Priority(priority) => priority.to_string(),
+        Operation::LineTexture { texture, .. } => texture.to_string(),
+        Operation::Font(_)
+        | Operation::ChangeLevelOfDetail(_)
+        | Operation::XformMatrix
+        | Operation::XformVector
+        | Operation::CancelXform
+        | Operation::WriteBack
+        | Operation::Rendering { .. }
+        | Operation::SectioningPlane => String::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Machine;
 use crate::interpreter::{Interpreter, Message};
-use crate::line::LineId;
+use crate::{line::LineId, memory::MassMemory};
 use protocol::{
     Value,
     command::{BinaryDecoder, CommandReader},
@@ -65,9 +65,14 @@ impl HostLine {
         frames.feed(bytes, |frame| decoders.frame(frame, machine));
     }
 
-    /// Gives up what is open. Returns the name of the structure that was.
-    pub(super) fn abandon(&mut self) -> Option<String> {
-        self.decoders.interpreter.abandon()
+    /// Everything that was begun on the line is forgotten: the machine starts again.
+    pub(super) fn restart(&mut self) {
+        self.decoders.interpreter = Interpreter::default();
+    }
+
+    /// Gives up what is open. Returns what that was.
+    pub(super) fn abandon(&mut self, memory: &mut MassMemory) -> Option<String> {
+        self.decoders.interpreter.abandon(memory)
     }
 }
 

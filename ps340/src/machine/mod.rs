@@ -16,7 +16,7 @@ use crate::{
     functions::devices::initial,
     interpreter::{Class, Message},
     line::LineId,
-    memory::MassMemory,
+    memory::{MassMemory, Refusal},
     picture::Picture,
     port::{Effect, ObjectId},
     raster::FrameBuffer,
@@ -108,15 +108,9 @@ pub struct Machine {
 impl Machine {
     /// A machine as after its start: the initial function instances exist, nothing is displayed.
     pub fn new(settings: Settings) -> Machine {
-        let mut memory = MassMemory::default();
-        for initial in initial() {
-            let made = memory.define_initial(&initial);
-            debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
-        }
-        memory.objects.seal_system();
         Machine {
             settings,
-            memory,
+            memory: initial_memory(),
             lines: BTreeMap::new(),
             writers: BTreeMap::new(),
             devices: Devices::default(),
@@ -174,8 +168,8 @@ impl Machine {
         self.account_for_reports();
         let emissions = self.devices.frame();
         self.emit(emissions);
-        let centiseconds = self.frame * 100 / FRAMES_PER_SECOND;
-        self.memory.network.advance(self.frame, centiseconds, &mut self.memory.effects);
+        self.memory.structures.set_frame(self.frame);
+        self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
         self.settle();
         self.update_picture();
         self.settle();
@@ -268,7 +262,7 @@ impl Machine {
 
     fn detach(&mut self, line: LineId) {
         self.writers.remove(&line);
-        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon()) {
+        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory)) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
     }
@@ -294,12 +288,33 @@ impl Machine {
     fn carry_effects(&mut self) {
         while !self.memory.effects.is_empty() || !self.messages.is_empty() {
             for effect in std::mem::take(&mut self.memory.effects) {
+                if effect == Effect::Restart {
+                    self.restart();
+                    break; // the others are of objects that are gone
+                }
                 self.carry(effect);
             }
             for message in std::mem::take(&mut self.messages) {
                 self.report(message);
             }
         }
+    }
+
+    /// REBOOT: everything is as after the start, but for the time, the lines, what was counted and the password.
+    fn restart(&mut self) {
+        let password = self.memory.system.password.take();
+        self.memory = initial_memory();
+        self.memory.system.password = password;
+        self.memory.structures.set_frame(self.frame);
+        self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
+        self.lines.values_mut().for_each(HostLine::restart);
+        self.devices = Devices::default();
+        self.panel = Panel::default();
+        self.frame_buffer = FrameBuffer::default();
+        self.update = Update::default();
+        self.updated = None;
+        self.transforms.clear();
+        self.messages.push(Message::Information("the machine was started again".into()));
     }
 
     fn carry(&mut self, effect: Effect) {
@@ -378,6 +393,13 @@ impl Machine {
     }
 
     fn update_picture(&mut self) {
+        if self.memory.structures.is_held() {
+            return; // between BEGIN and END
+        }
+        for (id, fault) in self.memory.structures.renew_dashes() {
+            let name = Name::new(self.memory.objects.name(id)).ok();
+            self.report(Message::Range { name, text: format!("the pattern is given up: {fault}") });
+        }
         let version = self.memory.structures.version();
         let stays = self.update.next_change.is_none_or(|change| self.frame < change);
         if self.updated == Some(version) && self.transforms.is_empty() && stays {
@@ -409,12 +431,28 @@ impl Machine {
                     let value = Value::Transform(Box::new(*m));
                     self.memory.network.emit(function, 1, value, &mut self.memory.effects);
                 }
-                None => self.report(Message::NotFound(name)),
+                None => self.report(Refusal::NotFound(name).into()),
             }
         }
         self.update = update;
         self.updated = Some(version);
     }
+}
+
+/// The mass memory after the start: the initial function instances exist.
+fn initial_memory() -> MassMemory {
+    let mut memory = MassMemory::default();
+    for initial in initial() {
+        let made = memory.define_initial(&initial);
+        debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
+    }
+    memory.objects.seal_system();
+    memory
+}
+
+/// The time of a frame, for clocks.
+const fn centiseconds(frame: u64) -> u64 {
+    frame * 100 / FRAMES_PER_SECOND
 }
 
 /// When a frame begins.

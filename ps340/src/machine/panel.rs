@@ -57,6 +57,7 @@ impl Panel {
             | Effect::Fault { .. }
             | Effect::Host { .. }
             | Effect::RequestTransform { .. }
+            | Effect::Restart
             | Effect::ReportMemory { .. } => {}
         }
     }

@@ -59,6 +59,8 @@ pub enum Effect {
         /// The path of the node.
         node: Name,
     },
+    /// The machine starts again: REBOOT.
+    Restart,
     /// A line about the use of memory is wanted, as a string from output 1 of the function.
     ReportMemory {
         /// The function that asks.

@@ -1,4 +1,4 @@
-//! Why a node does not take a message.
+//! Why a node does not take a message, or cannot be edited.
 
 use protocol::{Kind, command::Input};
 
@@ -12,6 +12,18 @@ pub enum NodeFault {
         input: Input,
         /// What came.
         kind: Kind,
+    },
+    /// Vectors came to a node that is no vector list.
+    #[error("Bad message type at {input}: vectors")]
+    Vectors {
+        /// Which input.
+        input: Input,
+    },
+    /// Lines or positions in a list of dots.
+    #[error("Bad message type at {input}: dots are neither lines nor positions")]
+    Dots {
+        /// Which input.
+        input: Input,
     },
     /// The node has no such input.
     #[error("No such input {input}")]
@@ -31,16 +43,49 @@ pub enum NodeFault {
         /// Which input.
         input: Input,
     },
+    /// A rendering without RESERVE_WORKING_STORAGE.
+    #[error("Insufficient memory: no working storage is reserved for a rendering")]
+    NoWorkingStorage,
+    /// A rendering that could not be made.
+    #[error("Rendering failed: {0}")]
+    Rendering(RenderingFault),
+}
+
+/// Why a rendering node has nothing to show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RenderingFault {
+    /// A kind of rendering that this machine does not make.
+    #[error("{} is not available", rendering(*.0))]
+    Unavailable(u8),
+    /// No rendering was made that could be shown or saved.
+    #[error("nothing was rendered")]
+    Nothing,
+}
+
+/// What a rendering node is asked for with 1 to 8.
+fn rendering(number: u8) -> &'static str {
+    match number {
+        1 => "the cross-section FIX(1)",
+        2 => "the sectioned rendering FIX(2)",
+        3 => "the backface removal FIX(3)",
+        4 => "the hidden-line removal FIX(4)",
+        5 => "the wash shading FIX(5)",
+        6 => "the flat shading FIX(6)",
+        7 => "the smooth shading FIX(7)",
+        8 => "the Phong shading FIX(8)",
+        _ => "this rendering",
+    }
 }
 
 impl NodeFault {
     /// The number of the message: those of the same faults of functions.
     pub fn number(&self) -> u16 {
         match self {
-            NodeFault::Kind { .. } => 5,
+            NodeFault::Kind { .. } | NodeFault::Vectors { .. } | NodeFault::Dots { .. } => 5,
             NodeFault::Range { .. } => 6,
-            NodeFault::Full { .. } => 8,
+            NodeFault::Full { .. } | NodeFault::NoWorkingStorage => 8,
             NodeFault::NoSuchInput { .. } => 9,
+            NodeFault::Rendering(_) => 10,
         }
     }
 
@@ -50,9 +95,15 @@ impl NodeFault {
     pub fn text(&self, name: &str) -> String {
         match self {
             NodeFault::Kind { input, kind } => format!("Bad message type at {input}{name}: {kind}"),
+            NodeFault::Vectors { input } => format!("Bad message type at {input}{name}: vectors"),
+            NodeFault::Dots { input } => {
+                format!("Bad message type at {input}{name}: dots are neither lines nor positions")
+            }
             NodeFault::NoSuchInput { input } => format!("No such input {input} of {name}"),
             NodeFault::Full { input } => format!("Insufficient memory at {input}{name}"),
             NodeFault::Range { input } => format!("Value out of range at {input}{name}"),
+            NodeFault::NoWorkingStorage => format!("Insufficient memory: {name} needs RESERVE_WORKING_STORAGE"),
+            NodeFault::Rendering(fault) => format!("Rendering failed: {fault} at {name}"),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Binary records to commands.
 
-use super::{FLAG_BLOCK, FLAG_ESTIMATE, Opcode, PART_POINTS};
+use super::{FLAG_BLOCK, FLAG_ESTIMATE, FLAG_INTERNAL, FOURTH_BIT, Opcode, PART_POINTS};
 use crate::{
     Kind, Name, Value,
     command::{
-        MAX_POINTS,
+        MAX_POINTS, MAX_STATEMENT, parse,
         syntax::{
             Arc, Axis, Boundaries, Characters, Command, Destination, Fourth, Initialize, Input, NamePattern, Object,
             Operate, VectorClass, VectorList,
@@ -27,10 +27,17 @@ const TOLD_POINTS: usize = 4;
 
 /// Makes commands out of the bodies of binary packets.
 ///
-/// It remembers a vector list that was begun in one packet and goes on in the next.
+/// It remembers a vector list, or a command as text, that was begun in one packet and goes on in the next.
 #[derive(Clone, Debug, Default)]
 pub struct BinaryDecoder {
-    open: Option<OpenList>,
+    open: Option<Open>,
+}
+
+/// What was begun and not ended.
+#[derive(Clone, Debug)]
+enum Open {
+    List(OpenList),
+    Text(Vec<u8>),
 }
 
 #[derive(Clone, Debug)]
@@ -48,12 +55,12 @@ impl BinaryDecoder {
         Commands { decoder: self, body, at: 0 }
     }
 
-    /// Whether a vector list was begun and its end is still to come.
+    /// Whether a vector list or a text was begun and its end is still to come.
     pub fn is_unfinished(&self) -> bool {
         self.open.is_some()
     }
 
-    /// Forgets an unfinished vector list.
+    /// Forgets an unfinished vector list or text.
     pub fn reset(&mut self) {
         self.open = None;
     }
@@ -80,13 +87,13 @@ impl BinaryDecoder {
             Opcode::VectorsBegin => {
                 let begun = begin_list(&mut reader)?;
                 *at = reader.at();
-                match self.open.replace(begun) {
+                match self.open.replace(Open::List(begun)) {
                     Some(_) => Err(BinaryError { offset: *at, field: "opcode", problem: BinaryProblem::StillOpen }),
                     None => Ok(None),
                 }
             }
             Opcode::VectorsPart => match &mut self.open {
-                Some(open) => {
+                Some(Open::List(open)) => {
                     let result = part(open, &mut reader);
                     if result.is_err() {
                         self.open = None;
@@ -96,16 +103,43 @@ impl BinaryDecoder {
                     Ok(None)
                 }
                 // Without the list its class is not known, and so neither is the length of the part.
-                None => Err(reader.error(1, "opcode", BinaryProblem::NotOpen)),
+                _ => {
+                    self.open = None;
+                    Err(reader.error(1, "opcode", BinaryProblem::NotOpen))
+                }
             },
             Opcode::VectorsEnd => {
                 *at = reader.at();
-                let open = self.open.take().ok_or_else(|| reader.error(1, "opcode", BinaryProblem::NotOpen))?;
+                let Some(Open::List(open)) = self.open.take() else {
+                    return Err(reader.error(1, "opcode", BinaryProblem::NotOpen));
+                };
                 let (announced, received) = (open.announced, open.list.points.len());
                 if announced != received {
                     return Err(reader.error(1, "opcode", BinaryProblem::Count { announced, received }));
                 }
                 Ok(Some(Command::Define { name: open.name, object: Object::VectorList(open.list) }))
+            }
+            Opcode::Text if !matches!(self.open, Some(Open::List(_))) => {
+                let before = match self.open.take() {
+                    Some(Open::Text(text)) => text,
+                    _ => Vec::new(),
+                };
+                let (text, more) = text_part(before, &mut reader)?;
+                let length = text.bytes.len();
+                *at = reader.at();
+                if more {
+                    self.open = Some(Open::Text(text.bytes));
+                    return Ok(None);
+                }
+                match parse(&text.bytes) {
+                    Ok(command) => Ok(Some(command)),
+                    Err(error) => {
+                        let inside = error.span.start.saturating_sub(text.before);
+                        let offset = reader.at() - (length - text.before) + inside;
+                        let problem = BinaryProblem::Text(error.to_string());
+                        Err(BinaryError { offset, field: "text", problem })
+                    }
+                }
             }
             // A list that is still open is given up; the record itself is good and is read again.
             _ if self.open.take().is_some() => {
@@ -119,6 +153,28 @@ impl BinaryDecoder {
             }
         }
     }
+}
+
+/// The text of a command so far.
+struct TextSoFar {
+    bytes: Vec<u8>,
+    /// How many of them came in earlier records.
+    before: usize,
+}
+
+/// Reads a part of a command as text behind what came `before`; and whether more follows.
+fn text_part<W: Witness>(
+    mut before: Vec<u8>,
+    reader: &mut Reader<'_, '_, W>,
+) -> Result<(TextSoFar, bool), BinaryError> {
+    let more = reader.boolean("more follows")?;
+    let part = reader.string("text")?;
+    let (earlier, found) = (before.len(), before.len() + part.len());
+    if found > MAX_STATEMENT {
+        return Err(reader.error(part.len(), "text", BinaryProblem::TooMany { found, limit: MAX_STATEMENT }));
+    }
+    before.extend_from_slice(part);
+    Ok((TextSoFar { bytes: before, before: earlier }, more))
 }
 
 /// The commands in the body of one packet.
@@ -147,9 +203,8 @@ fn begin_list<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<OpenList, Bi
     let unknown = |code: u8| BinaryProblem::Unknown(code.into());
     let name = reader.optional_name("name")?;
     let flags = reader.u8("flags")?;
-    if flags & !(FLAG_BLOCK | FLAG_ESTIMATE) != 0 {
-        return Err(reader.error(1, "flags", unknown(flags)));
-    }
+    let fourth = Fourth::ALL.get(usize::from(flags >> FOURTH_BIT)).copied();
+    let fourth = fourth.ok_or_else(|| reader.error(1, "flags", unknown(flags)))?;
     let code = reader.u8("class")?;
     let class = VectorClass::from_code(code).ok_or_else(|| reader.error(1, "class", unknown(code)))?;
     let dimension = reader.u8("dimension")?;
@@ -164,8 +219,8 @@ fn begin_list<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<OpenList, Bi
     }
     let list = VectorList {
         block_normalized: flags & FLAG_BLOCK != 0,
-        fourth: Fourth::Intensity,
-        internal_units: false,
+        fourth,
+        internal_units: flags & FLAG_INTERNAL != 0,
         class,
         dimension,
         estimate: (flags & FLAG_ESTIMATE != 0).then_some(estimate),
@@ -209,8 +264,13 @@ fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Resu
     }
     let told = count.min(TOLD_POINTS);
     let place = reader.at() - bytes.len();
+    let word = match list.fourth {
+        Fourth::Intensity => "intensity",
+        Fourth::Hue => "hue",
+        Fourth::Table => "table index",
+    };
     for (index, [x, y, z, i]) in points[..told].iter().enumerate() {
-        reader.tell_at(place + index * POINT, POINT, "vector", format_args!("{x}, {y}, {z}, intensity {i}"));
+        reader.tell_at(place + index * POINT, POINT, "vector", format_args!("{x}, {y}, {z}, {word} {i}"));
     }
     if count > told {
         let rest = (count - told) * POINT;

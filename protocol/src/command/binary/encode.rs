@@ -1,11 +1,11 @@
 //! Commands to binary records.
 
-use super::{FLAG_BLOCK, FLAG_ESTIMATE, Opcode, PART_POINTS};
+use super::{FLAG_BLOCK, FLAG_ESTIMATE, FLAG_INTERNAL, FOURTH_BIT, Opcode, PART_POINTS, PART_TEXT};
 use crate::{
     Name, Value,
     command::{
-        MAX_POINTS,
-        print::four_by_three,
+        MAX_POINTS, MAX_STATEMENT, MAX_TEXT,
+        print::{four_by_three, print},
         syntax::{
             Arc, Axis, Boundaries, Command, Destination, Initialize, NamePattern, Object, Operate, VectorClass,
             VectorList,
@@ -50,9 +50,33 @@ pub fn records_in_parts(
     if let Command::Define { name, object: Object::VectorList(list) } = command {
         return vector_list(name.as_ref(), list, part_points.clamp(1, PART_POINTS), scratch, emit);
     }
-    single(command, &mut Writer::new(scratch))?;
+    if !single(command, &mut Writer::new(scratch))? {
+        return text(command, scratch, emit);
+    }
     within("the record", scratch.len(), MAX_RECORD)?;
     emit(scratch);
+    Ok(())
+}
+
+/// A command that has no record of its own, as text.
+fn text(command: &Command, scratch: &mut Vec<u8>, emit: &mut dyn FnMut(&[u8])) -> Result<(), EncodeError> {
+    if let Command::Define { object: Object::Labels(labels), .. } = command {
+        for label in &labels.labels {
+            within("the text of a label", label.text.len(), MAX_TEXT)?;
+        }
+    }
+    let mut printed = Vec::new();
+    print(command, &mut printed);
+    within("the text", printed.len(), MAX_STATEMENT)?;
+    let mut parts = printed.chunks(PART_TEXT).peekable();
+    while let Some(part) = parts.next() {
+        scratch.clear();
+        let mut writer = Writer::new(scratch);
+        writer.u8(Opcode::Text.code());
+        writer.u8(parts.peek().is_some().into());
+        writer.string("a part of the text", part)?;
+        emit(scratch);
+    }
     Ok(())
 }
 
@@ -68,7 +92,9 @@ fn vector_list(
     writer.u8(Opcode::VectorsBegin.code());
     writer.optional_name(name);
     let block = if list.block_normalized { FLAG_BLOCK } else { 0 };
-    writer.u8(block | if list.estimate.is_some() { FLAG_ESTIMATE } else { 0 });
+    let estimate = if list.estimate.is_some() { FLAG_ESTIMATE } else { 0 };
+    let internal = if list.internal_units { FLAG_INTERNAL } else { 0 };
+    writer.u8(block | estimate | internal | (list.fourth as u8) << FOURTH_BIT);
     writer.u8(list.class.code());
     writer.u8(list.dimension);
     writer.u32(list.estimate.unwrap_or(0));
@@ -99,8 +125,8 @@ fn vector_list(
     Ok(())
 }
 
-/// A command that is one record.
-fn single(command: &Command, writer: &mut Writer<'_>) -> Result<(), EncodeError> {
+/// Writes a command that is one record; false, and nothing is written, if it has none of its own.
+fn single(command: &Command, writer: &mut Writer<'_>) -> Result<bool, EncodeError> {
     match command {
         Command::Define { name, object } => return definition(name.as_ref(), object, writer),
         Command::EndStructure => writer.u8(Opcode::EndStructure.code()),
@@ -151,9 +177,9 @@ fn single(command: &Command, writer: &mut Writer<'_>) -> Result<(), EncodeError>
             destination(to, writer);
             send_value(value, writer)?;
         }
-        _ => {}
+        _ => return Ok(false),
     }
-    Ok(())
+    Ok(true)
 }
 
 fn names(opcode: Opcode, names: &[&Name], writer: &mut Writer<'_>) {
@@ -190,22 +216,23 @@ fn send_value(value: &Value, writer: &mut Writer<'_>) -> Result<(), EncodeError>
     Ok(())
 }
 
-/// A definition that is one record: all but vector lists.
-fn definition(name: Option<&Name>, object: &Object, writer: &mut Writer<'_>) -> Result<(), EncodeError> {
+/// A definition that is one record; false if it has none of its own.
+fn definition(name: Option<&Name>, object: &Object, writer: &mut Writer<'_>) -> Result<bool, EncodeError> {
     let opcode = match object {
         Object::Nil => Opcode::Nil,
         Object::BeginStructure => Opcode::BeginStructure,
         Object::Instance(_) => Opcode::Instance,
         Object::Characters(_) => Opcode::Characters,
-        Object::VectorList(_) => Opcode::VectorsBegin,
         Object::Function { .. } => Opcode::Function,
-        Object::Operate { operate, .. } => operate_opcode(operate),
-        _ => Opcode::Nil,
+        Object::Operate { operate, .. } => match operate_opcode(operate) {
+            Some(opcode) => opcode,
+            None => return Ok(false),
+        },
+        _ => return Ok(false),
     };
     writer.u8(opcode.code());
     writer.optional_name(name);
     match object {
-        Object::Nil | Object::BeginStructure | Object::VectorList(_) => {}
         Object::Instance(names) => {
             count("the number of names", names.len(), writer)?;
             names.iter().for_each(|name| writer.name(name));
@@ -224,13 +251,15 @@ fn definition(name: Option<&Name>, object: &Object, writer: &mut Writer<'_>) -> 
             writer.optional_name(applied_to.as_ref());
             operate_fields(operate, writer);
         }
+        // NIL and BEGIN_STRUCTURE have a name only.
         _ => {}
     }
-    Ok(())
+    Ok(true)
 }
 
-fn operate_opcode(operate: &Operate) -> Opcode {
-    match operate {
+/// The record of an operate node, if it has one of its own.
+fn operate_opcode(operate: &Operate) -> Option<Opcode> {
+    Some(match operate {
         Operate::Rotate { .. } => Opcode::Rotate,
         Operate::Scale(_) => Opcode::Scale,
         Operate::Translate(_) => Opcode::Translate,
@@ -246,10 +275,11 @@ fn operate_opcode(operate: &Operate) -> Opcode {
         Operate::SetIntensity { .. } => Opcode::SetIntensity,
         Operate::SetDepthClipping(_) => Opcode::SetDepthClipping,
         Operate::XformMatrix => Opcode::XformMatrix,
-        _ => Opcode::Nil,
-    }
+        _ => return None,
+    })
 }
 
+/// The fields of an operate node that has a record of its own.
 fn operate_fields(operate: &Operate, writer: &mut Writer<'_>) {
     match operate {
         Operate::Rotate { axis, angle } => {
@@ -290,7 +320,7 @@ fn operate_fields(operate: &Operate, writer: &mut Writer<'_>) {
             writer.reals(range);
         }
         Operate::SetDepthClipping(on) => writer.u8((*on).into()),
-        Operate::XformMatrix => {}
+        // XFORM MATRIX has none; the others travel as text.
         _ => {}
     }
 }

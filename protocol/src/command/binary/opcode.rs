@@ -66,6 +66,7 @@ opcodes! {
     Connect 0x50 "CONNECT",
     Disconnect 0x51 "DISCONNECT",
     Send 0x52 "SEND",
+    Text 0x60 "command as text",
 }
 
 impl Opcode {

@@ -3,7 +3,7 @@
 use super::Parser;
 use crate::command::{
     error::Fault,
-    syntax::{Arc, Command, Destination, Object},
+    syntax::{Arc, Command, Destination, Input, Object},
     token::TokenKind,
     words::Word,
 };
@@ -36,16 +36,24 @@ impl Parser<'_> {
     }
 
     /// `<j>name`
-    fn destination(&mut self) -> Result<Destination, Fault> {
+    pub(super) fn destination(&mut self) -> Result<Destination, Fault> {
         Ok(Destination { input: self.input()?, name: self.name()? })
     }
 
-    /// `name1<i>:<j>name2`
+    /// `name1<i>:<j>name2[,<k>name3...]`
     pub(super) fn connect(&mut self) -> Result<Command, Fault> {
         let source = self.name()?;
         let output = self.output()?;
         self.expect(TokenKind::Colon, &["`:`"])?;
-        Ok(Command::Connect(Arc { source, output, destination: self.destination()? }))
+        let destination = self.destination()?;
+        if self.token.kind != TokenKind::Comma {
+            return Ok(Command::Connect(Arc { source, output, destination }));
+        }
+        let mut destinations = vec![destination];
+        while self.accept(TokenKind::Comma) {
+            destinations.push(self.destination()?);
+        }
+        Ok(Command::ConnectSeveral { source, output, destinations })
     }
 
     /// `name1[<i>][:<j>name2]` or `name1:ALL`
@@ -62,13 +70,55 @@ impl Parser<'_> {
         Ok(Command::Disconnect { source, output, destination })
     }
 
-    /// `value TO <j>name`
+    /// `value TO <j>name`, `VALUE(name) TO ...`, `VL(name) TO ...` or `number*P TO ...`
     pub(super) fn send(&mut self) -> Result<Command, Fault> {
-        let value = self.value()?;
+        if let Some(variable) = self.call(Word::VariableValue)? {
+            return Ok(Command::SendVariable { variable, destination: self.to_destination()? });
+        }
+        if let Some(list) = self.call(Word::ListValue)? {
+            return Ok(Command::SendVectors { list, destination: self.to_destination()? });
+        }
+        if self.is_number() && self.ahead().kind == TokenKind::Star {
+            let count = self.count()?;
+            self.advance();
+            let mark = self.expect_one_of(&[Word::PositionMark, Word::LineMark], &["P", "L"])?;
+            let lines = mark == Word::LineMark;
+            return Ok(Command::SendMarks { count, lines, destination: self.to_destination()? });
+        }
+        Ok(Command::Send { value: self.value()?, destination: self.to_destination()? })
+    }
+
+    /// `value IN name`: SEND to input 1.
+    pub(super) fn store(&mut self) -> Result<Command, Fault> {
+        if let Some(variable) = self.call(Word::VariableValue)? {
+            return Ok(Command::SendVariable { variable, destination: self.in_name()? });
+        }
+        Ok(Command::Send { value: self.value()?, destination: self.in_name()? })
+    }
+
+    /// `word(name)`, if it stands here.
+    fn call(&mut self, word: Word) -> Result<Option<crate::Name>, Fault> {
+        if !self.accept_word(word) {
+            return Ok(None);
+        }
+        self.expect(TokenKind::Open, &["`(`"])?;
+        let name = self.name()?;
+        self.expect(TokenKind::Close, &["`)`"])?;
+        Ok(Some(name))
+    }
+
+    /// `[TO] <j>name`
+    fn to_destination(&mut self) -> Result<Destination, Fault> {
         self.accept_word(Word::To);
         if self.token.kind != TokenKind::Less {
             return Err(self.fail(&["TO", "`<`"]));
         }
-        Ok(Command::Send { value, destination: self.destination()? })
+        self.destination()
+    }
+
+    /// `[IN] name`
+    fn in_name(&mut self) -> Result<Destination, Fault> {
+        self.skip_before_name(Word::In);
+        Ok(Destination { input: Input::Number(1), name: self.name()? })
     }
 }

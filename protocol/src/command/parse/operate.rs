@@ -1,14 +1,11 @@
-//! Operate nodes: transformations, viewing and attributes.
+//! Operate nodes: transformations and viewing.
 
 use super::Parser;
-use crate::{
-    Name,
-    command::{
-        error::Fault,
-        syntax::{Axis, Boundaries, Operate},
-        token::TokenKind,
-        words::{self, Word},
-    },
+use crate::command::{
+    error::Fault,
+    syntax::{Axis, Boundaries, Operate},
+    token::TokenKind,
+    words::Word,
 };
 use glam::DVec3;
 
@@ -27,11 +24,7 @@ impl Parser<'_> {
             }
             Word::Translate => {
                 self.accept_word(Word::By);
-                let (by, count) = self.up_to_three()?;
-                if count < 2 {
-                    return Err(self.fail(&["the y component"]));
-                }
-                Operate::Translate(DVec3::from_array(by))
+                Operate::Translate(DVec3::from_array(self.point()?))
             }
             Word::Matrix2 => Operate::Matrix2(self.matrix2()?),
             Word::Matrix3 => Operate::Matrix3(self.matrix3()?),
@@ -44,18 +37,47 @@ impl Parser<'_> {
                 Operate::Window { x, y, boundaries: self.boundaries()? }
             }
             Word::FieldOfView => Operate::FieldOfView { angle: self.real()?, boundaries: self.boundaries()? },
+            Word::Eye => self.eye()?,
             Word::Viewport => {
-                let horizontal = self.limits(Word::Horizontal, &["HORIZONTAL"])?;
-                let vertical = self.limits(Word::Vertical, &["VERTICAL"])?;
-                let intensity =
-                    if self.is(Word::Intensity) { Some(self.limits(Word::Intensity, &["INTENSITY"])?) } else { None };
+                let (horizontal, vertical, intensity) = self.viewport()?;
                 Operate::Viewport { horizontal, vertical, intensity }
             }
-            Word::Set => self.set()?,
-            _ => {
-                self.expect_word(Word::Matrix, &["MATRIX"])?;
-                Operate::XformMatrix
+            Word::Load => {
+                self.expect_word(Word::Viewport, &["VIEWPORT"])?;
+                let (horizontal, vertical, intensity) = self.viewport()?;
+                Operate::LoadViewport { horizontal, vertical, intensity }
             }
+            Word::Font => Operate::CharacterFont(self.name()?),
+            Word::Standard => {
+                self.expect_word(Word::Font, &["FONT"])?;
+                Operate::StandardFont
+            }
+            Word::Text => {
+                self.expect_word(Word::Size, &["SIZE"])?;
+                Operate::TextSize(self.real()?)
+            }
+            Word::Xform => match self.expect_one_of(&[Word::Matrix, Word::Vector], &["MATRIX", "VECTOR"])? {
+                Word::Matrix => Operate::XformMatrix,
+                _ => Operate::XformVector,
+            },
+            Word::Cancel => {
+                self.expect_word(Word::Xform, &["XFORM"])?;
+                Operate::CancelXform
+            }
+            Word::WriteBack => Operate::WriteBack,
+            Word::SurfaceRendering => Operate::SurfaceRendering,
+            Word::SolidRendering => Operate::SolidRendering,
+            Word::SectioningPlane => Operate::SectioningPlane,
+            Word::Increment => {
+                self.expect_word(Word::LevelOfDetail, &["LEVEL_OF_DETAIL"])?;
+                Operate::IncrementLevelOfDetail
+            }
+            Word::Decrement => {
+                self.expect_word(Word::LevelOfDetail, &["LEVEL_OF_DETAIL"])?;
+                Operate::DecrementLevelOfDetail
+            }
+            Word::If => self.condition()?,
+            _ => self.set()?,
         })
     }
 
@@ -72,7 +94,7 @@ impl Parser<'_> {
 
     /// `AT a FROM f [UP u]` or `FROM f AT a [UP u]`
     fn look(&mut self) -> Result<Operate, Fault> {
-        let first = self.accept_one_of(&[Word::At, Word::From]).ok_or_else(|| self.fail(&["AT", "FROM"]))?;
+        let first = self.expect_one_of(&[Word::At, Word::From], &["AT", "FROM"])?;
         let first_point = DVec3::from_array(self.reals()?);
         let (at, from) = if first == Word::At {
             self.expect_word(Word::From, &["FROM"])?;
@@ -108,25 +130,37 @@ impl Parser<'_> {
         self.real()
     }
 
-    fn set(&mut self) -> Result<Operate, Fault> {
-        match self.accept_one_of(words::SETTINGS) {
-            Some(Word::Color) => {
-                let [hue, saturation] = self.reals()?;
-                Ok(Operate::SetColor { hue, saturation })
-            }
-            Some(Word::Intensity) => Ok(Operate::SetIntensity { on: self.on_or_off()?, range: self.range()? }),
-            Some(_) => Ok(Operate::SetDepthClipping(self.on_or_off()?)),
-            None => Err(self.fail(&["COLOR", "INTENSITY", "DEPTH_CLIPPING"])),
-        }
+    /// `HORIZONTAL [=] a:b VERTICAL [=] c:d [INTENSITY [=] e:f]`
+    fn viewport(&mut self) -> Result<([f64; 2], [f64; 2], Option<[f64; 2]>), Fault> {
+        let horizontal = self.limits(Word::Horizontal, &["HORIZONTAL"])?;
+        let vertical = self.limits(Word::Vertical, &["VERTICAL"])?;
+        let intensity =
+            if self.is(Word::Intensity) { Some(self.limits(Word::Intensity, &["INTENSITY"])?) } else { None };
+        Ok((horizontal, vertical, intensity))
     }
 
-    /// `APPLIED [TO] name` or `THEN name`, if it stands here.
-    pub(super) fn applied_to(&mut self) -> Result<Option<Name>, Fault> {
-        if self.accept_word(Word::Applied) {
-            self.skip_before_name(Word::To);
-        } else if !self.accept_word(Word::Then) {
-            return Ok(None);
+    /// `BACK z [LEFT|RIGHT x] [UP|DOWN y] [FROM SCREEN AREA] w [WIDE] [FRONT = f BACK = b]`
+    fn eye(&mut self) -> Result<Operate, Fault> {
+        self.expect_word(Word::Back, &["BACK"])?;
+        let back = self.real()?;
+        let right = match self.accept_one_of(&[Word::Left, Word::Right]) {
+            Some(Word::Left) => -self.real()?,
+            Some(_) => self.real()?,
+            None => 0.0,
+        };
+        let up = match self.accept_one_of(&[Word::Up, Word::Down]) {
+            Some(Word::Up) => self.real()?,
+            Some(_) => -self.real()?,
+            None => 0.0,
+        };
+        self.accept_word(Word::From);
+        self.accept_word(Word::Screen);
+        self.accept_word(Word::Area);
+        if !self.is_number() {
+            return Err(self.fail(&["FROM SCREEN AREA and its width"]));
         }
-        self.name().map(Some)
+        let width = self.real()?;
+        self.accept_word(Word::Wide);
+        Ok(Operate::Eye { back, right, up, width, boundaries: self.boundaries()? })
     }
 }

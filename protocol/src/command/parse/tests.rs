@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::{
-    Value,
+    Name, Value,
     command::{
         reader::CommandReader,
-        syntax::{Axis, Operate, VectorClass, VectorList},
+        syntax::{Axis, Input, NamePattern, Operate, VectorClass, VectorList},
     },
 };
 use glam::{DVec3, DVec4};
@@ -88,8 +88,32 @@ fn abbreviations_and_missing_words_mean_the_same() {
 #[test]
 fn shorter_than_the_shortest_form_is_an_error() {
     assert_eq!(message("DISPL A; X"), "1:10: expected the end, found `X`");
-    assert_eq!(message("DIS A;"), "1:1: expected a command or `name :=`, found `DIS`");
-    assert_eq!(message("V := VE 1,1;"), "1:6: expected what the name is to be (such as VECTOR_LIST), found `VE`");
+    for (text, hint) in [
+        ("DIS A;", "1:1: expected a command or `name :=`, found `DIS`, too short for DISPLAY, which needs DISP"),
+        (
+            "V := VE 1,1;",
+            "1:6: expected what the name is to be (such as VECTOR_LIST), found `VE`, too short for VECTOR_LIST, which \
+             needs VEC",
+        ),
+        ("ROT X 3 APP TO A;", "1:9: expected the end, found `APP`, too short for APPLIED, which needs APPL"),
+    ] {
+        assert_eq!(message(text), hint);
+    }
+}
+
+#[test]
+fn a_misspelt_word_suggests_the_nearest() {
+    for (text, hint) in [
+        ("DISPALY A;", "found `DISPALY`; did you mean DISPLAY?"),
+        ("A := ROATE IN X 3;", "found `ROATE`; did you mean ROTATE?"),
+        ("SET COLOUR 120,1;", "found `COLOUR`; did you mean COLOR?"),
+        ("ROT X 3 APLIED TO A;", "found `APLIED`; did you mean APPLIED?"),
+        ("VEC ITEMISED P 0,0;", "found `ITEMISED`; did you mean ITEMIZED?"),
+        ("SEND TREU TO <1>A;", "found `TREU`; did you mean TRUE?"),
+        ("PICTURE A;", "found `PICTURE`"),
+    ] {
+        assert!(message(text).ends_with(hint), "{}", message(text));
+    }
 }
 
 #[test]

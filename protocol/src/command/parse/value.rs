@@ -4,11 +4,10 @@ use super::Parser;
 use crate::{
     Value,
     command::{
-        error::{Fault, Problem},
-        token::{TokenKind, unquoted},
+        error::Fault,
+        token::TokenKind,
         words::{self, Word},
     },
-    value::MAX_STRING,
 };
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 
@@ -21,7 +20,7 @@ impl Parser<'_> {
             TokenKind::String => return Ok(Value::String(self.string()?)),
             _ => {}
         }
-        let word = self.accept_one_of(words::VALUES).ok_or_else(|| self.fail(EXPECTED))?;
+        let word = self.expect_one_of(words::VALUES, EXPECTED)?;
         match word {
             Word::True => return Ok(Value::Boolean(true)),
             Word::False => return Ok(Value::Boolean(false)),
@@ -38,7 +37,9 @@ impl Parser<'_> {
             Word::Matrix3Value => Value::Matrix3(Box::new(self.matrix3()?)),
             Word::Matrix4x3Value => Value::Matrix4x3(Box::new(self.matrix4x3()?)),
             Word::Matrix4Value => Value::Matrix4(Box::new(self.matrix4()?)),
-            _ => Value::Transform(Box::new(self.matrix4()?)),
+            Word::TransformValue => Value::Transform(Box::new(self.matrix4()?)),
+            // VALUE and VL are commands of their own and no values.
+            _ => return Err(self.fail(EXPECTED)),
         };
         self.expect(TokenKind::Close, &["`)`"])?;
         Ok(value)
@@ -49,13 +50,9 @@ impl Parser<'_> {
         if self.token.kind != TokenKind::String {
             return Err(self.fail(&["a text in quotes"]));
         }
-        let token = self.token;
-        let text = unquoted(self.text(token));
-        if text.len() > MAX_STRING {
-            return Err(Fault { span: token.span(), problem: Problem::LongString, expected: &[] });
-        }
+        let text = self.quoted()?;
         self.advance();
-        Ok(text)
+        Ok(text.into())
     }
 
     // The numbers come row by row, and a row of the machine is a column of glam.

@@ -15,7 +15,7 @@ const SHORTEST_VECTOR: usize = 4;
 
 /// Constant or growing y and z: `Y = y DY = dy Z = z DZ = dz`.
 #[derive(Clone, Copy, Default)]
-struct Defaults {
+pub(super) struct Defaults {
     y: Option<f64>,
     dy: f64,
     z: Option<f64>,
@@ -39,72 +39,118 @@ impl Defaults {
     }
 }
 
+/// The letter of the fourth component, and what the component is where it is not given.
+#[derive(Clone, Copy)]
+pub(super) struct FourthLetter {
+    letter: u8,
+    absent: f32,
+}
+
+impl FourthLetter {
+    /// No fourth component is allowed.
+    pub(super) const NONE: FourthLetter = FourthLetter { letter: 0, absent: 1.0 };
+
+    fn of(fourth: Fourth) -> FourthLetter {
+        let letter = match fourth {
+            Fourth::Intensity => Word::IntensityOfPoint,
+            Fourth::Hue => Word::HueOfPoint,
+            Fourth::Table => Word::TableOfPoint,
+        };
+        FourthLetter { letter: letter.form().as_bytes()[0], absent: fourth.absent() }
+    }
+}
+
+/// How the vectors of a list are written.
+#[derive(Clone, Copy)]
+pub(super) struct Layout {
+    /// Each vector begins with P or L.
+    pub(super) itemized: bool,
+    pub(super) fourth: FourthLetter,
+    /// How many numbers each vector has; none if the first one says it.
+    pub(super) components: Option<usize>,
+    pub(super) defaults: Defaults,
+}
+
+impl Default for Layout {
+    fn default() -> Layout {
+        let fourth = FourthLetter::of(Fourth::Intensity);
+        Layout { itemized: false, fourth, components: None, defaults: Defaults::default() }
+    }
+}
+
 impl Parser<'_> {
     /// All after VECTOR_LIST.
     pub(super) fn vector_list(&mut self) -> Result<VectorList, Fault> {
-        let mut list = VectorList {
-            block_normalized: false,
-            fourth: Fourth::Intensity,
-            internal_units: false,
-            class: VectorClass::Connected,
-            dimension: 2,
-            estimate: None,
-            points: Vec::new(),
-            lines: Vec::new(),
-        };
-        let mut defaults = Defaults::default();
+        let (mut block_normalized, mut internal_units, mut estimate) = (false, false, None);
+        let (mut class, mut fourth, mut defaults) = (None, Fourth::Intensity, Defaults::default());
         while let Some(word) = self.accept_one_of(words::VECTOR_OPTIONS) {
             match word {
-                Word::BlockNormalized => list.block_normalized = true,
-                Word::Connected => list.class = VectorClass::Connected,
-                Word::Dots => list.class = VectorClass::Dots,
-                Word::Itemized => list.class = VectorClass::Itemized,
-                Word::Separate => list.class = VectorClass::Separate,
-                Word::Number => {
-                    self.accept(TokenKind::Equal);
-                    list.estimate = Some(self.integer(0..i64::from(u32::MAX) + 1)? as u32);
+                Word::BlockNormalized => block_normalized = true,
+                Word::Color => fourth = Fourth::Hue,
+                Word::Connected => class = Some(VectorClass::Connected),
+                Word::Dots => class = Some(VectorClass::Dots),
+                Word::Itemized => class = Some(VectorClass::Itemized),
+                Word::Separate => class = Some(VectorClass::Separate),
+                Word::Tabulated => {
+                    fourth = Fourth::Table;
+                    class = Some(VectorClass::Itemized);
                 }
-                Word::Y => defaults.y = Some(self.default_number()?),
-                Word::Dy => defaults.dy = self.default_number()?,
-                Word::Z => defaults.z = Some(self.default_number()?),
-                _ => defaults.dz = self.default_number()?,
+                Word::InternalUnits => internal_units = true,
+                Word::Number => estimate = Some(self.equal_count()?),
+                Word::Y => defaults.y = Some(self.equal_real()?),
+                Word::Dy => defaults.dy = self.equal_real()?,
+                Word::Z => defaults.z = Some(self.equal_real()?),
+                _ => defaults.dz = self.equal_real()?,
             }
         }
-        let text = self.lexer.text();
-        let room = (text.len() - self.token.start) / SHORTEST_VECTOR + 1;
-        list.points.reserve(list.estimate.map_or(0, |n| n as usize).min(room).min(MAX_POINTS));
-        let mut vectors = Vectors { text, at: self.token.start, defaults, components: defaults.components() };
-        vectors.read(&mut list)?;
-        let given = vectors.components.unwrap_or(0);
-        list.dimension = if given == 3 || defaults.z.is_some() { 3 } else { 2 };
-        self.jump(vectors.at);
-        match self.token.kind {
-            TokenKind::Semicolon | TokenKind::End => Ok(list),
-            _ if list.class == VectorClass::Itemized => Err(self.fail(&["P", "L", "`;`"])),
-            _ => Err(self.fail(&["a vector", "`;`"])),
-        }
+        let class = class.unwrap_or(if internal_units { VectorClass::Itemized } else { VectorClass::Connected });
+        let layout = Layout {
+            itemized: class == VectorClass::Itemized,
+            fourth: FourthLetter::of(fourth),
+            components: defaults.components(),
+            defaults,
+        };
+        let vectors = self.vectors(layout, estimate)?;
+        let given = vectors.layout.components.unwrap_or(0);
+        let dimension = if given == 3 || defaults.z.is_some() { 3 } else { 2 };
+        let Vectors { points, lines, .. } = vectors;
+        Ok(VectorList { block_normalized, class, dimension, estimate, fourth, internal_units, points, lines })
     }
 
-    /// `[=] number`
-    fn default_number(&mut self) -> Result<f64, Fault> {
-        self.accept(TokenKind::Equal);
-        self.real()
+    /// The vectors from here to the end of the statement.
+    pub(super) fn vectors(&mut self, layout: Layout, estimate: Option<u32>) -> Result<Vectors<'_>, Fault> {
+        let text = self.lexer.text();
+        let room = (text.len() - self.token.start) / SHORTEST_VECTOR + 1;
+        let room = estimate.map_or(0, |n| n as usize).min(room).min(MAX_POINTS);
+        let points = Vec::with_capacity(room);
+        let lines = Vec::with_capacity(if layout.itemized { room } else { 0 });
+        let mut vectors = Vectors { text, at: self.token.start, layout, points, lines };
+        vectors.read()?;
+        if vectors.at != self.token.start {
+            self.jump(vectors.at);
+        }
+        match self.token.kind {
+            kind if Parser::ends(kind) => Ok(vectors),
+            _ if layout.itemized => Err(self.fail(&["P", "L", "`;`"])),
+            _ => Err(self.fail(&["a vector", "`;`"])),
+        }
     }
 }
 
 /// The vectors of a list, byte by byte.
-struct Vectors<'t> {
+pub(super) struct Vectors<'t> {
     text: &'t [u8],
     at: usize,
-    defaults: Defaults,
-    /// How many numbers each vector has; none before the first.
-    components: Option<usize>,
+    layout: Layout,
+    pub(super) points: Vec<[f32; 4]>,
+    /// Whether each vector is marked L; empty if they have no marks.
+    pub(super) lines: Vec<bool>,
 }
 
 impl Vectors<'_> {
     /// Reads vectors up to the first byte that begins none.
-    fn read(&mut self, list: &mut VectorList) -> Result<(), Fault> {
-        let itemized = list.class == VectorClass::Itemized;
+    fn read(&mut self) -> Result<(), Fault> {
+        let itemized = self.layout.itemized;
         loop {
             let byte = self.skip();
             let mark = if itemized {
@@ -117,11 +163,11 @@ impl Vectors<'_> {
             } else {
                 return Ok(());
             };
-            if list.points.len() == MAX_POINTS {
+            if self.points.len() == MAX_POINTS {
                 return Err(self.fault(Problem::TooManyPoints, &[]));
             }
-            let mut point = [0.0, 0.0, 0.0, 1.0];
-            match self.components {
+            let mut point = [0.0, 0.0, 0.0, self.layout.fourth.absent];
+            match self.layout.components {
                 Some(3) => {
                     point[0] = self.number()?;
                     self.skip_comma();
@@ -136,17 +182,17 @@ impl Vectors<'_> {
                         }
                         *component = self.number()?;
                     }
-                    self.defaults.complete(list.points.len(), &mut point);
+                    self.layout.defaults.complete(self.points.len(), &mut point);
                 }
-                None => self.components = Some(self.first(itemized, &mut point)?),
+                None => self.layout.components = Some(self.first(itemized, &mut point)?),
             }
-            self.intensity(&mut point)?;
+            self.fourth(&mut point)?;
             if !(point[1].is_finite() && point[2].is_finite()) {
                 return Err(self.fault(Problem::OutOfRange, &[]));
             }
-            list.points.push(point);
+            self.points.push(point);
             if let Some(line) = mark {
-                list.lines.push(line);
+                self.lines.push(line);
             }
         }
     }
@@ -193,10 +239,10 @@ impl Vectors<'_> {
         Ok(count)
     }
 
-    /// `I = i`, if it stands here.
+    /// `I = i` (or with the letter of another fourth component), if it stands here.
     #[inline]
-    fn intensity(&mut self, point: &mut [f32; 4]) -> Result<(), Fault> {
-        if !matches!(self.skip(), Some(b'I' | b'i')) {
+    fn fourth(&mut self, point: &mut [f32; 4]) -> Result<(), Fault> {
+        if self.skip().is_none_or(|byte| byte.to_ascii_uppercase() != self.layout.fourth.letter) {
             return Ok(());
         }
         let after = self.text.get(self.at + 1);

@@ -23,6 +23,15 @@ pub struct Bspline {
     pub chords: u32,
 }
 
+impl Bspline {
+    /// Highest order, also of polynomials, as remembered from the manuals.
+    pub const MAX_ORDER: u8 = 10;
+    /// Most vertices, and most knots. Ours.
+    pub const MAX_VERTICES: usize = 1 << 16;
+    /// Most chords, also of polynomials. Ours.
+    pub const MAX_CHORDS: u32 = 1 << 20;
+}
+
 /// `[RATIONAL] POLYNOMIAL ORDER = i COEFFICIENTS = ... CHORDS = q`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial {

@@ -46,6 +46,19 @@ pub enum Fourth {
     Table,
 }
 
+impl Fourth {
+    /// Every kind, in the order of its code in binary records: 0 intensity, 1 hue, 2 table.
+    pub const ALL: [Fourth; 3] = [Fourth::Intensity, Fourth::Hue, Fourth::Table];
+
+    /// The component where a command does not give it.
+    pub const fn absent(self) -> f32 {
+        match self {
+            Fourth::Intensity => 1.0,
+            Fourth::Hue | Fourth::Table => 0.0,
+        }
+    }
+}
+
 /// A list of vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VectorList {
@@ -130,4 +143,9 @@ pub struct Pattern {
     pub matched: bool,
     /// Length of one repetition in the coordinates of the data.
     pub length: f64,
+}
+
+impl Pattern {
+    /// Most lengths of one pattern, as remembered from the manuals.
+    pub const MAX_SEGMENTS: usize = 32;
 }

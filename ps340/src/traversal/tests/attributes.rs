@@ -128,12 +128,12 @@ fn contrast_scales_the_intensity() {
 
 #[test]
 fn a_named_operate_node_that_is_referred_to_applies_to_what_follows_it() {
-    let [outer, node] = [ObjectId::new(0), ObjectId::new(1)];
+    let [outer, node, home, inner] = [0, 1, 2, 3].map(ObjectId::new);
     let mut structures = Structures::default();
     let shift = Operation::Translate(DVec3::new(0.5, 0.0, 0.0));
     structures.define(node, Node::Operate { operation: shift, descendant: None });
-    let (inner, home) = (vec![Member::Named(node), Member::Unnamed(point())], ObjectId::new(2));
-    structures.define(home, Node::Group(vec![Member::Unnamed(point()), Member::Unnamed(Node::Group(inner))]));
+    structures.define(inner, Node::Group(vec![Member::Named(node), Member::Unnamed(point())]));
+    structures.define(home, Node::Group(vec![Member::Unnamed(point()), Member::Named(inner)]));
     structures.define(outer, Node::Instance(vec![node]));
     structures.display(outer);
     let strokes = update(&structures, 0, &Requests::default()).strokes;

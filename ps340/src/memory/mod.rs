@@ -1,5 +1,13 @@
 //! The mass memory: names, display structure and function network together, and the operations that touch more than one.
 
+mod refusal;
+mod system;
+mod insertion;
+mod rendering;
+
+pub use refusal::Refusal;
+pub use system::{MAX_INTERFACE_ENTRIES, System};
+
 use crate::{
     functions::{self, devices::Initial},
     network::Network,
@@ -7,6 +15,7 @@ use crate::{
     port::{Effect, ObjectId},
     structure::{Node, NodeFault, Structures},
 };
+use insertion::Insertions;
 use protocol::{Name, Value, command::Input};
 use std::collections::HashSet;
 
@@ -16,23 +25,6 @@ pub const MASS_MEMORY: usize = 2 << 30;
 
 /// What a name table, a function and its queues take, for the account of memory.
 const OBJECT_BYTES: usize = 256;
-
-/// Why an operation on the mass memory was refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Refusal {
-    /// The mass memory is full.
-    #[error("Insufficient memory")]
-    Full,
-    /// A name of the system may not be redefined or deleted.
-    #[error("{0} belongs to the system")]
-    System(Name),
-    /// A function type that does not exist.
-    #[error("Name not found: F:{0}")]
-    NoFunction(Name),
-    /// A function type cannot be made in this size.
-    #[error("{1}")]
-    FunctionSize(Name, String),
-}
 
 /// Everything that commands and messages change.
 #[derive(Debug, Default)]
@@ -45,6 +37,11 @@ pub struct MassMemory {
     pub network: Network,
     /// What the network wants of its surroundings, in order.
     pub effects: Vec<Effect>,
+    /// Settings of the machine.
+    pub system: System,
+    /// Whether the command at hand comes from a line in configure mode, which may change what is the system's.
+    pub privileged: bool,
+    insertions: Insertions,
 }
 
 impl MassMemory {
@@ -56,9 +53,20 @@ impl MassMemory {
         self.objects.object(name).map_err(|_| Refusal::Full)
     }
 
+    /// The object whose messages a name takes: that of the name, or the one that it is another name of. None if the
+    /// name is not known.
+    pub fn target(&self, name: &Name) -> Option<ObjectId> {
+        self.objects.find(name.as_str()).map(|id| self.structures.follow(id))
+    }
+
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
-        self.structures.bytes() + self.objects.len() * OBJECT_BYTES
+        self.structures.bytes() + self.objects.len() * OBJECT_BYTES + self.system.working_storage as usize
+    }
+
+    /// Whether nothing more fits in.
+    pub fn is_full(&self) -> bool {
+        self.bytes() >= MASS_MEMORY
     }
 
     /// Whether an object has a definition.
@@ -69,19 +77,67 @@ impl MassMemory {
     /// Makes a display node the definition of a name; what belonged to the definition before goes.
     ///
     /// # Errors
-    /// [`Refusal::Full`], [`Refusal::System`].
+    /// [`Refusal::Full`], [`Refusal::System`]; what belongs to `node` then goes.
     pub fn define_node(&mut self, name: &Name, node: Node) -> Result<ObjectId, Refusal> {
-        if self.bytes() + node.bytes() > MASS_MEMORY {
-            return Err(Refusal::Full);
+        let room = self.bytes() + node.bytes() <= MASS_MEMORY;
+        let id = if room { self.user_object(name) } else { Err(Refusal::Full) };
+        match id {
+            Ok(id) => {
+                self.replace(id, |structures| {
+                    let kept = node.own_members();
+                    (structures.define(id, node), kept)
+                });
+                Ok(id)
+            }
+            Err(refusal) => {
+                self.undefine_all(node.own_members());
+                Err(refusal)
+            }
         }
+    }
+
+    /// Makes a name another name of an object.
+    ///
+    /// # Errors
+    /// [`Refusal::Full`], [`Refusal::System`], or the object is the name's own.
+    pub fn define_alias(&mut self, name: &Name, target: ObjectId) -> Result<ObjectId, Refusal> {
         let id = self.user_object(name)?;
-        self.network.undefine(id);
-        let kept: HashSet<ObjectId> = node.own_members().into_iter().collect();
-        if let Some(before) = self.structures.define(id, node) {
-            let orphans = before.own_members().into_iter().filter(|o| !kept.contains(o)).collect();
-            self.undefine_all(orphans);
+        if self.structures.follow(target) == id {
+            return Err(Refusal::Misfit(name.clone(), "no other name of itself"));
         }
+        self.replace(id, |structures| (structures.define_alias(id, target), Vec::new()));
         Ok(id)
+    }
+
+    /// Makes an object without a name of a node.
+    ///
+    /// # Errors
+    /// [`Refusal::Full`]; what belongs to `node` then goes.
+    pub fn add_anonymous(&mut self, node: Node) -> Result<ObjectId, Refusal> {
+        let room = self.bytes() + node.bytes() <= MASS_MEMORY;
+        match self.objects.anonymous() {
+            Ok(id) if room => {
+                self.structures.define(id, node);
+                Ok(id)
+            }
+            made => {
+                made.into_iter().for_each(|id| self.objects.release(id));
+                self.undefine_all(node.own_members());
+                Err(Refusal::Full)
+            }
+        }
+    }
+
+    /// Gives an object another definition. What belonged to the one before goes, but for what `define` says is kept.
+    fn replace(&mut self, id: ObjectId, define: impl FnOnce(&mut Structures) -> (Option<Node>, Vec<ObjectId>)) {
+        self.network.undefine(id);
+        let mut gone = self.insertions_of(id);
+        let (before, kept) = define(&mut self.structures);
+        if let Some(before) = before {
+            let kept: HashSet<ObjectId> = kept.into_iter().collect();
+            gone.extend(before.own_members().into_iter().filter(|o| !kept.contains(o)));
+        }
+        self.undefine_all(gone);
     }
 
     /// Makes an initial instance, which exists from the start.
@@ -110,9 +166,9 @@ impl MassMemory {
         let id = self.user_object(name)?;
         let defined = self.network.define(id, row, size);
         defined.map_err(|e| Refusal::FunctionSize(function.clone(), e.to_string()))?;
-        if let Some(before) = self.structures.undefine(id) {
-            self.undefine_all(before.own_members());
-        }
+        let mut gone = self.insertions_of(id);
+        gone.extend(self.structures.undefine(id).iter().flat_map(Node::own_members));
+        self.undefine_all(gone);
         Ok(id)
     }
 
@@ -121,9 +177,11 @@ impl MassMemory {
     pub fn undefine_all(&mut self, mut ids: Vec<ObjectId>) {
         while let Some(id) = ids.pop() {
             self.network.undefine(id);
+            ids.extend(self.insertions_of(id));
             if let Some(node) = self.structures.undefine(id) {
                 ids.extend(node.own_members());
             }
+            self.objects.release(id);
         }
     }
 
@@ -145,11 +203,30 @@ impl MassMemory {
     /// # Errors
     /// The fault of a node that does not take it.
     pub fn accept(&mut self, node: ObjectId, input: Input, value: Value) -> Result<(), NodeFault> {
+        let node = self.structures.follow(node);
+        if self.network.function(node).is_some() {
+            return self.send(node, input, value);
+        }
         let grows = matches!(input, Input::Append | Input::Substitute) || matches!(value, Value::String(_));
-        if grows && self.bytes() > MASS_MEMORY {
+        if grows && self.is_full() {
             return Err(NodeFault::Full { input });
         }
+        if input == Input::Number(1) && self.is_rendering(node) {
+            return self.render(node, &value);
+        }
         self.structures.accept(node, input, value)
+    }
+
+    /// The value of a variable; none if nothing was stored yet.
+    ///
+    /// # Errors
+    /// The name is no variable.
+    pub fn variable(&self, name: &Name) -> Result<Option<&Value>, Refusal> {
+        match self.target(name).and_then(|id| self.structures.node(id)) {
+            Some(Node::Variable(value)) => Ok(value.as_ref()),
+            Some(_) => Err(Refusal::Misfit(name.clone(), "no variable")),
+            None => Err(Refusal::NotFound(name.clone())),
+        }
     }
 
     /// INCLUDE. Returns false if `into` is a node that holds no others.
@@ -158,25 +235,47 @@ impl MassMemory {
     /// [`Refusal::Full`].
     pub fn include(&mut self, name: &Name, into: &Name) -> Result<bool, Refusal> {
         let (member, group) = (self.object(name)?, self.object(into)?);
-        if self.bytes() > MASS_MEMORY {
+        let group = self.structures.follow(group);
+        if self.is_full() {
             return Err(Refusal::Full);
         }
         Ok(self.network.function(group).is_none() && self.structures.include(member, group))
     }
 
-    /// INITIALIZE: user objects, all connections and the display list go.
+    /// INITIALIZE: user objects, all connections, the display list and the working storage go.
     pub fn initialize(&mut self) {
-        let gone: Vec<ObjectId> = self.objects.clear_user().collect();
-        self.undefine_all(gone);
+        for id in self.objects.users() {
+            self.network.undefine(id);
+            self.structures.undefine(id);
+        }
+        self.insertions.clear();
+        self.objects.clear_user();
+        self.system.working_storage = 0;
         self.structures.clear_displayed();
         self.network.retain_arcs(|_, _, _| false);
     }
 
+    /// RESERVE_WORKING_STORAGE: a larger request takes the place of one before.
+    ///
+    /// # Errors
+    /// [`Refusal::Full`].
+    pub fn reserve(&mut self, bytes: u32) -> Result<(), Refusal> {
+        let more = bytes.saturating_sub(self.system.working_storage);
+        if self.bytes() + more as usize > MASS_MEMORY {
+            return Err(Refusal::Full);
+        }
+        self.system.working_storage += more;
+        Ok(())
+    }
+
     fn user_object(&mut self, name: &Name) -> Result<ObjectId, Refusal> {
         let id = self.object(name)?;
-        if self.objects.is_system(id) && self.network.function(id).is_some() {
+        if self.objects.is_system(id) && self.network.function(id).is_some() && !self.privileged {
             return Err(Refusal::System(name.clone()));
         }
         Ok(id)
     }
 }
+
+#[cfg(test)]
+mod tests;

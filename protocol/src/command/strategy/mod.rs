@@ -1,9 +1,12 @@
 //! Random commands for property tests.
 
-use super::syntax::{
-    Arc, Axis, Boundaries, Characters, Command, Destination, Fourth, Initialize, Input, NamePattern, Object, Operate,
-    VectorClass, VectorList,
-};
+mod data;
+mod operate;
+
+pub use data::{objects, vector_lists};
+pub use operate::operates;
+
+use super::syntax::{Arc, Command, Destination, Initialize, Input, NamePattern, Object};
 use crate::{Name, Value};
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 use proptest::prelude::*;
@@ -33,6 +36,19 @@ pub fn names() -> impl Strategy<Value = Name> {
             "THEN",
             "END_STRUCTURE",
             "TRUE",
+            "S",
+            "C",
+            "WITH",
+            "PATTERN",
+            "PREFIX",
+            "FOLLOWER",
+            "ATTRIBUTES",
+            "POLYGON",
+            "OUTLINE",
+            "WRITEBACK",
+            "OPTIMIZE",
+            "VALUE",
+            "START",
         ])
         .prop_map(str::to_owned),
     ];
@@ -122,96 +138,98 @@ pub fn destinations() -> impl Strategy<Value = Destination> {
     (inputs(), names()).prop_map(|(input, name)| Destination { input, name })
 }
 
-/// Vector lists of every class, of up to 40 vectors.
-pub fn vector_lists() -> impl Strategy<Value = VectorList> {
-    let class = (0_u8..4).prop_map(|code| VectorClass::from_code(code).expect("codes 0 to 3 are classes"));
-    let intensity = prop_oneof![Just(1.0_f32), 0.0_f32..=1.0, Just(500.0_f32)];
-    let vector = ([singles(), singles(), singles()], intensity, any::<bool>());
-    let vectors = prop::collection::vec(vector, 0..40);
-    let estimate = prop::option::of(any::<u32>());
-    (any::<bool>(), class, 2_u8..=3, estimate, vectors).prop_map(
-        |(block_normalized, class, dimension, estimate, vectors)| {
-            let z = |z: f32| if dimension == 3 { z } else { 0.0 };
-            let points = vectors.iter().map(|&(p, i, _)| [p[0], p[1], z(p[2]), i]).collect();
-            let lines = vectors.iter().map(|v| v.2).filter(|_| class == VectorClass::Itemized).collect();
-            VectorList {
-                block_normalized,
-                fourth: Fourth::Intensity,
-                internal_units: false,
-                class,
-                dimension,
-                estimate,
-                points,
-                lines,
-            }
-        },
-    )
-}
-
-/// Operate nodes of every kind.
-pub fn operates() -> impl Strategy<Value = Operate> {
-    let axis = prop::sample::select(vec![Axis::X, Axis::Y, Axis::Z]);
-    let boundaries = || prop::option::of(limits().prop_map(|[front, back]| Boundaries { front, back }));
-    prop_oneof![
-        (axis, reals()).prop_map(|(axis, angle)| Operate::Rotate { axis, angle }),
-        vectors3().prop_map(Operate::Scale),
-        vectors3().prop_map(Operate::Translate),
-        matrices2().prop_map(Operate::Matrix2),
-        matrices3().prop_map(Operate::Matrix3),
-        matrices4x3().prop_map(Operate::Matrix4x3),
-        matrices4().prop_map(Operate::Matrix4),
-        (vectors3(), vectors3(), prop::option::of(vectors3())).prop_map(|(at, from, up)| Operate::Look {
-            at,
-            from,
-            up
-        }),
-        (limits(), limits(), boundaries()).prop_map(|(x, y, boundaries)| Operate::Window { x, y, boundaries }),
-        (reals(), boundaries()).prop_map(|(angle, boundaries)| Operate::FieldOfView { angle, boundaries }),
-        (limits(), limits(), prop::option::of(limits()))
-            .prop_map(|(horizontal, vertical, intensity)| Operate::Viewport { horizontal, vertical, intensity }),
-        limits().prop_map(|[hue, saturation]| Operate::SetColor { hue, saturation }),
-        (any::<bool>(), limits()).prop_map(|(on, range)| Operate::SetIntensity { on, range }),
-        any::<bool>().prop_map(Operate::SetDepthClipping),
-        Just(Operate::XformMatrix),
-    ]
-}
-
-/// Objects of every kind.
-pub fn objects() -> impl Strategy<Value = Object> {
-    let characters = (vectors3(), prop_oneof![Just(DVec2::X), vectors2()], texts())
-        .prop_map(|(position, step, text)| Characters { position, step, text });
-    prop_oneof![
-        1 => Just(Object::Nil),
-        1 => Just(Object::BeginStructure),
-        2 => prop::collection::vec(names(), 0..4).prop_map(Object::Instance),
-        4 => vector_lists().prop_map(Object::VectorList),
-        2 => characters.prop_map(Object::Characters),
-        8 => (operates(), prop::option::of(names()))
-            .prop_map(|(operate, applied_to)| Object::Operate { operate, applied_to }),
-        2 => (names(), prop::option::of(any::<u16>())).prop_map(|(function, size)| Object::Function { function, size }),
-    ]
-}
-
 /// Commands of every kind.
 pub fn commands() -> impl Strategy<Value = Command> {
+    let definition = (names(), prop::bool::weighted(0.7), objects()).prop_map(|(name, named, object)| {
+        // An alias without a name would be no command.
+        let named = named || matches!(object, Object::Alias(_));
+        Command::Define { name: Some(name).filter(|_| named), object }
+    });
+    prop_oneof![
+        4 => definition,
+        1 => editing(),
+        1 => network(),
+        1 => system(),
+    ]
+}
+
+/// Commands that edit structures and names.
+fn editing() -> impl Strategy<Value = Command> {
     let prefix = prop_oneof![Just(String::new()), names().prop_map(|name| name.as_str().to_owned())];
     let pattern = prop_oneof![names().prop_map(NamePattern::Name), prefix.prop_map(NamePattern::Prefix)];
     let initialize =
         prop::sample::select(vec![Initialize::All, Initialize::Connections, Initialize::Displays, Initialize::Names]);
     prop_oneof![
-        12 => (prop::option::of(names()), objects()).prop_map(|(name, object)| Command::Define { name, object }),
         1 => Just(Command::EndStructure),
+        1 => Just(Command::EndFont),
+        1 => Just(Command::Begin),
+        1 => Just(Command::End),
+        2 => data::font_characters().prop_map(Command::FontCharacter),
         1 => names().prop_map(Command::Display),
         1 => names().prop_map(Command::Remove),
+        1 => names().prop_map(Command::RemovePrefix),
+        1 => names().prop_map(Command::RemoveFollower),
+        1 => names().prop_map(Command::Forget),
+        1 => names().prop_map(Command::ForgetUnit),
+        1 => names().prop_map(Command::ErasePattern),
         1 => (names(), names()).prop_map(|(name, into)| Command::Include { name, into }),
         1 => (names(), names()).prop_map(|(name, from)| Command::RemoveFrom { name, from }),
+        1 => (names(), names()).prop_map(|(name, pattern)| Command::PatternWith { name, pattern }),
+        2 => (names(), operates()).prop_map(|(name, operate)| Command::Prefix { name, operate }),
+        2 => (names(), operates()).prop_map(|(name, operate)| Command::Follow { name, operate }),
         1 => prop::collection::vec(pattern, 1..4).prop_map(Command::Delete),
-        1 => names().prop_map(Command::Forget),
+        1 => initialize.prop_map(Command::Initialize),
+    ]
+}
+
+/// Connections and messages.
+fn network() -> impl Strategy<Value = Command> {
+    prop_oneof![
         2 => (names(), 1..=u16::MAX, destinations())
             .prop_map(|(source, output, destination)| Command::Connect(Arc { source, output, destination })),
+        1 => (names(), 1..=u16::MAX, prop::collection::vec(destinations(), 2..5))
+            .prop_map(|(source, output, destinations)| Command::ConnectSeveral { source, output, destinations }),
         2 => (names(), prop::option::of(1..=u16::MAX), prop::option::of(destinations()))
             .prop_map(|(source, output, destination)| Command::Disconnect { source, output, destination }),
         4 => (values(), destinations()).prop_map(|(value, destination)| Command::Send { value, destination }),
-        1 => initialize.prop_map(Command::Initialize),
+        1 => (names(), destinations()).prop_map(|(list, destination)| Command::SendVectors { list, destination }),
+        1 => (any::<u32>(), any::<bool>(), destinations())
+            .prop_map(|(count, lines, destination)| Command::SendMarks { count, lines, destination }),
+        1 => (names(), destinations())
+            .prop_map(|(variable, destination)| Command::SendVariable { variable, destination }),
+        1 => prop::collection::vec(names(), 1..4).prop_map(Command::Variable),
+        1 => (any::<bool>(), destinations())
+            .prop_map(|(constant, destination)| Command::SetupCness { constant, destination }),
+    ]
+}
+
+/// Commands to the system.
+fn system() -> impl Strategy<Value = Command> {
+    let value = prop_oneof![
+        Just(String::new()),
+        "[A-Z][A-Z0-9_]{0,5}",
+        "[0-9]{1,6}",
+        "[ -~]{0,8}",
+        any::<String>().prop_filter("short", |text| text.len() < 200),
+    ];
+    prop_oneof![
+        any::<u32>().prop_map(Command::ReserveWorkingStorage),
+        names().prop_map(Command::Reboot),
+        names().prop_map(Command::Configure),
+        names().prop_map(Command::SetupPassword),
+        names().prop_map(Command::ShowInterface),
+        (names(), prop::collection::vec((names(), value), 0..4))
+            .prop_map(|(port, options)| Command::SetupInterface { port, options }),
+        prop::sample::select(vec![
+            Command::OptimizeStructure,
+            Command::EndOptimize,
+            Command::OptimizeMemory,
+            Command::CommandStatus,
+            Command::FinishConfiguration,
+            Command::ShowInterrupts,
+            Command::GiveUpCpu,
+            Command::AllowVecnorm,
+            Command::Reset,
+        ]),
     ]
 }

@@ -1,0 +1,65 @@
+//! Inputs of LABELS.
+
+use super::{count, element, place, wrong_kind};
+use crate::structure::{Labels, NodeFault};
+use glam::DVec3;
+use protocol::{
+    Value,
+    command::{Input, Label},
+    value::MAX_STRING,
+};
+
+/// Gives `value` to `input` of a block of labels; returns by how many bytes it grew.
+///
+/// `<append>` takes a string or a vector too: a label at the origin, or one without text. Ours.
+pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<isize, NodeFault> {
+    if let Value::String(text) = value
+        && text.len() > MAX_STRING
+    {
+        return Err(NodeFault::Range { input });
+    }
+    match input {
+        Input::Step => match value {
+            Value::Vector2(step) => block.step = *step,
+            _ => return Err(wrong_kind(input, value)),
+        },
+        Input::Clear => {
+            let gone = bytes(&block.labels);
+            block.labels = Vec::new();
+            return Ok(-gone);
+        }
+        Input::Delete => {
+            let keep = block.labels.len().saturating_sub(count(value, input)? as usize);
+            let gone = bytes(&block.labels[keep..]);
+            block.labels.truncate(keep);
+            return Ok(-gone);
+        }
+        Input::Append => {
+            let label = match value {
+                Value::String(text) => Label { position: DVec3::ZERO, text: text.clone() },
+                _ => Label { position: place(value, input)?, text: Box::default() },
+            };
+            block.labels.push((label, true));
+            return Ok(bytes(&block.labels[block.labels.len() - 1..]));
+        }
+        Input::Position | Input::Substitute => return Err(NodeFault::NoSuchInput { input }),
+        Input::Number(_) | Input::Last => {
+            let index = element(input, block.labels.len())?.ok_or(NodeFault::NoSuchInput { input })?;
+            let (label, shown) = &mut block.labels[index];
+            match value {
+                Value::Boolean(on) => *shown = *on,
+                Value::String(text) => {
+                    let before = std::mem::replace(&mut label.text, text.clone());
+                    return Ok(text.len() as isize - before.len() as isize);
+                }
+                _ => label.position = place(value, input)?,
+            }
+        }
+    }
+    Ok(0)
+}
+
+/// What labels take.
+fn bytes(labels: &[(Label, bool)]) -> isize {
+    labels.iter().map(|(label, _)| (size_of::<Label>() + label.text.len()) as isize).sum()
+}
