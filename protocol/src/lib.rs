@@ -3,6 +3,7 @@
 //! The order of the modules is their layer order, lowest first.
 
 pub mod address;
+pub mod capture;
 pub mod name;
 pub mod value;
 pub mod record;

@@ -1,13 +1,15 @@
 //! The process `ps340`: arguments, log and exit codes around the shell.
 
 use crate::{
-    line::Address,
+    line::LineAddress,
     machine::{PlainText, Settings},
     shell::{Clock, End, Operator, Options, run},
 };
 use clap::Parser;
+use protocol::address::Place;
 use std::{
     io::{IsTerminal, Write},
+    path::PathBuf,
     process::ExitCode,
 };
 
@@ -18,15 +20,22 @@ use std::{
 #[derive(Parser, Debug)]
 #[command(
     version,
-    after_help = "Exit codes: 0 ended by 'quit' or with the operator on standard input, 1 cannot listen,\n\
+    after_help = "Lines: tcp:HOST:PORT (port 0 takes a free one), unix:PATH, pty: (a pseudo-terminal; its path is printed),\n\
+                  serial:DEVICE[,BAUD[,8N1]], stdio:, file:PATH (a plain or captured file that is sent as a host would),\n\
+                  parallel:HOST:PORT (the words of the parallel interface, see PARALLEL.md).\n\
+                  Conditions behind a line: ,speed=BITS_A_SECOND ,flow=xonxoff ,bits=7; behind file: ,pace=captured.\n\n\
+                  Exit codes: 0 ended by 'quit' or with the operator on standard input, 1 cannot listen,\n\
                                  2 usage, 130 interrupted by a signal.\n\
                                  The environment variable PS340_LOG sets what is logged on standard error \
                                  (e.g. 'debug', 'warn')."
 )]
 struct Arguments {
-    /// Where hosts attach: tcp:HOST:PORT (port 0 takes a free one) or unix:PATH. May be given several times.
-    #[arg(long, value_name = "ADDRESS", default_value = "tcp:127.0.0.1:3400")]
-    listen: Vec<Address>,
+    /// Where hosts attach, see below. May be given several times.
+    #[arg(long, value_name = "LINE", default_value = "tcp:127.0.0.1:3400")]
+    listen: Vec<LineAddress>,
+    /// Writes what passes on all host lines to a file; 'file:FILE' plays it again.
+    #[arg(long, value_name = "FILE")]
+    capture: Option<PathBuf>,
     /// Who gives orders: stdio, none, or an address to listen on. By default stdio if that is a terminal, else none.
     #[arg(long, value_name = "stdio|none|ADDRESS")]
     operator: Option<String>,
@@ -58,8 +67,10 @@ pub fn main() -> ExitCode {
         eprintln!("ps340: {error}");
         return ExitCode::from(1);
     }
+    let listen = arguments.listen;
+    let stdio_lines = listen.iter().filter(|line| line.place == Place::Stdio).count();
     let operator = match arguments.operator.as_deref() {
-        None if std::io::stdin().is_terminal() => Operator::Stdio,
+        None if std::io::stdin().is_terminal() && stdio_lines == 0 => Operator::Stdio,
         None | Some("none") => Operator::None,
         Some("stdio") => Operator::Stdio,
         Some(address) => match address.parse() {
@@ -70,11 +81,19 @@ pub fn main() -> ExitCode {
             }
         },
     };
+    if stdio_lines + usize::from(operator == Operator::Stdio) > 1 {
+        eprintln!("ps340: the standard streams serve one host, or the operator");
+        return ExitCode::from(2);
+    }
     let settings = Settings { plain_text: arguments.plain_text };
-    let options = Options { listen: arguments.listen, operator, clock: arguments.clock, settings };
-    let say = |line: &str| {
-        let mut out = std::io::stdout().lock();
-        let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+    let options = Options { listen, capture: arguments.capture, operator, clock: arguments.clock, settings };
+    // What is not for a host must not stand in its stream.
+    let say = |line: &str| match stdio_lines {
+        0 => {
+            let mut out = std::io::stdout().lock();
+            let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+        }
+        _ => eprintln!("{line}"),
     };
     match run(&options, say) {
         Ok(End::Quit) => ExitCode::SUCCESS,

@@ -1,23 +1,30 @@
-//! Host lines: whatever arrives goes to the machine, and back.
+//! Host lines: whatever arrives goes to the machine, and back, as the conditions of the line allow.
 
-use super::{Events, LineEvent, LineId, Listener};
-use std::sync::{
-    Arc,
-    atomic::{AtomicU64, AtomicUsize, Ordering},
+use super::{
+    Interface, LineEvent, LineId, Surroundings,
+    conditions::{Flow, INPUT_QUEUE, XOFF, XON, leave},
+    pace::Pace,
+};
+use protocol::{address::Conditions, capture::Event};
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 use tokio::{
-    io::{AsyncReadExt, AsyncWriteExt},
-    sync::{Semaphore, mpsc},
+    io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt},
+    sync::{mpsc, watch},
+    time::{Instant, sleep_until},
 };
 
 /// Bytes that wait for a host that does not read; what comes on top is dropped and counted.
 pub const MAX_WAITING_BYTES: usize = 16 << 20;
 /// Hosts that may be attached at once; each may hold an open statement and an open vector list.
 pub const MAX_HOSTS: usize = 64;
-/// Bytes taken from a socket at a time.
+/// Bytes taken from a line at a time.
 const READ_BYTES: usize = 256 << 10;
-
-static NEXT_LINE: AtomicU64 = AtomicU64::new(1);
 
 /// The way to a host.
 #[derive(Clone, Debug)]
@@ -27,6 +34,11 @@ pub struct Writer {
 }
 
 impl Writer {
+    fn new() -> (Writer, mpsc::UnboundedReceiver<Vec<u8>>) {
+        let (queue, queued) = mpsc::unbounded_channel();
+        (Writer { queue, waiting: Arc::default() }, queued)
+    }
+
     /// Queues bytes for the host; returns false if they are dropped, because the host does not read.
     pub fn send(&self, bytes: Vec<u8>) -> bool {
         let size = bytes.len();
@@ -38,64 +50,178 @@ impl Writer {
     }
 }
 
-/// Takes hosts in from a listener until the machine's thread is gone.
-pub async fn serve_hosts(listener: Listener, events: Events) {
-    let places = Arc::new(Semaphore::new(MAX_HOSTS));
-    loop {
-        match listener.accept().await {
-            Ok((stream, peer)) => match places.clone().try_acquire_owned() {
-                Ok(place) => {
-                    let events = events.clone();
-                    tokio::spawn(async move {
-                        serve(stream, peer, events).await;
-                        drop(place);
-                    });
-                }
-                Err(_) => tracing::warn!("{peer} was turned away: {MAX_HOSTS} hosts are attached"),
-            },
-            Err(error) => {
-                tracing::warn!("a host could not attach: {error}");
-                tokio::time::sleep(std::time::Duration::from_millis(100)).await;
-            }
+/// The way to a host that throws away what it is told; needs a tokio runtime.
+pub(super) fn silent_writer() -> Writer {
+    let (writer, mut queued) = Writer::new();
+    let waiting = writer.waiting.clone();
+    tokio::spawn(async move {
+        while let Some(bytes) = queued.recv().await {
+            waiting.fetch_sub(bytes.len(), Ordering::Relaxed);
         }
-        if events.is_closed() {
-            return;
-        }
-    }
+    });
+    writer
 }
 
-async fn serve(stream: Box<dyn super::Stream>, peer: String, events: Events) {
-    let line = LineId(NEXT_LINE.fetch_add(1, Ordering::Relaxed));
-    let (mut read, mut write) = tokio::io::split(stream);
-    let (queue, mut queued) = mpsc::unbounded_channel::<Vec<u8>>();
-    let waiting = Arc::new(AtomicUsize::new(0));
-    let writer = Writer { queue, waiting: waiting.clone() };
-    if events.send(LineEvent::Attached { line, peer, writer }).await.is_err() {
+/// A host that attaches.
+#[derive(Debug)]
+pub(super) struct Host {
+    /// Who, for messages.
+    pub(super) peer: String,
+    /// What it speaks.
+    pub(super) interface: Interface,
+    /// How its line behaves.
+    pub(super) conditions: Conditions,
+    /// Whether it can close its side and still be told what it asked for.
+    pub(super) half_closes: bool,
+}
+
+/// Serves a host until it has closed its side and was told everything.
+pub(super) async fn serve(
+    stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static,
+    host: Host,
+    around: Surroundings,
+) {
+    let line = LineId::next();
+    let (read, write) = tokio::io::split(stream);
+    let (writer, queued) = Writer::new();
+    let waiting = writer.waiting.clone();
+    if !around.attach(line, host.peer, host.interface, writer).await {
         return;
     }
-    let sending = tokio::spawn(async move {
-        while let Some(bytes) = queued.recv().await {
-            let sent = write.write_all(&bytes).await;
-            waiting.fetch_sub(bytes.len(), Ordering::Relaxed);
-            if sent.is_err() {
-                return;
-            }
-        }
-        let _ = write.shutdown().await;
-    });
-    let error = loop {
-        let mut buffer = Vec::with_capacity(READ_BYTES);
-        match read.read_buf(&mut buffer).await {
-            Ok(0) => break None,
-            Ok(_) => {
-                if events.send(LineEvent::Bytes(line, buffer)).await.is_err() {
-                    break None;
-                }
-            }
-            Err(error) => break Some(error),
-        }
-    };
-    let _ = events.send(LineEvent::Closed { line, error }).await;
+    let (flow, followed) = watch::channel(Flow::default());
+    let sender = Sender { write, line, conditions: host.conditions, flow: followed, around: around.clone() };
+    let sending = tokio::spawn(sender.run(queued, waiting));
+    let error = receive(read, line, host.conditions, &flow, &around).await;
+    // Without the receiver, nothing that the host holds can be released.
+    drop(flow);
+    if !host.half_closes {
+        sending.abort();
+    }
+    around.close(line, error).await;
     // The machine drops its writer when it sees the end; what is queued is still written.
     let _ = sending.await;
 }
+
+/// Takes what the host sends, until it closes its side; returns why, if not by a plain end.
+async fn receive(
+    mut read: impl AsyncRead + Unpin,
+    line: LineId,
+    conditions: Conditions,
+    flow: &watch::Sender<Flow>,
+    around: &Surroundings,
+) -> Option<io::Error> {
+    let begin = Instant::now();
+    let mut pace = Pace::new(conditions.speed);
+    let most = if conditions.flow { INPUT_QUEUE / 4 } else { READ_BYTES };
+    let piece = pace.piece().unwrap_or(most).min(most);
+    let limit = if conditions.flow { INPUT_QUEUE } else { READ_BYTES };
+    // What waits for the machine; what is still on its way; when the latter has passed.
+    let (mut queue, mut arriving, mut at) = (Vec::new(), Vec::with_capacity(piece), begin);
+    let (mut open, mut error) = (true, None);
+    while open || !arriving.is_empty() || !queue.is_empty() {
+        tokio::select! {
+            result = read.read_buf(&mut arriving), if open && arriving.is_empty() && queue.len() < limit => match result {
+                Ok(0) => open = false,
+                Ok(count) => at = begin + pace.pass(count, begin.elapsed()),
+                Err(reason) => (open, error) = (false, Some(reason)),
+            },
+            () = sleep_until(at), if !arriving.is_empty() && conditions.speed.is_some() => {
+                take_in(&mut arriving, piece, &mut queue, conditions, flow);
+            }
+            permit = around.events.reserve(), if !queue.is_empty() => {
+                let Ok(permit) = permit else { return None };
+                let bytes = std::mem::take(&mut queue);
+                around.tap(line, || Event::FromHost(bytes.clone()));
+                permit.send(LineEvent::Bytes(line, bytes));
+            }
+        }
+        if conditions.speed.is_none() && !arriving.is_empty() {
+            take_in(&mut arriving, piece, &mut queue, conditions, flow);
+        }
+        let waiting = queue.len();
+        flow.send_if_modified(|flow| {
+            let before = *flow;
+            flow.waiting(conditions, waiting);
+            *flow != before
+        });
+    }
+    error
+}
+
+/// Moves what has arrived into the queue of the machine.
+fn take_in(
+    arriving: &mut Vec<u8>,
+    piece: usize,
+    queue: &mut Vec<u8>,
+    conditions: Conditions,
+    flow: &watch::Sender<Flow>,
+) {
+    let mut bytes = std::mem::replace(arriving, Vec::with_capacity(piece));
+    flow.send_if_modified(|flow| {
+        let before = *flow;
+        flow.receive(conditions, &mut bytes);
+        *flow != before
+    });
+    if queue.is_empty() {
+        *queue = bytes;
+    } else {
+        queue.extend_from_slice(&bytes);
+    }
+}
+
+/// Sends to a host.
+struct Sender<W> {
+    write: W,
+    line: LineId,
+    conditions: Conditions,
+    flow: watch::Receiver<Flow>,
+    around: Surroundings,
+}
+
+impl<W: AsyncWrite + Unpin> Sender<W> {
+    async fn run(mut self, mut queued: mpsc::UnboundedReceiver<Vec<u8>>, waiting: Arc<AtomicUsize>) {
+        let begin = Instant::now();
+        let mut pace = Pace::new(self.conditions.speed);
+        let (mut bytes, mut sent) = (Vec::new(), 0);
+        // Whether the host was told to stop, and whether the receiver of the line is still there.
+        let (mut stopped, mut followed) = (false, true);
+        loop {
+            let flow = if followed { *self.flow.borrow_and_update() } else { Flow::default() };
+            if flow.machine_holds != stopped {
+                stopped = flow.machine_holds;
+                if self.write.write_all(&[if stopped { XOFF } else { XON }]).await.is_err() {
+                    return;
+                }
+            }
+            if sent == bytes.len() || flow.host_holds {
+                tokio::select! {
+                    changed = self.flow.changed(), if followed => followed = changed.is_ok(),
+                    next = queued.recv(), if sent == bytes.len() => match next {
+                        Some(next) => {
+                            (bytes, sent) = (next, 0);
+                            leave(self.conditions, &mut bytes);
+                            if bytes.is_empty() { continue }
+                        }
+                        None => break,
+                    },
+                }
+                continue;
+            }
+            let piece = &bytes[sent..bytes.len().min(sent.saturating_add(pace.piece().unwrap_or(usize::MAX)))];
+            if self.write.write_all(piece).await.is_err() {
+                return;
+            }
+            self.around.tap(self.line, || Event::ToHost(piece.to_vec()));
+            sent += piece.len();
+            waiting.fetch_sub(piece.len(), Ordering::Relaxed);
+            if self.conditions.speed.is_some() {
+                sleep_until(begin + pace.pass(piece.len(), begin.elapsed())).await;
+            }
+        }
+        // The host may be gone already.
+        let _ = self.write.shutdown().await;
+    }
+}
+
+#[cfg(test)]
+mod tests;

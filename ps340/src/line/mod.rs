@@ -1,22 +1,51 @@
-//! The shell that moves bytes: host lines over TCP and Unix sockets, and text lines for operators.
+//! The shell that moves bytes: host lines over sockets, terminals, standard streams and files, and text lines for
+//! operators.
 
+mod pace;
+mod conditions;
+mod capture;
+mod listener;
+mod terminal;
 mod hosts;
+mod replay;
+mod source;
 mod operator;
 
-pub use hosts::{MAX_HOSTS, MAX_WAITING_BYTES, Writer, serve_hosts};
+pub use capture::Capture;
+pub use hosts::{MAX_HOSTS, MAX_WAITING_BYTES, Writer};
+pub use listener::{Listener, SocketFile};
 pub use operator::{OperatorLine, serve_operators, serve_stdio};
-pub use protocol::address::{Address, AddressError};
+pub use protocol::address::{Address, AddressError, LineAddress};
+pub use source::Source;
+pub use terminal::{PseudoTerminal, open_serial};
 
-use std::io;
-use tokio::{
-    io::{AsyncRead, AsyncWrite},
-    net::{TcpListener, UnixListener, UnixStream},
-    sync::mpsc,
+use protocol::capture::Event;
+use std::{
+    io,
+    sync::atomic::{AtomicU64, Ordering},
 };
+use tokio::sync::mpsc;
 
 /// Which host line; numbers are never used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineId(pub u64);
+
+impl LineId {
+    /// A number that was not used before in this process.
+    fn next() -> LineId {
+        static NEXT_LINE: AtomicU64 = AtomicU64::new(1);
+        LineId(NEXT_LINE.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+/// What a host line carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interface {
+    /// Text and packets.
+    Stream,
+    /// The words and blocks of the parallel interface.
+    Parallel,
+}
 
 /// What the lines tell the machine's thread.
 #[derive(Debug)]
@@ -27,6 +56,8 @@ pub enum LineEvent {
         line: LineId,
         /// Who, for messages.
         peer: String,
+        /// What it speaks.
+        interface: Interface,
         /// Where bytes for it go.
         writer: Writer,
     },
@@ -39,6 +70,8 @@ pub enum LineEvent {
         /// Why, if not by a plain end.
         error: Option<io::Error>,
     },
+    /// A place of which all hosts have gone and no other will come: standard input, or a file.
+    SourceEnded,
     /// An operator's line of text, which wants one line of reply.
     Operator(OperatorLine),
     /// The operator on standard input is gone.
@@ -50,70 +83,39 @@ pub enum LineEvent {
 /// The way into the machine's thread. It is bounded: when the machine is slower than a host, that host waits.
 pub type Events = mpsc::Sender<LineEvent>;
 
-/// Bytes of a socket, whatever its kind.
-trait Stream: AsyncRead + AsyncWrite + Send + Unpin {}
-impl<T: AsyncRead + AsyncWrite + Send + Unpin> Stream for T {}
-
-/// A listening socket.
-#[derive(Debug)]
-pub enum Listener {
-    /// TCP.
-    Tcp(TcpListener),
-    /// Unix socket; the file is removed at the end.
-    Unix(UnixListener, SocketFile),
+/// What a line works with: the machine's thread, and the capture.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// The way into the machine's thread.
+    pub events: Events,
+    /// Takes what passes, if it is wanted.
+    pub capture: Option<Capture>,
 }
 
-/// Removes the file of a Unix socket when dropped.
-#[derive(Debug)]
-pub struct SocketFile(std::path::PathBuf);
-
-impl Drop for SocketFile {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
+impl Surroundings {
+    /// Tells the machine's thread; false if that is gone.
+    async fn send(&self, event: LineEvent) -> bool {
+        self.events.send(event).await.is_ok()
     }
-}
 
-impl Listener {
-    /// Begins to listen; needs a tokio runtime.
-    ///
-    /// # Errors
-    /// Those of the system, e.g. the address is in use.
-    pub async fn bind(address: &Address) -> io::Result<Listener> {
-        match address {
-            Address::Tcp(at) => Ok(Listener::Tcp(TcpListener::bind(at.as_str()).await?)),
-            Address::Unix(path) => {
-                let bound = match UnixListener::bind(path) {
-                    // A file that nobody listens at was left by a process that was killed.
-                    Err(e) if e.kind() == io::ErrorKind::AddrInUse && UnixStream::connect(path).await.is_err() => {
-                        std::fs::remove_file(path)?;
-                        UnixListener::bind(path)
-                    }
-                    bound => bound,
-                };
-                Ok(Listener::Unix(bound?, SocketFile(path.clone())))
-            }
+    fn tap(&self, line: LineId, event: impl FnOnce() -> Event) {
+        if let Some(capture) = &self.capture {
+            capture.record(line, event());
         }
     }
 
-    /// The address to connect to: port 0 has become a real port.
-    pub fn address(&self) -> io::Result<Address> {
-        match self {
-            Listener::Tcp(listener) => Ok(Address::Tcp(listener.local_addr()?.to_string())),
-            Listener::Unix(_, file) => Ok(Address::Unix(file.0.clone())),
-        }
+    async fn attach(&self, line: LineId, peer: String, interface: Interface, writer: Writer) -> bool {
+        self.tap(line, || Event::Open(peer.clone()));
+        self.send(LineEvent::Attached { line, peer, interface, writer }).await
     }
 
-    async fn accept(&self) -> io::Result<(Box<dyn Stream>, String)> {
-        match self {
-            Listener::Tcp(listener) => {
-                let (stream, peer) = listener.accept().await?;
-                stream.set_nodelay(true)?;
-                Ok((Box::new(stream), format!("tcp:{peer}")))
-            }
-            Listener::Unix(listener, file) => {
-                let (stream, _) = listener.accept().await?;
-                Ok((Box::new(stream), format!("unix:{}", file.0.display())))
-            }
-        }
+    async fn receive(&self, line: LineId, bytes: Vec<u8>) -> bool {
+        self.tap(line, || Event::FromHost(bytes.clone()));
+        self.send(LineEvent::Bytes(line, bytes)).await
+    }
+
+    async fn close(&self, line: LineId, error: Option<io::Error>) -> bool {
+        self.tap(line, || Event::Close);
+        self.send(LineEvent::Closed { line, error }).await
     }
 }

@@ -1,6 +1,6 @@
 //! Operator lines: one order a line, one reply a line.
 
-use super::{Events, LineEvent, Listener};
+use super::{Events, LineEvent, Listener, listener::Stream};
 use std::io::{BufRead, Write};
 use tokio::{
     io::{AsyncBufRead, AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader},
@@ -37,7 +37,7 @@ pub async fn serve_operators(listener: Listener, events: Events) {
     }
 }
 
-async fn serve(stream: Box<dyn super::Stream>, events: Events) {
+async fn serve(stream: Box<dyn Stream>, events: Events) {
     let (read, mut write) = tokio::io::split(stream);
     let mut read = BufReader::new(read);
     loop {

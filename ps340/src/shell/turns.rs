@@ -1,8 +1,9 @@
-//! The thread of the machine: brings lines, operators, clock and machine together.
+//! The thread of the machine: takes what happens on the lines, and lets frames pass when they are due.
 
+use super::{Clock, End, Operator, Options, WAITING_EVENTS};
 use crate::{
-    line::{Address, Events, LineEvent, LineId, Listener, Writer, serve_hosts, serve_operators, serve_stdio},
-    machine::{Input, Machine, Micros, Settings, time_of_frame},
+    line::{LineEvent, LineId, Writer},
+    machine::{Input, Machine, Micros, time_of_frame},
     operator::{Outcome, Wait, parse, perform, reply},
 };
 use std::{
@@ -12,113 +13,13 @@ use std::{
 };
 use tokio::sync::{mpsc, oneshot};
 
-/// Events that wait for the machine; with [`LineEvent::Bytes`] of a quarter megabyte this bounds memory.
-const WAITING_EVENTS: usize = 16;
 /// Frames that a host which has closed its side still gets answers for, if the network is busy: a second.
 const GRACE_FRAMES: u64 = 60;
 /// How far the machine may lag behind the wall clock before it gives time up instead of catching up.
 const MAX_LAG: Micros = 250_000;
 
-/// Where the time of the machine comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Clock {
-    /// Sixty frames in each second of the wall clock.
-    Real,
-    /// Frames pass only while an operator waits for them, as fast as they can.
-    Virtual,
-}
-
-/// Who gives orders.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Operator {
-    /// Nobody.
-    None,
-    /// Standard input; the machine ends with it.
-    Stdio,
-    /// Whoever connects.
-    Socket(Address),
-}
-
-/// What the process is to do.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Where hosts attach.
-    pub listen: Vec<Address>,
-    /// Who gives orders.
-    pub operator: Operator,
-    /// Where time comes from.
-    pub clock: Clock,
-    /// Of the machine.
-    pub settings: Settings,
-}
-
-/// Why the process ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// By the order `quit`, or with the operator on standard input.
-    Quit,
-    /// By a signal.
-    Interrupted,
-}
-
-/// Runs the machine until its end.
-///
-/// `ready` is told each address in use, as a line of text, before the first event is taken.
-///
-/// # Errors
-/// If it cannot listen: the address and the reason.
-pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
-    let (events, inbox) = mpsc::channel(WAITING_EVENTS);
-    let io_runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    let bind = |address: &Address| {
-        let bound = io_runtime.block_on(Listener::bind(address));
-        bound.map_err(|e| io::Error::new(e.kind(), format!("cannot listen on {address}: {e}")))
-    };
-    for address in &options.listen {
-        let listener = bind(address)?;
-        ready(&format!("ready line {}", listener.address()?));
-        io_runtime.spawn(serve_hosts(listener, events.clone()));
-    }
-    match &options.operator {
-        Operator::None => {}
-        Operator::Stdio => {
-            let events = events.clone();
-            std::thread::spawn(move || serve_stdio(&events));
-        }
-        Operator::Socket(address) => {
-            let listener = bind(address)?;
-            ready(&format!("ready operator {}", listener.address()?));
-            io_runtime.spawn(serve_operators(listener, events.clone()));
-        }
-    }
-    let (stop, stopped) = oneshot::channel::<()>();
-    let lines = std::thread::spawn(move || {
-        io_runtime.block_on(async {
-            tokio::spawn(watch_signals(events));
-            let _ = stopped.await;
-            // Replies and bytes that are on their way may still leave.
-            tokio::time::sleep(Duration::from_millis(50)).await;
-        });
-        io_runtime.shutdown_background();
-    });
-    ready("ready");
-    let end = Shell::new(options, inbox)?.run();
-    let _ = stop.send(());
-    let _ = lines.join();
-    Ok(end)
-}
-
-async fn watch_signals(events: Events) {
-    use tokio::signal::unix::{SignalKind, signal};
-    let Ok(mut terminate) = signal(SignalKind::terminate()) else { return };
-    tokio::select! {
-        _ = tokio::signal::ctrl_c() => {}
-        _ = terminate.recv() => {}
-    }
-    let _ = events.send(LineEvent::Interrupted).await;
-}
-
-struct Shell {
+/// What the thread of the machine holds.
+pub(super) struct Turns {
     machine: Machine,
     inbox: mpsc::Receiver<LineEvent>,
     timer: tokio::runtime::Runtime,
@@ -131,11 +32,17 @@ struct Shell {
     leaving: Vec<(LineId, u64)>,
     /// Messages lost since the latest frame, by line.
     lost: HashMap<LineId, u64>,
+    /// Places from which hosts can still come, or an operator.
+    sources: usize,
 }
 
-impl Shell {
-    fn new(options: &Options, inbox: mpsc::Receiver<LineEvent>) -> io::Result<Shell> {
-        Ok(Shell {
+impl Turns {
+    /// A machine with its lines; `inbox` is told what happens on them.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub(super) fn new(options: &Options, inbox: mpsc::Receiver<LineEvent>) -> io::Result<Turns> {
+        Ok(Turns {
             machine: Machine::new(options.settings),
             inbox,
             timer: tokio::runtime::Builder::new_current_thread().enable_time().build()?,
@@ -145,10 +52,12 @@ impl Shell {
             waits: Vec::new(),
             leaving: Vec::new(),
             lost: HashMap::new(),
+            sources: options.listen.len() + usize::from(options.operator != Operator::None),
         })
     }
 
-    fn run(mut self) -> End {
+    /// Takes events and lets frames pass until the end.
+    pub(super) fn run(mut self) -> End {
         loop {
             let mut event = self.next_event();
             // However much the hosts send, frames pass when they are due.
@@ -164,6 +73,9 @@ impl Shell {
             }
             self.let_go();
             self.poll_waits();
+            if self.sources == 0 && self.leaving.is_empty() {
+                return End::Quit;
+            }
             // One frame a turn, so that events are seen between frames that are late.
             let next = time_of_frame(self.machine.frame() + 1);
             let until = if self.frame_is_due() { next } else { 0 };
@@ -206,7 +118,7 @@ impl Shell {
 
     fn take(&mut self, event: LineEvent) -> Option<End> {
         match event {
-            LineEvent::Attached { line, peer, writer } => {
+            LineEvent::Attached { line, peer, interface: _, writer } => {
                 tracing::info!("host line {peer} attached");
                 self.writers.insert(line, (peer, writer));
                 self.step(Some(Input::Attach(line)), 0);
@@ -237,6 +149,7 @@ impl Shell {
                     }
                 }
             }
+            LineEvent::SourceEnded => self.sources = self.sources.saturating_sub(1),
             LineEvent::OperatorGone => return Some(End::Quit),
             LineEvent::Interrupted => return Some(End::Interrupted),
         }

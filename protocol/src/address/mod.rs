@@ -1,4 +1,8 @@
-//! Addresses of lines: `tcp:HOST:PORT` and `unix:PATH`.
+//! Addresses of lines: sockets, which both sides can name, and all lines of the workstation.
+
+mod line;
+
+pub use line::{Conditions, LineAddress, LineAddressError, Parity, Place, Serial};
 
 use std::{fmt, path::PathBuf, str::FromStr};
 

@@ -1,0 +1,52 @@
+//! Capture of what passes on the host lines to a file.
+
+use super::LineId;
+use protocol::capture::{Event, HEADER, Record};
+use std::{
+    fs::File,
+    io::{self, Write},
+    path::Path,
+    sync::{Arc, Mutex},
+    time::Instant,
+};
+
+/// A file that takes what passes on the lines; clones share it.
+#[derive(Clone, Debug)]
+pub struct Capture {
+    shared: Arc<Mutex<Tape>>,
+}
+
+#[derive(Debug)]
+struct Tape {
+    /// None after the file could not be written.
+    file: Option<File>,
+    begin: Instant,
+    text: String,
+}
+
+impl Capture {
+    /// Begins a capture; a file that is there is replaced.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub fn create(path: &Path) -> io::Result<Capture> {
+        let mut file = File::create(path)?;
+        writeln!(file, "{HEADER}")?;
+        let tape = Tape { file: Some(file), begin: Instant::now(), text: String::new() };
+        Ok(Capture { shared: Arc::new(Mutex::new(tape)) })
+    }
+
+    /// Writes down what happened on a line now.
+    pub(super) fn record(&self, line: LineId, event: Event) {
+        // A thread that panicked while it wrote leaves at worst half a record.
+        let mut tape = self.shared.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let Tape { file, begin, text } = &mut *tape;
+        let micros = u64::try_from(begin.elapsed().as_micros()).unwrap_or(u64::MAX);
+        text.clear();
+        Record { micros, line: line.0, event }.write(text);
+        if let Some(Err(error)) = file.as_mut().map(|file| file.write_all(text.as_bytes())) {
+            tracing::error!("the capture ends: {error}");
+            *file = None;
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Places where hosts come from: opens them, and serves whoever comes.
+
+use super::{
+    Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, Surroundings,
+    hosts::{Host, MAX_HOSTS, serve},
+    open_serial,
+    replay::{feed, pieces, replay},
+    terminal::Terminal,
+};
+use protocol::address::{Conditions, Place, Serial};
+use std::{
+    fs::File,
+    io::{self, Write},
+    os::fd::OwnedFd,
+    path::PathBuf,
+    sync::Arc,
+    time::Duration,
+};
+use tokio::{
+    io::AsyncReadExt,
+    sync::{Semaphore, oneshot},
+    time::sleep,
+};
+
+/// How often a pseudo-terminal is looked at until a host opens it.
+const TERMINAL_PAUSE: Duration = Duration::from_millis(20);
+/// How long to wait after a failure before the next try.
+const FAILURE_PAUSE: Duration = Duration::from_millis(100);
+/// How long to wait before a serial device is opened again.
+const DEVICE_PAUSE: Duration = Duration::from_secs(1);
+/// Bytes that are on their way to and from the standard streams.
+const STANDARD_BYTES: usize = 64 << 10;
+
+/// A place that is open for hosts.
+#[derive(Debug)]
+pub struct Source {
+    kind: Kind,
+    conditions: Conditions,
+}
+
+#[derive(Debug)]
+enum Kind {
+    Sockets(Listener, Interface),
+    Pty(PseudoTerminal),
+    Serial(Serial, OwnedFd),
+    Stdio,
+    File { path: PathBuf, file: File, timed: bool },
+}
+
+impl Source {
+    /// Opens a place; needs a tokio runtime.
+    ///
+    /// # Errors
+    /// Those of the system, e.g. the address is in use, or the file does not exist.
+    pub async fn open(address: &LineAddress) -> io::Result<Source> {
+        let kind = match &address.place {
+            Place::Socket(at) => Kind::Sockets(Listener::bind(at).await?, Interface::Stream),
+            Place::Parallel(at) => Kind::Sockets(Listener::bind(&Address::Tcp(at.clone())).await?, Interface::Parallel),
+            Place::Pty(None) => Kind::Pty(PseudoTerminal::open()?),
+            Place::Pty(Some(_)) => {
+                let text = "the system chooses the path; give pty: alone, or serial:PATH for a terminal that is there";
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
+            }
+            Place::Serial(serial) => Kind::Serial(serial.clone(), open_serial(serial)?),
+            Place::Stdio => Kind::Stdio,
+            Place::File { path, timed } => Kind::File { path: path.clone(), file: File::open(path)?, timed: *timed },
+        };
+        Ok(Source { kind, conditions: address.conditions })
+    }
+
+    /// Where hosts find it: port 0 has become a real port, and a pseudo-terminal has a path.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn address(&self) -> io::Result<LineAddress> {
+        let place = match &self.kind {
+            Kind::Sockets(listener, interface) => match (listener.address()?, interface) {
+                (Address::Tcp(at), Interface::Parallel) => Place::Parallel(at),
+                (address, _) => Place::Socket(address),
+            },
+            Kind::Pty(terminal) => Place::Pty(Some(terminal.path().into())),
+            Kind::Serial(serial, _) => Place::Serial(serial.clone()),
+            Kind::Stdio => Place::Stdio,
+            Kind::File { path, timed, .. } => Place::File { path: path.clone(), timed: *timed },
+        };
+        Ok(LineAddress { place, conditions: self.conditions })
+    }
+
+    /// Serves hosts until no more can come, which it says, or until the machine's thread is gone.
+    pub async fn serve(self, around: Surroundings) {
+        let Source { kind, conditions } = self;
+        match kind {
+            Kind::Sockets(listener, interface) => serve_sockets(listener, interface, conditions, around).await,
+            Kind::Pty(terminal) => serve_terminal(terminal, conditions, around).await,
+            Kind::Serial(serial, device) => serve_device(serial, device, conditions, around).await,
+            Kind::Stdio => {
+                serve_standard_streams(conditions, around.clone()).await;
+                around.send(LineEvent::SourceEnded).await;
+            }
+            Kind::File { path, file, timed } => {
+                replay(&path, file, timed, conditions, around.clone()).await;
+                around.send(LineEvent::SourceEnded).await;
+            }
+        }
+    }
+}
+
+async fn serve_sockets(listener: Listener, interface: Interface, conditions: Conditions, around: Surroundings) {
+    let places = Arc::new(Semaphore::new(MAX_HOSTS));
+    while !around.events.is_closed() {
+        match listener.accept().await {
+            Ok((stream, peer)) => match places.clone().try_acquire_owned() {
+                Ok(place) => {
+                    let around = around.clone();
+                    tokio::spawn(async move {
+                        serve(stream, Host { peer, interface, conditions, half_closes: true }, around).await;
+                        drop(place);
+                    });
+                }
+                Err(_) => tracing::warn!("{peer} was turned away: {MAX_HOSTS} hosts are attached"),
+            },
+            Err(error) => {
+                tracing::warn!("a host could not attach: {error}");
+                sleep(FAILURE_PAUSE).await;
+            }
+        }
+    }
+}
+
+/// A host attaches when it opens the pseudo-terminal, and leaves when it closes it; then the next one can come.
+async fn serve_terminal(terminal: PseudoTerminal, conditions: Conditions, around: Surroundings) {
+    let peer = format!("pty:{}", terminal.path().display());
+    while !around.events.is_closed() {
+        match terminal.is_open().and_then(|open| if open { terminal.stream().map(Some) } else { Ok(None) }) {
+            Ok(None) => sleep(TERMINAL_PAUSE).await,
+            Ok(Some(stream)) => {
+                let host = Host { peer: peer.clone(), interface: Interface::Stream, conditions, half_closes: false };
+                serve(stream, host, around.clone()).await;
+                terminal.forget_output();
+            }
+            Err(error) => {
+                tracing::warn!("{peer}: {error}");
+                sleep(DEVICE_PAUSE).await;
+            }
+        }
+    }
+}
+
+/// A serial device is one host that is always there; a device that fails is opened again when it is back.
+async fn serve_device(serial: Serial, device: OwnedFd, conditions: Conditions, around: Surroundings) {
+    let peer = format!("serial:{}", serial.device.display());
+    let mut opened = Ok(device);
+    while !around.events.is_closed() {
+        match opened.and_then(Terminal::new) {
+            Ok(stream) => {
+                let host = Host { peer: peer.clone(), interface: Interface::Stream, conditions, half_closes: false };
+                serve(stream, host, around.clone()).await;
+            }
+            Err(error) => tracing::debug!("{peer}: {error}"),
+        }
+        sleep(DEVICE_PAUSE).await;
+        opened = open_serial(&serial);
+    }
+}
+
+async fn serve_standard_streams(conditions: Conditions, around: Surroundings) {
+    let peer = "stdio:".to_string();
+    let (near, far) = tokio::io::duplex(STANDARD_BYTES);
+    let (mut answers, questions) = tokio::io::split(near);
+    let runtime = tokio::runtime::Handle::current();
+    let (done, finished) = oneshot::channel();
+    // A reader that does not read stops this thread, and not the other lines.
+    std::thread::spawn(move || {
+        let mut buffer = vec![0; STANDARD_BYTES];
+        while let Ok(count @ 1..) = runtime.block_on(answers.read(&mut buffer)) {
+            let mut out = io::stdout().lock();
+            if out.write_all(&buffer[..count]).and_then(|()| out.flush()).is_err() {
+                break;
+            }
+        }
+        let _ = done.send(());
+    });
+    let host = Host { peer: peer.clone(), interface: Interface::Stream, conditions, half_closes: true };
+    let input = pieces(io::stdin());
+    tokio::join!(feed(&peer, Vec::new(), input, questions), serve(far, host, around));
+    let _ = finished.await;
+}

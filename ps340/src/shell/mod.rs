@@ -1,0 +1,122 @@
+//! The process around the machine: opens the lines, and runs the thread that brings them and the machine together.
+
+mod turns;
+
+use crate::{
+    line::{
+        Address, Capture, Events, LineAddress, LineEvent, Listener, Source, Surroundings, serve_operators, serve_stdio,
+    },
+    machine::Settings,
+};
+use std::{io, path::PathBuf, time::Duration};
+use tokio::sync::{mpsc, oneshot};
+use turns::Turns;
+
+/// Events that wait for the machine; with [`LineEvent::Bytes`] of a quarter megabyte this bounds memory.
+const WAITING_EVENTS: usize = 16;
+/// Where the time of the machine comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Clock {
+    /// Sixty frames in each second of the wall clock.
+    Real,
+    /// Frames pass only while an operator waits for them, as fast as they can.
+    Virtual,
+}
+
+/// Who gives orders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// Nobody.
+    None,
+    /// Standard input; the machine ends with it.
+    Stdio,
+    /// Whoever connects.
+    Socket(Address),
+}
+
+/// What the process is to do.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where hosts attach.
+    pub listen: Vec<LineAddress>,
+    /// A file that takes what passes on the host lines.
+    pub capture: Option<PathBuf>,
+    /// Who gives orders.
+    pub operator: Operator,
+    /// Where time comes from.
+    pub clock: Clock,
+    /// Of the machine.
+    pub settings: Settings,
+}
+
+/// Why the process ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// By the order `quit`, with the operator on standard input, or with the last host that could come.
+    Quit,
+    /// By a signal.
+    Interrupted,
+}
+
+/// Runs the machine until its end.
+///
+/// `ready` is told each address in use, as a line of text, before the first event is taken. Without an operator the
+/// machine ends when all its lines are files or standard input, and these have ended.
+///
+/// # Errors
+/// If it cannot listen, or cannot write the capture: the address or the file, and the reason.
+pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
+    let (events, inbox) = mpsc::channel(WAITING_EVENTS);
+    let io_runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let failed = |address: &dyn std::fmt::Display, e: io::Error| {
+        io::Error::new(e.kind(), format!("cannot listen on {address}: {e}"))
+    };
+    let capture = options.capture.as_deref().map(|path| {
+        let created = Capture::create(path);
+        created.map_err(|e| io::Error::new(e.kind(), format!("cannot write {}: {e}", path.display())))
+    });
+    let around = Surroundings { events: events.clone(), capture: capture.transpose()? };
+    for address in &options.listen {
+        let source = io_runtime.block_on(Source::open(address)).map_err(|e| failed(address, e))?;
+        ready(&format!("ready line {}", source.address()?));
+        io_runtime.spawn(source.serve(around.clone()));
+    }
+    drop(around);
+    match &options.operator {
+        Operator::None => {}
+        Operator::Stdio => {
+            let events = events.clone();
+            std::thread::spawn(move || serve_stdio(&events));
+        }
+        Operator::Socket(address) => {
+            let listener = io_runtime.block_on(Listener::bind(address)).map_err(|e| failed(address, e))?;
+            ready(&format!("ready operator {}", listener.address()?));
+            io_runtime.spawn(serve_operators(listener, events.clone()));
+        }
+    }
+    let (stop, stopped) = oneshot::channel::<()>();
+    let lines = std::thread::spawn(move || {
+        io_runtime.block_on(async {
+            tokio::spawn(watch_signals(events));
+            let _ = stopped.await;
+            // Replies and bytes that are on their way may still leave.
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        });
+        io_runtime.shutdown_background();
+    });
+    ready("ready");
+    let end = Turns::new(options, inbox)?.run();
+    let _ = stop.send(());
+    let _ = lines.join();
+    Ok(end)
+}
+
+async fn watch_signals(events: Events) {
+    use tokio::signal::unix::{SignalKind, signal};
+    let Ok(mut terminate) = signal(SignalKind::terminate()) else { return };
+    tokio::select! {
+        _ = tokio::signal::ctrl_c() => {}
+        _ = terminate.recv() => {}
+    }
+    let _ = events.send(LineEvent::Interrupted).await;
+}
