@@ -21,4 +21,6 @@ pub mod line;
 pub mod machine;
 pub mod operator;
 pub mod shell;
+pub mod play;
+pub mod cli;
 pub mod process;

@@ -1,6 +1,7 @@
 //! The process `ps340`: arguments, log and exit codes around the shell.
 
 use crate::{
+    cli,
     line::LineAddress,
     machine::{PlainText, Settings},
     shell::{Clock, End, Operator, Options, run},
@@ -20,6 +21,7 @@ use std::{
 #[derive(Parser, Debug)]
 #[command(
     version,
+    args_conflicts_with_subcommands = true,
     after_help = "Lines: tcp:HOST:PORT (port 0 takes a free one), unix:PATH, pty: (a pseudo-terminal; its path is printed),\n\
                   serial:DEVICE[,BAUD[,8N1]], stdio:, file:PATH (a plain or captured file that is sent as a host would),\n\
                   parallel:HOST:PORT (the words of the parallel interface, see PARALLEL.md).\n\
@@ -30,6 +32,8 @@ use std::{
                                  (e.g. 'debug', 'warn')."
 )]
 struct Arguments {
+    #[command(subcommand)]
+    tool: Option<cli::Tool>,
     /// Where hosts attach, see below. May be given several times.
     #[arg(long, value_name = "LINE", default_value = "tcp:127.0.0.1:3400")]
     listen: Vec<LineAddress>,
@@ -53,6 +57,9 @@ struct Arguments {
 /// Reads the arguments, runs the machine, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(tool) = &arguments.tool {
+        return cli::run(tool);
+    }
     let filter = tracing_subscriber::EnvFilter::try_from_env("PS340_LOG");
     tracing_subscriber::fmt()
         .with_env_filter(filter.unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("info")))

@@ -238,6 +238,11 @@ impl Machine {
         self.to_host.pop_front()
     }
 
+    /// Objects, structure and network, to look at.
+    pub fn memory(&self) -> &MassMemory {
+        &self.memory
+    }
+
     /// What an object is, in one line; none if the name is unknown.
     pub fn describe(&self, name: &str) -> Option<String> {
         let id = self.memory.objects.find(name)?;
