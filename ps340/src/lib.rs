@@ -22,5 +22,6 @@ pub mod machine;
 pub mod operator;
 pub mod shell;
 pub mod play;
+pub mod lint;
 pub mod cli;
 pub mod process;

@@ -1,6 +1,7 @@
 //! The sub-commands of `ps340`: tools for people who write programs for the machine.
 
 mod decode;
+mod lint;
 mod play;
 
 use clap::Subcommand;
@@ -17,6 +18,8 @@ pub enum Tool {
     Decode(decode::Arguments),
     /// Plays command files on a machine without a window, in virtual time, and checks what it says.
     Play(play::Arguments),
+    /// Finds what is wrong in command files: names, inputs, kinds, functions that never fire.
+    Lint(lint::Arguments),
 }
 
 /// What went wrong while a tool ran.
@@ -46,6 +49,7 @@ pub fn run(tool: &Tool) -> ExitCode {
     let result = match tool {
         Tool::Decode(arguments) => decode::run(arguments),
         Tool::Play(arguments) => play::run(arguments),
+        Tool::Lint(arguments) => lint::run(arguments),
     };
     match result {
         Ok(code) => code,
