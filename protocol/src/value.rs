@@ -159,7 +159,12 @@ impl Value {
             Value::Vector4(v) => v.is_finite(),
             Value::Matrix2(m) => m.is_finite(),
             Value::Matrix3(m) => m.is_finite(),
-            Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => m.is_finite(),
+            Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => all_finite(m),
         }
     }
+}
+
+/// Whether every element is finite: then all of them times zero are zero, and so is the sum.
+fn all_finite(m: &DMat4) -> bool {
+    (m.x_axis * 0.0 + m.y_axis * 0.0) + (m.z_axis * 0.0 + m.w_axis * 0.0) == DVec4::ZERO
 }

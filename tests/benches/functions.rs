@@ -1,7 +1,9 @@
-//! Function firings a second: chains, fan-out and fan-in, vector arithmetic. Each answer is checked before its time counts.
+//! Function firings a second: chains of reals and of matrices, fan-out and fan-in, vector arithmetic. The firings and
+//! each answer of a round are checked before any time counts.
 //!
 //! Times are seconds of the processor, where the system counts them, so that other work on the machine does not
-//! count; else seconds of the wall. Pure Data runs the same chains beside it where it is installed. `cargo bench -p tests --bench functions`
+//! count; else seconds of the wall. Pure Data runs the same chains beside it where it is installed; its own limit is
+//! a depth of 1,000. `cargo bench -p tests --bench functions`
 
 use protocol::{Value, command::Input};
 use ps340::{
@@ -15,9 +17,11 @@ use std::{
 };
 
 /// Each case runs so often; the best time counts, since other work disturbs.
-const REPEATS: usize = 7;
+const REPEATS: usize = 15;
 /// About so many firings in each run of a case.
-const FIRINGS: u64 = 4_000_000;
+const FIRINGS: u64 = 2_000_000;
+/// Lengths of the chains.
+const LENGTHS: [u32; 5] = [10, 100, 1_000, 10_000, 100_000];
 /// Messages that are under way at the same time.
 const UNDER_WAY: u64 = 64;
 /// The object at the end of each network: none, so that its messages come out as effects.
@@ -26,28 +30,36 @@ const END: ObjectId = ObjectId(0);
 fn main() {
     // `cargo bench` passes `--bench`; without it one short round proves the answers.
     let (repeats, firings) = if std::env::args().any(|a| a == "--bench") { (REPEATS, FIRINGS) } else { (1, 200_000) };
-    println!("{:<44} {:>16}", "function network", "firings/s");
-    let mut chains = Vec::new();
-    for length in [10, 1_000, 100_000] {
-        for under_way in [1, UNDER_WAY] {
-            let rate = best(repeats, || chain(length, under_way, (firings / u64::from(length)).max(under_way)));
-            println!("{:<44} {rate:>16.0}", format!("chain of {length} ADDC, {under_way} under way"));
-            chains.push(rate);
+    println!("{:<44} {:>16} {:>12}", "function network", "firings/s", "ns a firing");
+    for (kind, target) in [(&REALS, 50e6), (&MATRICES, 20e6)] {
+        let mut slowest = f64::INFINITY;
+        for length in LENGTHS {
+            for under_way in [1, UNDER_WAY] {
+                let mut chain = Chain::new(kind, length);
+                chain.prove(under_way);
+                let messages = (firings / u64::from(length)).max(under_way);
+                let rate = best(repeats, || chain.run(under_way, messages));
+                row(&format!("chain of {length} {}, {under_way} under way", kind.name), rate);
+                slowest = slowest.min(rate);
+            }
         }
+        println!("slowest chain of {}: {:.1} million/s (target {:.0})", kind.name, slowest / 1e6, target / 1e6);
     }
     let rate = best(repeats, || fan(1_000, firings / 2_001));
-    println!("{:<44} {rate:>16.0}", "fan-out to 1000 ADDC, fan-in to one");
+    row("fan-out to 1000 ADDC, fan-in to one", rate);
     let rate = best(repeats, || vectors(1_000, firings / 2_000));
-    println!("{:<44} {rate:>16.0}", "1000 pairs of MULC and ACCUMULATE, 3D vectors");
-    let slowest = chains.iter().copied().fold(f64::INFINITY, f64::min);
-    println!("slowest chain: {:.1} million firings/s (target 10)", slowest / 1e6);
+    row("1000 pairs of MULC and ACCUMULATE, 3D vectors", rate);
     for length in [10, 900] {
         let name = format!("Pure Data, chain of {length} [+ 1]");
         match pure_data(length, (firings * 10 / u64::from(length)).max(1)) {
-            Ok(rate) => println!("{name:<44} {rate:>16.0}"),
+            Ok(rate) => row(&name, rate),
             Err(why) => println!("{name:<44} {why:>16}"),
         }
     }
+}
+
+fn row(name: &str, rate: f64) {
+    println!("{name:<44} {rate:>16.0} {:>12.1}", 1e9 / rate);
 }
 
 /// The best rate of several runs, in firings a second.
@@ -98,33 +110,101 @@ fn connect(network: &mut Network, from: u32, to: u32) {
     network.connect(ObjectId(from), 1, ObjectId(to), Input::Number(1)).expect("both exist");
 }
 
-/// Messages run through a chain that adds 1 at each function.
-fn chain(length: u32, under_way: u64, messages: u64) -> (u64, f64) {
-    let mut network = Network::new();
-    for id in 1..=length {
-        define(&mut network, id, "ADDC", &[(2, Literal::R(1.0))]);
-    }
-    for id in 1..=length {
-        connect(&mut network, id, if id == length { END.0 } else { id + 1 });
-    }
-    let mut effects = Vec::with_capacity(under_way as usize);
-    let start = Stopwatch::start();
-    let mut firings = 0;
-    for batch in 0..messages / under_way {
-        effects.clear();
-        for i in 0..under_way {
-            network.send(ObjectId(1), Input::Number(1), Value::Real((batch * under_way + i) as f64), &mut effects);
+/// What runs through a chain.
+struct Kind {
+    name: &'static str,
+    function: &'static str,
+    /// What each function has at its constant input.
+    constant: Literal,
+    /// Message `i` at the start of the chain.
+    start: fn(i: u64) -> Value,
+    /// The same at the end of a chain of so many functions.
+    end: fn(i: u64, length: u32) -> Value,
+}
+
+const REALS: Kind = Kind {
+    name: "ADDC, reals",
+    function: "ADDC",
+    constant: Literal::R(1.0),
+    start: |i| Value::Real(i as f64),
+    end: |i, length| Value::Real(i as f64 + f64::from(length)),
+};
+
+/// A quarter turn and a shear of the rest: integers, so that the products are exact.
+const MATRICES: Kind = Kind {
+    name: "MULC, 4x4 matrices",
+    function: "MULC",
+    constant: Literal::M4(STEP),
+    start: |i| Literal::M4(first_matrix(i)).value(),
+    end: |i, length| {
+        // After n steps: n mod 4 quarter turns of the first two columns, and n times the fourth column in the third.
+        let rows = first_matrix(i).map(|[x, y, z, w]| {
+            let [x, y] = [[x, y], [-y, x], [-x, -y], [y, -x]][length as usize % 4];
+            [x, y, z + f64::from(length) * w, w]
+        });
+        Literal::M4(rows).value()
+    },
+};
+
+/// Each row (x, y, z, w) becomes (-y, x, z + w, w).
+const STEP: [[f64; 4]; 4] = [[0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]];
+
+fn first_matrix(i: u64) -> [[f64; 4]; 4] {
+    let n = (i % 1_000) as f64;
+    [[1.0, 2.0, n, 1.0], [n, 3.0, 4.0, 2.0], [5.0, n, 6.0, 3.0], [7.0, 8.0, 9.0, n]]
+}
+
+/// A chain of functions; messages leave it at [`END`].
+struct Chain {
+    kind: &'static Kind,
+    length: u32,
+    network: Network,
+    effects: Vec<Effect>,
+}
+
+impl Chain {
+    fn new(kind: &'static Kind, length: u32) -> Chain {
+        let mut network = Network::new();
+        for id in 1..=length {
+            define(&mut network, id, kind.function, &[(2, kind.constant)]);
         }
-        firings += network.run(u64::MAX, &mut effects).firings;
-        assert_eq!(effects.len() as u64, under_way);
-        for (i, effect) in (0..).zip(&effects) {
-            let expected = (batch * under_way + i) as f64 + f64::from(length);
-            assert!(matches!(effect, Effect::Deliver { object: END, value: Value::Real(r), .. } if *r == expected));
+        for id in 1..=length {
+            connect(&mut network, id, if id == length { END.0 } else { id + 1 });
+        }
+        Chain { kind, length, network, effects: Vec::new() }
+    }
+
+    /// Sends so many messages at once and lets them all come out.
+    fn batch(&mut self, first: u64, under_way: u64) -> u64 {
+        self.effects.clear();
+        for i in first..first + under_way {
+            self.network.send(ObjectId(1), Input::Number(1), (self.kind.start)(i), &mut self.effects);
+        }
+        self.network.run(u64::MAX, &mut self.effects).firings
+    }
+
+    /// Checks every message of two batches, and the firings that they took.
+    fn prove(&mut self, under_way: u64) {
+        for batch in 0..2 {
+            let first = batch * under_way;
+            let firings = self.batch(first, under_way);
+            assert_eq!(firings, under_way * u64::from(self.length), "each function fires once for each message");
+            assert_eq!(self.effects.len() as u64, under_way);
+            for (i, effect) in (first..).zip(&self.effects) {
+                let Effect::Deliver { object: END, value, .. } = effect else { panic!("{effect:?}") };
+                assert_eq!(*value, (self.kind.end)(i, self.length));
+            }
         }
     }
-    let seconds = start.seconds();
-    assert_eq!(firings, messages / under_way * under_way * u64::from(length));
-    (firings, seconds)
+
+    /// Firings and seconds of so many messages.
+    fn run(&mut self, under_way: u64, messages: u64) -> (u64, f64) {
+        let start = Stopwatch::start();
+        let firings = (0..messages / under_way).map(|batch| self.batch(batch * under_way, under_way)).sum();
+        let seconds = start.seconds();
+        assert_eq!(firings, messages / under_way * under_way * u64::from(self.length));
+        (firings, seconds)
+    }
 }
 
 /// One message goes to many functions, whose results meet in an accumulator.

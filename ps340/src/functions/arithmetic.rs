@@ -302,18 +302,56 @@ pub static ROWS: &[FunctionRow] = &[
 ];
 
 fn add(f: &mut Firing) -> Result<(), Problem> {
-    let sum = sum(f.value(1), f.value(2)).ok_or(Problem::Mismatch)?;
-    f.emit(1, sum)
+    match f.reals() {
+        Some((a, b)) => f.emit_real(1, a + b),
+        None => add_any(f),
+    }
+}
+
+#[inline(never)]
+fn add_any(f: &mut Firing) -> Result<(), Problem> {
+    match &mut sum(f.value(1), f.value(2)) {
+        Some(sum) => f.emit_from(1, sum),
+        None => Err(Problem::Mismatch),
+    }
 }
 
 fn subtract(f: &mut Firing) -> Result<(), Problem> {
-    let difference = difference(f.value(1), f.value(2)).ok_or(Problem::Mismatch)?;
-    f.emit(1, difference)
+    match f.reals() {
+        Some((a, b)) => f.emit_real(1, a - b),
+        None => subtract_any(f),
+    }
+}
+
+#[inline(never)]
+fn subtract_any(f: &mut Firing) -> Result<(), Problem> {
+    match &mut difference(f.value(1), f.value(2)) {
+        Some(difference) => f.emit_from(1, difference),
+        None => Err(Problem::Mismatch),
+    }
 }
 
 fn multiply(f: &mut Firing) -> Result<(), Problem> {
-    let product = product(f.value(1), f.value(2)).ok_or(Problem::Mismatch)?;
-    f.emit(1, product)
+    match f.reals() {
+        Some((a, b)) => f.emit_real(1, a * b),
+        None => multiply_any(f),
+    }
+}
+
+#[inline(never)]
+fn multiply_any(f: &mut Firing) -> Result<(), Problem> {
+    // A matrix that leaves its queue takes the product into its own memory.
+    if let Value::Matrix4(second) = f.value(2) {
+        let second = **second;
+        if let Some(first) = f.matrix4_mut(1) {
+            *first = second * *first;
+            return f.pass(1, 1);
+        }
+    }
+    match &mut product(f.value(1), f.value(2)) {
+        Some(product) => f.emit_from(1, product),
+        None => Err(Problem::Mismatch),
+    }
 }
 
 fn divide(f: &mut Firing) -> Result<(), Problem> {

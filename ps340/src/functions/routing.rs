@@ -171,8 +171,7 @@ pub static ROWS: &[FunctionRow] = &[
 ];
 
 fn pass(f: &mut Firing, input: u16, output: u16) -> Result<(), Problem> {
-    let message = f.take(input);
-    f.emit(output, message)
+    f.pass(input, output)
 }
 
 fn route_by_boolean(f: &mut Firing) -> Result<(), Problem> {

@@ -173,6 +173,14 @@ impl FunctionRow {
         };
         self.inputs.get(usize::from(input.saturating_sub(repeated)))
     }
+
+    /// What input `input` of an instance of size n is, from 1.
+    ///
+    /// - `size`: n, or 0 for a single function.
+    pub fn input_of_size(&self, size: u16, input: u16) -> Option<&'static PortSpec> {
+        let size = (self.family != Family::Single).then_some(size);
+        self.input(self.shape(size).ok()?, input)
+    }
 }
 
 impl Source {

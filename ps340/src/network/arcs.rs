@@ -23,14 +23,16 @@ pub(super) struct Output {
 }
 
 impl Output {
-    /// The only arc, if there is exactly one; else the number of arcs.
+    /// How many arcs leave the output.
     #[inline]
-    pub(super) fn single(&self) -> Result<Destination, usize> {
-        match self.first {
-            Some(only) if self.more.is_empty() => Ok(only),
-            Some(_) => Err(1 + self.more.len()),
-            None => Err(0),
-        }
+    pub(super) fn len(&self) -> usize {
+        usize::from(self.first.is_some()) + self.more.len()
+    }
+
+    /// The only arc, if there is exactly one.
+    #[inline]
+    pub(super) fn sole(&self) -> Option<Destination> {
+        self.first.filter(|_| self.more.is_empty())
     }
 
     /// Arc `index`, from 0.
@@ -93,9 +95,9 @@ mod tests {
         output.retain(|arc| arc != to(3));
         assert_eq!((output.get(0), output.get(1), output.get(2)), (Some(to(1)), Some(to(2)), None));
         output.retain(|arc| arc != to(2));
-        assert_eq!(output.single(), Ok(to(1)));
+        assert_eq!((output.sole(), output.len()), (Some(to(1)), 1));
         output.retain(|_| false);
-        assert_eq!(output.single(), Err(0));
+        assert_eq!((output.sole(), output.len()), (None, 0));
     }
 
     #[test]
@@ -104,6 +106,6 @@ mod tests {
         assert!((0..MAX_ARCS as u32).all(|object| output.connect(to(object))));
         assert!(!output.connect(to(u32::MAX)));
         assert!(output.connect(to(5)), "an arc that exists is no new one");
-        assert_eq!(output.single(), Err(MAX_ARCS));
+        assert_eq!((output.sole(), output.len()), (None, MAX_ARCS));
     }
 }

@@ -8,6 +8,7 @@ use crate::{
         Literal::{self, B, I, R, V2, V3},
     },
 };
+use protocol::{Kind, Value};
 
 const CLOCK: ObjectId = ObjectId(0);
 const SEQUENCE: ObjectId = ObjectId(1);

@@ -5,6 +5,7 @@ use crate::{
     functions::{FunctionRow, Rule, Shape, all, devices},
     port::{Effect, Literal, Role},
 };
+use protocol::Value;
 use std::collections::HashSet;
 
 const FUNCTION: ObjectId = ObjectId(3);

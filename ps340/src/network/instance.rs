@@ -1,27 +1,38 @@
 //! One instance of a function.
 
-use super::pool::Run;
+use super::{Destination, pool::Run};
 use crate::{
-    functions::FunctionRow,
-    port::{ObjectId, Problem},
+    functions::{FunctionRow, Rule},
+    port::Port,
 };
-use protocol::command::Input;
+use protocol::{Kind, command::Input};
 
-/// One instance of a function: its row, where its ports and arcs lie, and what it waits for.
+/// What a missing constant counts in [`Instance::missing`]. More than all active inputs together, since no function
+/// does without one.
+const CONSTANT: u16 = 0x100;
+/// What it counts that no input is active: such a function never fires. More than all constants together.
+const PASSIVE: u16 = 0x8000;
+
+/// One instance of a function, in the place of its object: its row, where its ports and arcs lie, and what it waits
+/// for.
 #[derive(Debug)]
 pub(super) struct Instance {
-    pub(super) row: &'static FunctionRow,
-    pub(super) object: ObjectId,
+    /// None for an object that is no function.
+    pub(super) row: Option<&'static FunctionRow>,
     /// Inputs, then memory.
     pub(super) ports: Run,
     pub(super) outputs: Run,
+    /// Where the only arc from output 1 ends, if there is exactly one: most functions have no other.
+    pub(super) sole: Option<Destination>,
     /// Number of inputs among the ports.
     pub(super) inputs: u16,
+    /// Number of inputs up to the last active one.
+    pub(super) active: u16,
     /// The n of a family.
     pub(super) size: u16,
-    /// Inputs at which it waits for a message.
+    /// What it waits for: one for each active input without a message, much more for constants.
     pub(super) missing: u16,
-    /// How many of them may be missing when it fires.
+    /// How much may be missing when it fires.
     pub(super) slack: u16,
     /// Whether an active input accepts strings.
     pub(super) strings: bool,
@@ -29,25 +40,21 @@ pub(super) struct Instance {
     pub(super) queued: bool,
 }
 
-/// The row of an empty slot.
-static VACANT: FunctionRow = FunctionRow { behaviour: |_| Err(Problem::Mismatch), ..FunctionRow::PLAIN };
-
 impl Instance {
-    /// An empty slot: it is never ready.
-    pub(super) fn vacant() -> Instance {
-        Instance {
-            row: &VACANT,
-            object: ObjectId(u32::MAX),
-            ports: Run::default(),
-            outputs: Run::default(),
-            inputs: 0,
-            size: 0,
-            missing: 1,
-            slack: 0,
-            strings: false,
-            queued: false,
-        }
-    }
+    /// An object that is no function: no inputs, never ready.
+    pub(super) const VACANT: Instance = Instance {
+        row: None,
+        ports: Run::EMPTY,
+        outputs: Run::EMPTY,
+        sole: None,
+        inputs: 0,
+        active: 0,
+        size: 0,
+        missing: PASSIVE,
+        slack: 0,
+        strings: false,
+        queued: false,
+    };
 
     /// Whether it can fire.
     #[inline]
@@ -59,8 +66,29 @@ impl Instance {
     #[inline]
     pub(super) fn input(&self, input: Input) -> Option<usize> {
         match input {
-            Input::Number(n) if n >= 1 && n <= u32::from(self.inputs) => Some(n as usize - 1),
+            Input::Number(n) if n.wrapping_sub(1) < u32::from(self.inputs) => Some(n as usize - 1),
             _ => None,
         }
+    }
+
+    /// Notes that the first message, or the constant, has arrived at an input.
+    #[inline]
+    pub(super) const fn note_arrival(&mut self, port: &Port) {
+        self.missing -= if port.is_active() { 1 } else { CONSTANT };
+    }
+
+    /// Counts anew what it waits for.
+    ///
+    /// - `inputs`: its inputs as they are now.
+    pub(super) fn count(&mut self, inputs: &[Port]) {
+        let active = inputs.iter().filter(|port| port.is_active());
+        let wanting = inputs.iter().filter(|port| port.is_wanting());
+        self.active = inputs.iter().rposition(Port::is_active).map_or(0, |place| place as u16 + 1);
+        let queues = active.clone().count() as u16;
+        let any = self.row.is_some_and(|row| row.rule == Rule::Any);
+        self.missing = wanting.map(|port| if port.is_active() { 1 } else { CONSTANT }).sum();
+        self.missing += if queues == 0 { PASSIVE } else { 0 };
+        self.slack = if any { queues.saturating_sub(1) } else { 0 };
+        self.strings = active.clone().any(|port| port.accepts(Kind::String));
     }
 }

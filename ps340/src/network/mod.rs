@@ -4,59 +4,85 @@
 //! arrive at their destinations, in the order of the outputs and of the connections. A firing takes nothing but
 //! messages that are there, so loops are no recursion and need no stack; a budget bounds each run.
 //!
+//! An object is its own place: instances lie in a table by the numbers of the objects, so an arc leads to its end
+//! without a search, and connections to a name outlive what the name stands for.
+//!
+//! A person may look on, see [`Network::snapshot`]: counters, a trace of messages, breaks, single
+//! firings. Nothing of it costs anything while nobody does.
+//!
 //! Used: the execution model of the manuals. Modelled: queues, constants, faults, re-instancing. Not modelled:
 //! the time that a function took on the machine's own processor.
 
 mod arcs;
 mod instance;
+mod instruments;
+mod observe;
 mod pool;
+mod ready;
 mod run;
+mod setup;
+mod snapshot;
 
 #[cfg(test)]
 mod clock_tests;
 #[cfg(test)]
 mod contract;
 #[cfg(test)]
+mod extreme_tests;
+#[cfg(test)]
+mod spring_tests;
+#[cfg(test)]
 mod stress;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod watch_tests;
 
 pub use arcs::{Destination, MAX_ARCS};
+pub use instruments::{Activity, TRACE_LINES, TRACED_BYTES, Trace, Traced};
+pub use observe::{Outcome, Source};
 pub use run::Ran;
+pub use snapshot::{FunctionView, InputView};
 
 use crate::{
-    functions::{FunctionRow, Rule, SizeError},
-    port::{Cause, Fault, ObjectId, Port},
+    functions::{FunctionRow, SizeError},
+    port::{Backlog, Cause, Fault, ObjectId, Outbox, Port},
 };
 use arcs::Output;
 use instance::Instance;
+use instruments::Instruments;
 use pool::{Pool, Run};
-use protocol::{Kind, Value, command::Input};
-use std::collections::{BTreeMap, VecDeque};
+use protocol::command::Input;
+use ready::Ready;
+use std::collections::BTreeMap;
 
 /// Most bytes of strings that wait in a network; messages beyond are lost, counted and reported. Ours.
 pub const MAX_STRING_BYTES: usize = 64 << 20;
 
-/// The place in the index of an object that is no function.
-const NO_SLOT: u32 = u32::MAX;
-
 /// Instances of functions and the arcs between them.
 #[derive(Debug)]
 pub struct Network {
-    /// The slot of each object, [`NO_SLOT`] for one that is no function.
-    index: Vec<u32>,
+    /// By the numbers of the objects, also of those that are no functions.
     instances: Vec<Instance>,
-    free: Vec<u32>,
     ports: Pool<Port>,
+    /// Messages behind the first at each port.
+    backlog: Backlog,
     outputs: Pool<Output>,
     /// Arcs that leave objects that are no functions (yet), by object and output.
     outside: BTreeMap<(ObjectId, u16), Output>,
-    ready: VecDeque<u32>,
-    /// Slots of the clocks, in the order of their instancing.
-    clocks: Vec<u32>,
-    outbox: Vec<(u16, Value)>,
+    /// Those that can fire, in the order in which they became ready. An instance stands here once at most; if it
+    /// is made anew, it keeps its place.
+    ready: Ready,
+    /// The clocks, in the order of their instancing.
+    clocks: Vec<ObjectId>,
+    /// None while it is in use, and before the first firing.
+    outbox: Option<Box<Outbox>>,
+    /// Bytes of the strings that wait at inputs or are remembered.
     string_bytes: usize,
+    /// Messages lost at each input that ever lost one.
+    lost: BTreeMap<(ObjectId, u16), u64>,
     counters: Counters,
+    instruments: Option<Box<Instruments>>,
     frame: u64,
     centiseconds: u64,
 }
@@ -82,17 +108,18 @@ impl Network {
     /// An empty network at time 0.
     pub const fn new() -> Network {
         Network {
-            index: Vec::new(),
             instances: Vec::new(),
-            free: Vec::new(),
             ports: Pool::new(),
+            backlog: Backlog::new(),
             outputs: Pool::new(),
             outside: BTreeMap::new(),
-            ready: VecDeque::new(),
+            ready: Ready::new(),
             clocks: Vec::new(),
-            outbox: Vec::new(),
+            outbox: None,
             string_bytes: 0,
+            lost: BTreeMap::new(),
             counters: Counters { firings: 0, deliveries: 0, lost: 0 },
+            instruments: None,
             frame: 0,
             centiseconds: 0,
         }
@@ -110,55 +137,33 @@ impl Network {
     pub fn define(&mut self, id: ObjectId, row: &'static FunctionRow, size: Option<u16>) -> Result<(), SizeError> {
         let shape = row.shape(size)?;
         self.undefine_instance(id);
-        let inputs = (1..=shape.inputs).filter_map(|input| row.input(shape, input)).map(Port::new).collect::<Vec<_>>();
-        let active = inputs.iter().filter(|port| port.is_active()).count() as u16;
-        let wanting = inputs.iter().filter(|port| port.is_wanting()).count() as u16;
-        let strings = inputs.iter().any(|port| port.is_active() && port.accepts(Kind::String));
         let memory = std::iter::repeat_with(|| Port::UNUSED).take(usize::from(row.memory));
-        let ports = self.ports.store(inputs.into_iter().chain(memory).collect::<Vec<_>>().into_iter());
+        let inputs = (1..=shape.inputs).filter_map(|input| row.input(shape, input)).map(Port::new);
+        let ports = self.ports.store(inputs.chain(memory).collect::<Vec<_>>().into_iter());
         let outputs = (1..=shape.outputs).map(|output| self.outside.remove(&(id, output)).unwrap_or_default());
         let outputs = self.outputs.store(outputs.collect::<Vec<_>>().into_iter());
         let (Some(ports), Some(outputs)) = (ports, outputs) else {
             return Err(SizeError::OutOfRange(row.name, shape.size));
         };
-        let instance = Instance {
-            object: id,
-            row,
+        if id.index() >= self.instances.len() {
+            self.instances.resize_with(id.index() + 1, || Instance::VACANT);
+        }
+        let instance = &mut self.instances[id.index()];
+        *instance = Instance {
+            row: Some(row),
             ports,
             outputs,
             inputs: shape.inputs,
             size: shape.size,
-            // A function without active inputs never fires.
-            missing: wanting + u16::from(active == 0),
-            slack: if row.rule == Rule::Any { active.saturating_sub(1) } else { 0 },
-            strings,
-            queued: false,
+            queued: instance.queued,
+            ..Instance::VACANT
         };
-        let slot = self.occupy(id, instance);
+        instance.count(&self.ports.get(ports)[..usize::from(shape.inputs)]);
+        self.note_sole_arc(id);
         if row.clock.is_some() {
-            self.clocks.push(slot);
+            self.clocks.push(id);
         }
         Ok(())
-    }
-
-    /// Puts an instance into a slot of its own.
-    fn occupy(&mut self, id: ObjectId, instance: Instance) -> u32 {
-        let slot = match self.free.pop() {
-            Some(slot) => {
-                self.instances[slot as usize] = instance;
-                slot
-            }
-            None => {
-                self.instances.push(instance);
-                self.instances.len() as u32 - 1
-            }
-        };
-        let place = id.0 as usize;
-        if place >= self.index.len() {
-            self.index.resize(place + 1, NO_SLOT);
-        }
-        self.index[place] = slot;
-        slot
     }
 
     /// Ends an instance, with its messages and the connections from it. Connections to it stay.
@@ -170,18 +175,23 @@ impl Network {
     }
 
     fn undefine_instance(&mut self, id: ObjectId) {
-        let Some(slot) = self.slot(id) else { return };
-        let instance = &mut self.instances[slot as usize];
-        let (ports, outputs, clock) = (instance.ports, instance.outputs, instance.row.clock.is_some());
-        *instance = Instance::vacant();
-        self.string_bytes -= self.ports.get(ports).iter().map(Port::string_bytes).sum::<usize>();
+        let Some(instance) = self.instances.get_mut(id.index()) else { return };
+        let Some(row) = instance.row else { return };
+        let (ports, outputs) = (instance.ports, instance.outputs);
+        *instance = Instance { queued: instance.queued, ..Instance::VACANT };
+        for port in self.ports.get_mut(ports) {
+            self.string_bytes -= port.string_bytes(&self.backlog);
+            port.abandon(&mut self.backlog);
+        }
         self.ports.release(ports, || Port::UNUSED);
         self.outputs.release(outputs, Output::default);
-        if clock {
-            self.clocks.retain(|&clock| clock != slot);
+        if row.clock.is_some() {
+            self.clocks.retain(|&clock| clock != id);
         }
-        self.index[id.0 as usize] = NO_SLOT;
-        self.free.push(slot);
+        if !self.lost.is_empty() {
+            self.lost.retain(|&(object, _), _| object != id);
+        }
+        self.forget_activity(id);
     }
 
     /// Adds an arc. One that exists already stays single.
@@ -192,16 +202,17 @@ impl Network {
     /// # Errors
     /// A fault if the source has no such output, the destination no such input, or the output too many arcs.
     pub fn connect(&mut self, source: ObjectId, output: u16, to: ObjectId, input: Input) -> Result<(), Fault> {
-        if let Some(target) = self.instance(to)
+        if let (Some(row), Some(target)) = (self.function(to), self.instance(to))
             && target.input(input).is_none()
         {
-            return Err(Fault { function: target.row.name, cause: Cause::NoSuchInput(input) });
+            return Err(Fault { function: row.name, cause: Cause::NoSuchInput(input) });
         }
-        let function = self.instance(source).map_or("", |instance| instance.row.name);
+        let function = self.function(source).map_or("", |row| row.name);
         let Some(arcs) = self.output_mut(source, output) else {
             return Err(Fault { function, cause: Cause::NoSuchOutput(output) });
         };
         if arcs.connect(Destination { object: to, input }) {
+            self.note_sole_arc(source);
             Ok(())
         } else {
             Err(Fault { function, cause: Cause::TooManyArcs { output } })
@@ -240,16 +251,17 @@ impl Network {
             for (output, arcs) in (1..).zip(self.outputs.get_mut(run)) {
                 arcs.retain(|arc| keep(output, arc));
             }
+            self.note_sole_arc(source);
         }
         for (&(_, output), arcs) in self.outside.range_mut((source, 0)..=(source, u16::MAX)) {
             arcs.retain(|arc| keep(output, arc));
         }
-        self.drop_outside(source, |arcs| arcs.single() == Err(0));
+        self.drop_outside(source, |arcs| arcs.len() == 0);
     }
 
     /// The arcs that leave an object, as output and destination, in order.
     pub fn arcs(&self, source: ObjectId) -> impl Iterator<Item = (u16, Destination)> {
-        let own = self.instance(source).map_or(Run::default(), |instance| instance.outputs);
+        let own = self.instance(source).map_or(Run::EMPTY, |instance| instance.outputs);
         let own = (1..).zip(self.outputs.get(own));
         let outside = self.outside.range((source, 0)..=(source, u16::MAX)).map(|(&(_, output), arcs)| (output, arcs));
         own.chain(outside).flat_map(|(output, arcs)| arcs.iter().map(move |arc| (output, arc)))
@@ -257,20 +269,13 @@ impl Network {
 
     /// The function of an object.
     pub fn function(&self, id: ObjectId) -> Option<&'static FunctionRow> {
-        self.instance(id).map(|instance| instance.row)
-    }
-
-    /// The port at an input of a function: what waits there.
-    pub fn port(&self, id: ObjectId, input: u16) -> Option<&Port> {
-        let instance = self.instance(id)?;
-        let place = instance.input(Input::Number(u32::from(input)))?;
-        self.ports.get(instance.ports).get(place)
+        self.instances.get(id.index()).and_then(|instance| instance.row)
     }
 
     /// The objects that are functions, in the order of their numbers.
     pub fn objects(&self) -> impl Iterator<Item = ObjectId> {
-        let occupied = self.index.iter().enumerate().filter(|(_, slot)| **slot != NO_SLOT);
-        occupied.map(|(place, _)| ObjectId(place as u32))
+        let functions = self.instances.iter().enumerate().filter(|(_, instance)| instance.row.is_some());
+        functions.map(|(place, _)| ObjectId::new(place))
     }
 
     /// What the network did since it was made.
@@ -278,13 +283,16 @@ impl Network {
         self.counters
     }
 
-    #[inline]
-    fn slot(&self, id: ObjectId) -> Option<u32> {
-        self.index.get(id.0 as usize).copied().filter(|&slot| slot != NO_SLOT)
+    /// The instance of an object that is a function.
+    fn instance(&self, id: ObjectId) -> Option<&Instance> {
+        self.instances.get(id.index()).filter(|instance| instance.row.is_some())
     }
 
-    fn instance(&self, id: ObjectId) -> Option<&Instance> {
-        self.slot(id).map(|slot| &self.instances[slot as usize])
+    /// Notes in a function where the only arc from output 1 ends, after its arcs have changed.
+    fn note_sole_arc(&mut self, id: ObjectId) {
+        if let Some(instance) = self.instances.get_mut(id.index()) {
+            instance.sole = self.outputs.get(instance.outputs).first().and_then(Output::sole);
+        }
     }
 
     fn output_mut(&mut self, source: ObjectId, output: u16) -> Option<&mut Output> {

@@ -10,13 +10,16 @@ pub(super) struct Pool<T> {
 }
 
 /// Where a run lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Run {
     start: u32,
     length: u16,
 }
 
 impl Run {
+    /// No items.
+    pub(super) const EMPTY: Run = Run { start: 0, length: 0 };
+
     /// The places of the items.
     #[inline]
     pub(super) fn range(self) -> std::ops::Range<usize> {

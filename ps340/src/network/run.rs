@@ -1,7 +1,10 @@
 //! Messages on their way: arrival, firing, delivery, and the passing of time.
 
-use super::{Destination, MAX_STRING_BYTES, NO_SLOT, Network};
-use crate::port::{Arrival, Cause, Effect, Elapsed, Fault, Firing, ObjectId, Port, Problem};
+use super::{
+    Destination, MAX_STRING_BYTES, Network,
+    observe::{Nobody, Observer, Outcome, Source},
+};
+use crate::port::{Arrival, Backlog, Cause, Effect, Elapsed, Fault, Firing, ObjectId, Outbox, Port, Problem};
 use protocol::{Kind, Value, command::Input};
 
 /// Hundredths of a second in one tick of the system clock.
@@ -17,60 +20,76 @@ pub struct Ran {
     pub firings: u64,
     /// What of the budget was used; a single firing may exceed what was left.
     pub work: u64,
-    /// Whether nothing is ready any more; false if the budget ended the run.
+    /// Whether nothing is ready any more; false if the budget or a break ended the run.
     pub idle: bool,
+    /// The function before whose firing the network stands still, if a person made it stop.
+    pub stopped: Option<ObjectId>,
+}
+
+/// Calls a method with whoever looks on as its last argument.
+macro_rules! observed {
+    ($network:ident.$method:ident($($argument:expr),*)) => {
+        match $network.instruments.take() {
+            None => $network.$method($($argument,)* &mut Nobody),
+            Some(mut instruments) => {
+                let result = $network.$method($($argument,)* &mut *instruments);
+                $network.instruments = Some(instruments);
+                result
+            }
+        }
+    };
 }
 
 impl Network {
     /// Sends a message to an input, as if from a function.
-    pub fn send(&mut self, to: ObjectId, input: Input, value: Value, effects: &mut Vec<Effect>) {
+    pub fn send(&mut self, to: ObjectId, input: Input, mut value: Value, effects: &mut Vec<Effect>) {
         if !value.is_finite() {
-            let function = self.function(to).map_or("", |row| row.name);
-            let fault = Fault { function, cause: Cause::Overflow };
-            effects.push(Effect::Fault { object: to, fault });
-            return;
+            return effects.push(self.fault(to, Cause::Overflow));
         }
-        self.deliver(Destination { object: to, input }, value, effects);
+        observed!(self.deliver(None, Destination { object: to, input }, &mut value, effects));
     }
 
     /// Sends a message from an output of an object: what a device does, or the answer to a request.
     ///
     /// A message from an output that is not connected, or does not exist, goes nowhere.
-    pub fn emit(&mut self, from: ObjectId, output: u16, value: Value, effects: &mut Vec<Effect>) {
+    pub fn emit(&mut self, from: ObjectId, output: u16, mut value: Value, effects: &mut Vec<Effect>) {
         if !value.is_finite() {
-            let function = self.function(from).map_or("", |row| row.name);
-            effects.push(Effect::Fault { object: from, fault: Fault { function, cause: Cause::Overflow } });
-            return;
+            return effects.push(self.fault(from, Cause::Overflow));
         }
-        if let Some(slot) = self.slot(from) {
-            self.distribute(slot, output, value, effects);
+        let source = Source { object: from, output };
+        if self.instance(from).is_some() {
+            observed!(self.distribute(source, &mut value, effects));
         } else {
             let arcs: Vec<_> = self.outside.get(&(from, output)).into_iter().flat_map(|arcs| arcs.iter()).collect();
             for arc in arcs {
-                self.deliver(arc, value.clone(), effects);
+                observed!(self.deliver(Some(source), arc, &mut value.clone(), effects));
             }
         }
     }
 
-    /// Lets instances fire until none is ready or the budget is spent.
+    /// Lets instances fire until none is ready, the budget is spent, or a break is met.
     ///
     /// - `budget`: units of work. A firing costs one for each message that it delivers, at least one, and one more
     ///   for every 64 bytes of their strings; so the budget bounds time and memory. The last firing may exceed it.
     pub fn run(&mut self, budget: u64, effects: &mut Vec<Effect>) -> Ran {
-        let before = self.counters.firings;
-        let mut work = 0;
-        while work < budget {
-            let Some(slot) = self.ready.pop_front() else { break };
-            let instance = &mut self.instances[slot as usize];
-            // The slot may have been vacated or occupied anew since.
-            if std::mem::take(&mut instance.queued) && instance.is_ready() {
-                work += self.fire(slot, effects);
-            }
-        }
-        Ran { firings: self.counters.firings - before, work, idle: self.ready.is_empty() }
+        observed!(self.run_observed(budget, effects))
     }
 
-    /// Lets the clocks advance to a time and send what is due.
+    /// Lets the first ready instance fire, whatever stands in the way, and stops the network after it.
+    ///
+    /// - Returns which it was; none if none is ready.
+    pub fn step_one(&mut self, effects: &mut Vec<Effect>) -> Option<ObjectId> {
+        let mut outbox = self.outbox.take().unwrap_or_default();
+        let first = self.next_ready();
+        if let Some(object) = first {
+            observed!(self.fire(object, &mut outbox, effects));
+        }
+        self.outbox = Some(outbox);
+        self.hold();
+        first
+    }
+
+    /// Lets the clocks advance to a time and send what is due. They stand still while the network is stopped.
     ///
     /// - `frame`: the number of the refresh frame; `centiseconds`: hundredths of a second. Time that runs backwards
     ///   counts as standing still.
@@ -83,54 +102,110 @@ impl Network {
         };
         self.frame = self.frame.max(frame);
         self.centiseconds = self.centiseconds.max(centiseconds);
-        for i in 0..self.clocks.len() {
-            let slot = self.clocks[i];
-            let instance = &self.instances[slot as usize];
-            let Some(clock) = instance.row.clock else { continue };
-            let (object, size, inputs) = (instance.object, instance.size, usize::from(instance.inputs));
-            let ports = self.ports.get_mut(instance.ports);
-            match clock(&mut Firing::new(object, size, ports, inputs, &mut self.outbox, effects), &elapsed) {
-                Ok(0) => {}
-                Ok(lost) => {
-                    self.counters.lost += lost;
-                    effects.push(Effect::Fault { object, fault: self.fault(slot, Cause::Late { lost }) });
-                }
-                Err(problem) => self.fail(slot, problem, effects),
-            }
-            self.deliver_outbox(slot, effects);
+        if !self.is_held() {
+            observed!(self.advance_clocks(&elapsed, effects));
         }
     }
 
+    fn run_observed<O: Observer>(&mut self, budget: u64, effects: &mut Vec<Effect>, observer: &mut O) -> Ran {
+        let before = self.counters.firings;
+        let mut outbox = self.outbox.take().unwrap_or_default();
+        let (mut work, mut stopped) = (0, None);
+        while work < budget {
+            let Some(object) = self.next_ready() else { break };
+            if observer.stops_before(object) {
+                self.instances[object.index()].queued = true;
+                self.ready.put_back(object);
+                stopped = Some(object);
+                break;
+            }
+            work += self.fire(object, &mut outbox, effects, observer);
+        }
+        self.outbox = Some(outbox);
+        Ran { firings: self.counters.firings - before, work, idle: self.ready.is_empty(), stopped }
+    }
+
+    /// Takes the first instance that is ready from the list.
+    #[inline(always)]
+    fn next_ready(&mut self) -> Option<ObjectId> {
+        loop {
+            let object = self.ready.pop_front()?;
+            let instance = &mut self.instances[object.index()];
+            instance.queued = false;
+            // It may have become another one since, or lost what it had.
+            if instance.is_ready() {
+                return Some(object);
+            }
+        }
+    }
+
+    fn advance_clocks<O: Observer>(&mut self, elapsed: &Elapsed, effects: &mut Vec<Effect>, observer: &mut O) {
+        let mut outbox = self.outbox.take().unwrap_or_default();
+        for i in 0..self.clocks.len() {
+            let object = self.clocks[i];
+            let instance = &self.instances[object.index()];
+            let Some(clock) = instance.row.and_then(|row| row.clock) else { continue };
+            let ports = self.ports.get_mut(instance.ports).split_at_mut(usize::from(instance.inputs));
+            match clock(
+                &mut Firing::new(object, instance.size, ports, &mut outbox, effects, &mut self.string_bytes),
+                elapsed,
+            ) {
+                Ok(0) => {}
+                Ok(lost) => {
+                    self.counters.lost += lost;
+                    effects.push(self.fault(object, Cause::Late { lost }));
+                }
+                Err(problem) => {
+                    outbox.clear();
+                    self.fail(object, problem, effects, observer);
+                }
+            }
+            self.deliver_results(object, &mut outbox, effects, observer);
+        }
+        self.outbox = Some(outbox);
+    }
+
     /// Fires an instance once; returns the work done.
-    #[inline]
-    fn fire(&mut self, slot: u32, effects: &mut Vec<Effect>) -> u64 {
+    #[inline(always)]
+    fn fire<O: Observer>(
+        &mut self,
+        object: ObjectId,
+        outbox: &mut Outbox,
+        effects: &mut Vec<Effect>,
+        observer: &mut O,
+    ) -> u64 {
+        let instance = &mut self.instances[object.index()];
+        let Some(row) = instance.row else { return 0 };
         self.counters.firings += 1;
-        let instance = &mut self.instances[slot as usize];
-        let inputs = usize::from(instance.inputs);
-        let ports = self.ports.get_mut(instance.ports);
-        let leaving = if instance.strings { ports[..inputs].iter().map(Port::leaving_bytes).sum() } else { 0 };
-        let mut firing = Firing::new(instance.object, instance.size, ports, inputs, &mut self.outbox, effects);
-        match (instance.row.behaviour)(&mut firing) {
+        observer.fires(object);
+        let (inputs, memory) = self.ports.get_mut(instance.ports).split_at_mut(usize::from(instance.inputs));
+        let leaving = if instance.strings && self.string_bytes > 0 { leaving_bytes(inputs) } else { 0 };
+        let ports = (&mut *inputs, memory);
+        match (row.behaviour)(&mut Firing::new(object, instance.size, ports, outbox, effects, &mut self.string_bytes)) {
             Ok(()) => {
                 self.string_bytes -= leaving;
-                instance.missing += consume(&mut ports[..inputs]);
+                let active = usize::from(instance.active);
+                instance.missing += consume(&mut inputs[..active], &mut self.backlog);
             }
-            Err(problem) => self.fail(slot, problem, effects),
+            Err(problem) => {
+                outbox.clear();
+                self.fail(object, problem, effects, observer);
+            }
         }
-        let instance = &mut self.instances[slot as usize];
+        let instance = &mut self.instances[object.index()];
         if instance.is_ready() {
             instance.queued = true;
-            self.ready.push_back(slot);
+            self.ready.push_back(object);
         }
-        self.deliver_outbox(slot, effects)
+        self.deliver_results(object, outbox, effects, observer)
     }
 
     /// Reports why an instance could not fire, and removes what stood in the way: the message of a wrong kind, or
     /// one message of each active input.
     #[cold]
-    fn fail(&mut self, slot: u32, problem: Problem, effects: &mut Vec<Effect>) {
-        self.outbox.clear();
-        let instance = &mut self.instances[slot as usize];
+    fn fail<O: Observer>(&mut self, object: ObjectId, problem: Problem, effects: &mut Vec<Effect>, observer: &mut O) {
+        observer.fails(object);
+        let instance = &mut self.instances[object.index()];
         let ports = &mut self.ports.get_mut(instance.ports)[..usize::from(instance.inputs)];
         let last_active = || ports.iter().rposition(Port::is_active).map_or(1, |place| place as u16 + 1);
         let wrong_kind = match problem {
@@ -154,128 +229,196 @@ impl Network {
             Some(port) if port.is_active() => std::slice::from_mut(port),
             _ => ports,
         };
-        self.string_bytes -= removed.iter().map(Port::leaving_bytes).sum::<usize>();
-        instance.missing += consume(removed);
-        let object = instance.object;
-        effects.push(Effect::Fault { object, fault: self.fault(slot, cause) });
-    }
-
-    fn fault(&self, slot: u32, cause: Cause) -> Fault {
-        Fault { function: self.instances[slot as usize].row.name, cause }
+        self.string_bytes -= leaving_bytes(removed);
+        instance.missing += consume(removed, &mut self.backlog);
+        effects.push(self.fault(object, cause));
     }
 
     /// Delivers the results of a firing in their order; returns the work done, at least 1.
-    #[inline]
-    fn deliver_outbox(&mut self, slot: u32, effects: &mut Vec<Effect>) -> u64 {
-        let mut outbox = std::mem::take(&mut self.outbox);
-        let mut work = 0;
-        for (output, value) in outbox.drain(..) {
-            work += self.distribute(slot, output, value, effects);
+    #[inline(always)]
+    fn deliver_results<O: Observer>(
+        &mut self,
+        object: ObjectId,
+        outbox: &mut Outbox,
+        effects: &mut Vec<Effect>,
+        observer: &mut O,
+    ) -> u64 {
+        let has_more = outbox.has_more();
+        let Some((output, message)) = outbox.first() else { return 1 };
+        let from = Source { object, output: *output };
+        // The common case first: one result, along one arc.
+        if let (1, Some(arc), false, false) =
+            (*output, self.instances[object.index()].sole, has_more, matches!(message, Value::String(_)))
+        {
+            self.deliver(Some(from), arc, message, effects, observer);
+            outbox.note_delivery();
+            return 1;
         }
-        self.outbox = outbox;
+        let mut work = self.distribute(from, message, effects, observer);
+        for (output, message) in outbox.more() {
+            work += self.distribute(Source { object, output: *output }, message, effects, observer);
+        }
+        outbox.clear();
         work.max(1)
     }
 
     /// Delivers a message along the arcs of an output, in the order of connection; returns the work done.
-    #[inline]
-    fn distribute(&mut self, slot: u32, output: u16, value: Value, effects: &mut Vec<Effect>) -> u64 {
-        let run = self.instances[slot as usize].outputs;
-        let place = usize::from(output).wrapping_sub(1);
-        let Some(arcs) = self.outputs.get(run).get(place) else { return 0 };
-        let units = match &value {
+    #[inline(never)]
+    fn distribute<O: Observer>(
+        &mut self,
+        from: Source,
+        message: &mut Value,
+        effects: &mut Vec<Effect>,
+        observer: &mut O,
+    ) -> u64 {
+        let units = match message {
             Value::String(text) => 1 + (text.len() / BYTES_PER_UNIT) as u64,
             _ => 1,
         };
-        match arcs.single() {
-            Ok(arc) => {
-                self.deliver(arc, value, effects);
-                units
-            }
-            Err(count) => {
-                for index in 0..count {
-                    if let Some(arc) = self.outputs.get(run)[place].get(index) {
-                        self.deliver(arc, value.clone(), effects);
-                    }
-                }
-                units * count as u64
-            }
+        let run = self.instances[from.object.index()].outputs;
+        let place = usize::from(from.output).wrapping_sub(1);
+        let count = self.outputs.get(run).get(place).map_or(0, |arcs| arcs.len());
+        for index in 0..count {
+            let Some(arc) = self.outputs.get(run)[place].get(index) else { break };
+            let mut copy =
+                if index + 1 < count { message.clone() } else { std::mem::replace(message, Value::Boolean(false)) };
+            self.deliver(Some(from), arc, &mut copy, effects, observer);
+        }
+        units * count as u64
+    }
+
+    /// Delivers a message to where an arc ends. It is moved out of its place.
+    #[inline(always)]
+    fn deliver<O: Observer>(
+        &mut self,
+        from: Option<Source>,
+        to: Destination,
+        message: &mut Value,
+        effects: &mut Vec<Effect>,
+        observer: &mut O,
+    ) {
+        self.counters.deliveries += 1;
+        let copy = observer.copy(from, to, message);
+        let outcome = self.arrive(to, message, effects);
+        if O::LOOKS {
+            let outcome = match outcome {
+                Outcome::Arrived { .. } => Outcome::Arrived { waiting: self.waiting(to) },
+                other => other,
+            };
+            observer.passes(from, to, copy, outcome);
         }
     }
 
-    /// Lets a message arrive where an arc ends.
-    #[inline]
-    fn deliver(&mut self, Destination { object, input }: Destination, value: Value, effects: &mut Vec<Effect>) {
-        self.counters.deliveries += 1;
-        let slot = self.index.get(object.0 as usize).copied().unwrap_or(NO_SLOT);
-        let Some(instance) = self.instances.get_mut(slot as usize) else {
-            effects.push(Effect::Deliver { object, input, value });
-            return;
+    /// Lets a message arrive at an input. How many wait there is not counted.
+    #[inline(always)]
+    fn arrive(&mut self, to: Destination, message: &mut Value, effects: &mut Vec<Effect>) -> Outcome {
+        let Some(instance) = self.instances.get_mut(to.object.index()) else {
+            return self.stray(to, message, effects);
         };
-        let Some(place) = instance.input(input) else {
-            return self.refuse(slot, Cause::NoSuchInput(input), effects);
+        let Some(place) = instance.input(to.input) else {
+            return self.stray(to, message, effects);
         };
         let port = &mut self.ports.get_mut(instance.ports)[place];
-        if !port.accepts(value.kind()) {
-            let cause = Cause::Kind { input: place as u16 + 1, kind: value.kind() };
-            return self.refuse(slot, cause, effects);
+        let kind = message.kind();
+        if !port.accepts(kind) {
+            return self.refuse(to.object, Cause::Kind { input: place as u16 + 1, kind }, effects);
         }
-        let arrival = match &value {
-            Value::String(text) => {
-                let replaced = if port.is_active() { 0 } else { port.string_bytes() };
-                let bytes = self.string_bytes - replaced + text.len();
-                if bytes <= MAX_STRING_BYTES {
-                    let arrival = port.arrive(value);
-                    if !matches!(arrival, Arrival::Lost(_)) {
-                        self.string_bytes = bytes;
-                    }
-                    arrival
-                } else {
-                    port.lose()
-                }
-            }
-            _ => {
-                if !port.is_active() {
-                    self.string_bytes -= port.string_bytes();
-                }
-                port.arrive(value)
-            }
+        let arrival = if kind == Kind::String || (self.string_bytes > 0 && !port.is_active()) {
+            arrive_with_strings(port, message, &mut self.backlog, &mut self.string_bytes)
+        } else {
+            port.arrive(message, &mut self.backlog)
         };
         match arrival {
             Arrival::Kept => {}
             Arrival::Awaited => {
-                instance.missing -= 1;
+                instance.note_arrival(port);
                 if !instance.queued && instance.is_ready() {
                     instance.queued = true;
-                    self.ready.push_back(slot);
+                    self.ready.push_back(to.object);
                 }
             }
-            Arrival::Lost(lost) => self.lose(slot, place as u16 + 1, lost, effects),
+            Arrival::Lost => return self.lose(to.object, place as u16 + 1, effects),
+        }
+        Outcome::Arrived { waiting: 0 }
+    }
+
+    /// Puts an instance at the end of the list if it is ready and not there yet.
+    pub(super) fn queue_if_ready(&mut self, object: ObjectId) {
+        let instance = &mut self.instances[object.index()];
+        if !instance.queued && instance.is_ready() {
+            instance.queued = true;
+            self.ready.push_back(object);
         }
     }
 
-    #[cold]
-    fn refuse(&self, slot: u32, cause: Cause, effects: &mut Vec<Effect>) {
-        let object = self.instances[slot as usize].object;
-        effects.push(Effect::Fault { object, fault: self.fault(slot, cause) });
+    /// A message for an object that is no function, or for an input that the function does not have.
+    #[inline(never)]
+    fn stray(&mut self, to: Destination, message: &mut Value, effects: &mut Vec<Effect>) -> Outcome {
+        if self.instance(to.object).is_some() {
+            return self.refuse(to.object, Cause::NoSuchInput(to.input), effects);
+        }
+        let value = std::mem::replace(message, Value::Boolean(false));
+        effects.push(Effect::Deliver { object: to.object, input: to.input, value });
+        Outcome::Left
     }
 
     /// Counts a lost message; reports the first, tenth, hundredth and so on, so that reports are no flood.
     #[cold]
-    fn lose(&mut self, slot: u32, input: u16, lost: u64, effects: &mut Vec<Effect>) {
+    fn lose(&mut self, object: ObjectId, input: u16, effects: &mut Vec<Effect>) -> Outcome {
         self.counters.lost += 1;
+        let lost = self.lost.entry((object, input)).or_default();
+        *lost += 1;
+        let lost = *lost;
         if 10_u64.checked_pow(lost.ilog10()) == Some(lost) {
-            self.refuse(slot, Cause::Flood { input, lost }, effects);
+            effects.push(self.fault(object, Cause::Flood { input, lost }));
         }
+        Outcome::Lost
+    }
+
+    #[cold]
+    fn refuse(&self, object: ObjectId, cause: Cause, effects: &mut Vec<Effect>) -> Outcome {
+        effects.push(self.fault(object, cause));
+        Outcome::Refused
+    }
+
+    #[cold]
+    fn fault(&self, object: ObjectId, cause: Cause) -> Effect {
+        let function = self.function(object).map_or("", |row| row.name);
+        Effect::Fault { object, fault: Fault { function, cause } }
     }
 }
 
+/// Lets a message arrive where strings are involved, whose bytes are counted and limited.
+#[cold]
+fn arrive_with_strings(port: &mut Port, message: &mut Value, backlog: &mut Backlog, bytes: &mut usize) -> Arrival {
+    let replaced = if port.is_active() { 0 } else { port.string_bytes(backlog) };
+    let added = match message {
+        Value::String(text) => text.len(),
+        _ => 0,
+    };
+    if added > 0 && *bytes - replaced + added > MAX_STRING_BYTES {
+        return Arrival::Lost;
+    }
+    let arrival = port.arrive(message, backlog);
+    if arrival != Arrival::Lost {
+        *bytes = *bytes - replaced + added;
+    }
+    arrival
+}
+
+/// Bytes of the strings that the next firing consumes.
+#[cold]
+fn leaving_bytes(inputs: &[Port]) -> usize {
+    inputs.iter().map(Port::leaving_bytes).sum()
+}
+
 /// Removes one message from each active input that has one; returns how many of them are empty now.
-#[inline]
-fn consume(ports: &mut [Port]) -> u16 {
+#[inline(always)]
+fn consume(ports: &mut [Port], backlog: &mut Backlog) -> u16 {
     let mut emptied = 0;
     for port in ports {
         if port.is_active() && !port.is_empty() {
-            emptied += u16::from(port.consume());
+            emptied += u16::from(port.consume(backlog));
         }
     }
     emptied

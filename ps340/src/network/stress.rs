@@ -6,6 +6,7 @@ use crate::{
     port::{Effect, Literal, MAX_QUEUE},
 };
 use proptest::prelude::*;
+use protocol::Value;
 
 /// What a host may do.
 #[derive(Clone, Debug)]
@@ -14,6 +15,7 @@ enum Act {
     Undefine(u32),
     Connect(u32, u16, u32, u32),
     Disconnect(u32, Option<u16>),
+    Cness(u32, u32, bool),
     Send(u32, u32, usize, f64),
     Emit(u32, u16, usize, f64),
     Run(u64),
@@ -29,6 +31,7 @@ fn act() -> impl Strategy<Value = Act> {
         1 => id.clone().prop_map(Act::Undefine),
         4 => (id.clone(), 0..4_u16, id.clone(), 0..6_u32).prop_map(|(a, o, b, i)| Act::Connect(a, o, b, i)),
         1 => (id.clone(), prop::option::of(0..4_u16)).prop_map(|(a, o)| Act::Disconnect(a, o)),
+        2 => (id.clone(), 0..7_u32, any::<bool>()).prop_map(|(a, i, constant)| Act::Cness(a, i, constant)),
         8 => (id.clone(), 0..7_u32, 0..12_usize, number.clone()).prop_map(|(a, i, k, n)| Act::Send(a, i, k, n)),
         1 => (id, 0..4_u16, 0..12_usize, number).prop_map(|(a, o, k, n)| Act::Emit(a, o, k, n)),
         3 => (0..300_u64).prop_map(Act::Run),
@@ -54,15 +57,16 @@ fn value(kind: usize, n: f64) -> Value {
     .value()
 }
 
-/// Carries the acts out; everything that came out.
-fn perform(acts: &[Act]) -> (Network, Vec<Effect>) {
-    let (mut network, mut effects, mut frame) = (Network::new(), Vec::new(), 0);
+/// Carries the acts out on an empty network; everything that came out.
+fn perform(acts: &[Act], mut network: Network) -> (Network, Vec<Effect>) {
+    let (mut effects, mut frame) = (Vec::new(), 0);
     for act in acts {
         match *act {
             Act::Define(id, row, size) => drop(network.define(ObjectId(id), all().nth(row).unwrap(), size)),
             Act::Undefine(id) => network.undefine(ObjectId(id)),
             Act::Connect(a, o, b, i) => drop(network.connect(ObjectId(a), o, ObjectId(b), Input::Number(i))),
             Act::Disconnect(a, o) => network.disconnect(ObjectId(a), o, None),
+            Act::Cness(a, i, constant) => drop(network.setup_cness(ObjectId(a), Input::Number(i), constant)),
             Act::Send(a, i, k, n) => network.send(ObjectId(a), Input::Number(i), value(k, n), &mut effects),
             Act::Emit(a, o, k, n) => network.emit(ObjectId(a), o, value(k, n), &mut effects),
             Act::Run(budget) => drop(network.run(budget, &mut effects)),
@@ -76,21 +80,31 @@ fn perform(acts: &[Act]) -> (Network, Vec<Effect>) {
     (network, effects)
 }
 
-/// What each instance waits for, who is ready, and how many bytes of strings wait, counted anew.
+/// What each instance waits for, who is ready, how many queues are lent and bytes of strings kept, counted anew.
 fn check_books(network: &Network) {
-    let mut string_bytes = 0;
+    let (mut string_bytes, mut queues) = (0, 0);
+    let ready: Vec<ObjectId> = network.ready.iter().collect();
+    let distinct: std::collections::BTreeSet<_> = ready.iter().collect();
+    assert_eq!(ready.len(), distinct.len(), "nobody stands twice in the list");
     for id in network.objects() {
         let instance = network.instance(id).unwrap();
         let ports = network.ports.get(instance.ports);
-        string_bytes += ports.iter().map(Port::string_bytes).sum::<usize>();
-        let wanting = ports.iter().filter(|port| port.is_wanting()).count() as u16;
-        let no_active = u16::from(!ports.iter().any(Port::is_active));
-        assert_eq!(instance.missing, wanting + no_active, "{id:?} {}", instance.row.name);
-        assert_eq!(instance.queued, instance.is_ready(), "{id:?} {}", instance.row.name);
-        assert!(ports.iter().all(|port| port.len() <= MAX_QUEUE));
-        assert!(ports.iter().filter_map(Port::first).all(Value::is_finite));
+        let inputs = &ports[..usize::from(instance.inputs)];
+        string_bytes += ports.iter().map(|port| port.string_bytes(&network.backlog)).sum::<usize>();
+        queues += ports.iter().filter(|port| port.len(&network.backlog) > 1).count();
+        let mut fresh = Instance { row: instance.row, ..Instance::VACANT };
+        fresh.count(inputs);
+        let counted = |instance: &Instance| (instance.missing, instance.slack, instance.active, instance.strings);
+        assert_eq!(counted(instance), counted(&fresh), "{id:?} {:?}", instance.row);
+        let active = inputs.iter().filter(|port| port.is_active());
+        let waits = active.clone().any(|port| !port.is_empty());
+        assert!(!instance.is_ready() || waits, "only a message makes a function fire");
+        assert_eq!(instance.queued, ready.contains(&id), "{id:?}");
+        assert!(!instance.is_ready() || instance.queued, "{id:?}");
+        assert!(ports.iter().all(|port| port.len(&network.backlog) <= MAX_QUEUE));
+        assert!(ports.iter().flat_map(|port| port.messages(&network.backlog)).all(Value::is_finite));
     }
-    assert_eq!(network.string_bytes, string_bytes);
+    assert_eq!((network.string_bytes, network.backlog.lent()), (string_bytes, queues));
 }
 
 proptest! {
@@ -98,14 +112,20 @@ proptest! {
 
     #[test]
     fn random_networks_keep_their_books_and_send_finite_values(acts in prop::collection::vec(act(), 1..120)) {
-        let (mut network, effects) = perform(&acts);
+        let (mut network, effects) = perform(&acts, Network::new());
         for effect in &effects {
             if let Effect::Deliver { value, .. } = effect {
                 prop_assert!(value.is_finite());
             }
         }
-        let (_, again) = perform(&acts);
-        prop_assert_eq!(effects, again, "the same acts give the same effects");
+        let (_, again) = perform(&acts, Network::new());
+        prop_assert_eq!(&effects, &again, "the same acts give the same effects");
+        let mut watched = Network::new();
+        watched.count_activity(true);
+        watched.trace(Traced::Everything);
+        let (watched, again) = perform(&acts, watched);
+        prop_assert_eq!(effects, again, "who looks on changes nothing");
+        prop_assert_eq!(network.counters(), watched.counters());
         for id in 0..6 {
             network.undefine(ObjectId(id));
         }

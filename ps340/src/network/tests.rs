@@ -11,19 +11,19 @@ use crate::{
     },
 };
 use glam::{DMat3, DMat4, DVec3};
-use protocol::command::Axis;
+use protocol::{Kind, Value, command::Axis};
 use std::collections::HashMap;
 
 /// A network whose objects have names; unknown names are objects without a function.
 #[derive(Default)]
-struct Bench {
-    network: Network,
+pub(super) struct Bench {
+    pub(super) network: Network,
     names: HashMap<String, ObjectId>,
-    effects: Vec<Effect>,
+    pub(super) effects: Vec<Effect>,
 }
 
 impl Bench {
-    fn with_devices() -> Bench {
+    pub(super) fn with_devices() -> Bench {
         let mut bench = Bench::default();
         for initial in devices::initial() {
             let id = bench.id(&initial.name);
@@ -32,13 +32,13 @@ impl Bench {
         bench
     }
 
-    fn id(&mut self, name: &str) -> ObjectId {
+    pub(super) fn id(&mut self, name: &str) -> ObjectId {
         let next = ObjectId(self.names.len() as u32);
         *self.names.entry(name.into()).or_insert(next)
     }
 
     /// `A := F:TYPE` or `A := F:TYPE(n)`, several of them, separated by blanks.
-    fn define(&mut self, definitions: &str) -> &mut Bench {
+    pub(super) fn define(&mut self, definitions: &str) -> &mut Bench {
         for definition in definitions.split(' ') {
             let (name, function) = definition.split_once(":=F:").unwrap();
             let (function, size) = match function.split_once('(') {
@@ -52,7 +52,7 @@ impl Bench {
     }
 
     /// `A<1>:<2>B`, several of them, separated by blanks.
-    fn connect(&mut self, arcs: &str) -> &mut Bench {
+    pub(super) fn connect(&mut self, arcs: &str) -> &mut Bench {
         for arc in arcs.split(' ') {
             let (source, destination) = arc.split_once(":<").unwrap();
             let (source, output) = source.trim_end_matches('>').split_once('<').unwrap();
@@ -64,33 +64,33 @@ impl Bench {
         self
     }
 
-    fn send(&mut self, value: Literal, input: u32, name: &str) -> &mut Bench {
+    pub(super) fn send(&mut self, value: Literal, input: u32, name: &str) -> &mut Bench {
         let id = self.id(name);
         self.network.send(id, Input::Number(input), value.value(), &mut self.effects);
         self
     }
 
-    fn emit(&mut self, name: &str, output: u16, value: Literal) -> &mut Bench {
+    pub(super) fn emit(&mut self, name: &str, output: u16, value: Literal) -> &mut Bench {
         let id = self.id(name);
         self.network.emit(id, output, value.value(), &mut self.effects);
         self
     }
 
     /// Runs until idle; what came out since the last time.
-    fn run(&mut self) -> Vec<Effect> {
+    pub(super) fn run(&mut self) -> Vec<Effect> {
         assert!(self.network.run(10_000_000, &mut self.effects).idle);
         std::mem::take(&mut self.effects)
     }
 
     /// Runs until idle; the messages for a name that is no function.
-    fn arrived(&mut self, name: &str) -> Vec<Value> {
+    pub(super) fn arrived(&mut self, name: &str) -> Vec<Value> {
         let id = self.id(name);
         let effects = self.run();
         effects.into_iter().filter_map(|e| deliver(e).filter(|(object, _)| *object == id)).map(|(_, v)| v).collect()
     }
 
     /// Runs until idle; the lines that went to the host.
-    fn host(&mut self) -> Vec<String> {
+    pub(super) fn host(&mut self) -> Vec<String> {
         let line = |e| match e {
             Effect::Host { bytes, .. } => Some(String::from_utf8(bytes.into()).unwrap()),
             _ => None,
@@ -99,14 +99,14 @@ impl Bench {
     }
 }
 
-fn deliver(effect: Effect) -> Option<(ObjectId, Value)> {
+pub(super) fn deliver(effect: Effect) -> Option<(ObjectId, Value)> {
     match effect {
         Effect::Deliver { object, value, .. } => Some((object, value)),
         _ => None,
     }
 }
 
-fn faults(effects: &[Effect]) -> Vec<Cause> {
+pub(super) fn faults(effects: &[Effect]) -> Vec<Cause> {
     let cause = |effect: &Effect| match effect {
         Effect::Fault { fault, .. } => Some(fault.cause),
         _ => None,

@@ -62,6 +62,8 @@ pub enum Cause {
     NoSuchInput(Input),
     /// The function has no such output.
     NoSuchOutput(u16),
+    /// The object is no function.
+    NotAFunction,
     /// Messages were lost because a queue was full.
     Flood {
         /// Of which input.
@@ -87,7 +89,7 @@ impl Fault {
             Cause::Range { .. } => 6,
             Cause::DivisionByZero | Cause::Overflow | Cause::Degenerate => 7,
             Cause::TooLong | Cause::TooManyArcs { .. } => 8,
-            Cause::NoSuchInput(_) | Cause::NoSuchOutput(_) => 9,
+            Cause::NoSuchInput(_) | Cause::NoSuchOutput(_) | Cause::NotAFunction => 9,
             Cause::Flood { .. } | Cause::Late { .. } => 12,
         }
     }
@@ -95,7 +97,8 @@ impl Fault {
     /// The class of the message: `E` error or `W` warning.
     pub const fn class(&self) -> char {
         match self.cause {
-            Cause::NoSuchInput(_) | Cause::NoSuchOutput(_) | Cause::Flood { .. } | Cause::Late { .. } => 'W',
+            Cause::NoSuchInput(_) | Cause::NoSuchOutput(_) | Cause::NotAFunction => 'W',
+            Cause::Flood { .. } | Cause::Late { .. } => 'W',
             _ => 'E',
         }
     }
@@ -115,6 +118,7 @@ impl Fault {
             Cause::TooManyArcs { output } => format!("Insufficient memory: too many connections from {name}<{output}>"),
             Cause::NoSuchInput(input) => format!("No such input {input} of {name}"),
             Cause::NoSuchOutput(output) => format!("No such output <{output}> of {name}"),
+            Cause::NotAFunction => format!("{name} is no function"),
             Cause::Flood { input, lost } => format!("Queue full at <{input}>{name}: {lost} messages lost"),
             Cause::Late { lost } => format!("Clock {name} is late: {lost} outputs left out"),
         };

@@ -1,7 +1,7 @@
 //! One firing of a function, as its behaviour sees it: inputs, memory, outputs.
 
-use super::{Effect, ObjectId, Port, Problem};
-use glam::{DVec2, DVec3};
+use super::{Effect, ObjectId, Outbox, Port, Problem, queue::string_bytes};
+use glam::{DMat4, DVec2, DVec3};
 use protocol::Value;
 
 /// One firing: what a behaviour may read and write.
@@ -13,8 +13,9 @@ pub struct Firing<'a> {
     size: u16,
     inputs: &'a mut [Port],
     memory: &'a mut [Port],
-    outbox: &'a mut Vec<(u16, Value)>,
+    outbox: &'a mut Outbox,
     effects: &'a mut Vec<Effect>,
+    string_bytes: &'a mut usize,
 }
 
 /// How much time passed since a clock was last asked.
@@ -32,19 +33,19 @@ impl<'a> Firing<'a> {
     /// One firing of an instance.
     ///
     /// - `size`: the n of a family such as ROUTE(n), else 0.
-    /// - `ports`: its inputs, then its memory.
-    /// - `inputs`: the number of inputs among the ports.
-    /// - `outbox`: takes the results, as pairs of output and message.
+    /// - `inputs`, `memory`: its ports.
+    /// - `outbox`: takes the results; `effects`: what it asks of the machine.
+    /// - `string_bytes`: bytes of the strings that wait in the network, kept up to date.
+    #[inline(always)]
     pub fn new(
         object: ObjectId,
         size: u16,
-        ports: &'a mut [Port],
-        inputs: usize,
-        outbox: &'a mut Vec<(u16, Value)>,
+        (inputs, memory): (&'a mut [Port], &'a mut [Port]),
+        outbox: &'a mut Outbox,
         effects: &'a mut Vec<Effect>,
+        string_bytes: &'a mut usize,
     ) -> Firing<'a> {
-        let (inputs, memory) = ports.split_at_mut(inputs);
-        Firing { object, size, inputs, memory, outbox, effects }
+        Firing { object, size, inputs, memory, outbox, effects, string_bytes }
     }
 
     /// The function that fires.
@@ -74,12 +75,46 @@ impl<'a> Firing<'a> {
         self.inputs[usize::from(input) - 1].take()
     }
 
+    /// The 4x4 matrix that a queue gives away, to work on it where it lies; then [`pass`](Self::pass) it on.
+    #[inline]
+    pub fn matrix4_mut(&mut self, input: u16) -> Option<&mut DMat4> {
+        match self.inputs[usize::from(input) - 1].first_mut() {
+            Some(Value::Matrix4(matrix)) => Some(matrix),
+            _ => None,
+        }
+    }
+
+    /// Sends the message at an input from an output: moved from a queue, copied from a constant.
+    ///
+    /// # Errors
+    /// [`Problem::Overflow`] if a component is not finite.
+    #[inline]
+    pub fn pass(&mut self, input: u16, output: u16) -> Result<(), Problem> {
+        let port = &mut self.inputs[usize::from(input) - 1];
+        match port.first_mut() {
+            Some(message) => send(self.outbox, output, message),
+            None => send(self.outbox, output, &mut port.take()),
+        }
+    }
+
     /// The number at an input.
     ///
     /// # Errors
     /// [`Problem::Kind`] if it is none.
     pub fn number(&self, input: u16) -> Result<f64, Problem> {
         self.value(input).number().ok_or(Problem::Kind(input))
+    }
+
+    /// The reals at inputs 1 and 2, if both are reals: the common case of arithmetic.
+    #[inline]
+    pub fn reals(&self) -> Option<(f64, f64)> {
+        match &*self.inputs {
+            [first, second, ..] => match (first.peek(), second.peek()) {
+                (Value::Real(a), Value::Real(b)) => Some((*a, *b)),
+                _ => None,
+            },
+            _ => None,
+        }
     }
 
     /// The number at an input for which the function does not wait.
@@ -150,18 +185,28 @@ impl<'a> Firing<'a> {
     ///
     /// # Errors
     /// [`Problem::Overflow`] if a component is not finite: such a value never enters the network.
-    #[inline]
+    #[inline(always)]
     pub fn emit(&mut self, output: u16, value: Value) -> Result<(), Problem> {
-        let finite = match &value {
-            Value::Real(number) => number.is_finite(),
-            Value::Integer(_) => true,
-            other => other.is_finite(),
-        };
-        if !finite {
-            return Err(Problem::Overflow);
-        }
-        self.outbox.push((output, value));
-        Ok(())
+        let mut value = value;
+        self.emit_from(output, &mut value)
+    }
+
+    /// Sends a result from an output. It is moved out of its place.
+    ///
+    /// # Errors
+    /// [`Problem::Overflow`] if a component is not finite.
+    #[inline(always)]
+    pub fn emit_from(&mut self, output: u16, value: &mut Value) -> Result<(), Problem> {
+        send(self.outbox, output, value)
+    }
+
+    /// Sends a real from an output.
+    ///
+    /// # Errors
+    /// [`Problem::Overflow`] if it is not finite.
+    #[inline(always)]
+    pub fn emit_real(&mut self, output: u16, number: f64) -> Result<(), Problem> {
+        send_real(self.outbox, output, number)
     }
 
     /// Asks something of the rest of the machine.
@@ -169,7 +214,7 @@ impl<'a> Firing<'a> {
         self.effects.push(effect);
     }
 
-    /// Replaces the constant at an input, where it serves as an accumulator.
+    /// Replaces the constant at an input, where it serves as an accumulator. A queue accumulates nothing.
     ///
     /// # Errors
     /// [`Problem::Overflow`] if a component is not finite; the constant stays.
@@ -177,7 +222,10 @@ impl<'a> Firing<'a> {
         if !value.is_finite() {
             return Err(Problem::Overflow);
         }
-        self.inputs[usize::from(input) - 1].set(value);
+        let port = &mut self.inputs[usize::from(input) - 1];
+        if !port.is_active() {
+            replace(port, Some(value), self.string_bytes);
+        }
         Ok(())
     }
 
@@ -193,11 +241,45 @@ impl<'a> Firing<'a> {
 
     /// Remembers a value in a cell.
     pub fn remember(&mut self, cell: u8, value: Value) {
-        self.memory[usize::from(cell)].set(value);
+        replace(&mut self.memory[usize::from(cell)], Some(value), self.string_bytes);
     }
 
     /// Forgets what is in a cell.
     pub fn forget(&mut self, cell: u8) {
-        self.memory[usize::from(cell)].forget();
+        replace(&mut self.memory[usize::from(cell)], None, self.string_bytes);
+    }
+}
+
+/// Puts a result into the outbox, unless a component is not finite. It is moved out of its place.
+#[inline(always)]
+fn send(outbox: &mut Outbox, output: u16, value: &mut Value) -> Result<(), Problem> {
+    if let Value::Real(number) = value {
+        return send_real(outbox, output, *number);
+    }
+    if !value.is_finite() {
+        return Err(Problem::Overflow);
+    }
+    outbox.push(output, value);
+    Ok(())
+}
+
+#[inline(always)]
+fn send_real(outbox: &mut Outbox, output: u16, number: f64) -> Result<(), Problem> {
+    if !number.is_finite() {
+        return Err(Problem::Overflow);
+    }
+    outbox.push_real(output, number);
+    Ok(())
+}
+
+/// Replaces what a port holds, and keeps the count of the bytes of strings.
+fn replace(port: &mut Port, value: Option<Value>, bytes: &mut usize) {
+    *bytes -= port.first().map_or(0, string_bytes);
+    match value {
+        Some(value) => {
+            *bytes += string_bytes(&value);
+            port.set(value);
+        }
+        None => port.forget(),
     }
 }

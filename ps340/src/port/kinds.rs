@@ -51,6 +51,11 @@ impl KindSet {
         KindSet(self.0 | other.0)
     }
 
+    /// One bit for each kind, by its place in [`Kind::ALL`]; 16 at most.
+    pub(super) const fn bits(self) -> u32 {
+        self.0 as u32
+    }
+
     /// Whether a kind is in the set.
     pub const fn contains(self, kind: Kind) -> bool {
         self.0 & (1 << kind as u16) != 0

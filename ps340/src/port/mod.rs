@@ -1,18 +1,23 @@
 //! What functions and display nodes have in common: identity, kinds that an input accepts, queues, faults, effects.
 
+mod backlog;
 mod effect;
 mod fault;
 mod firing;
 mod kinds;
 mod literal;
+mod outbox;
+mod place;
 mod queue;
 
+pub use backlog::{Backlog, MAX_QUEUE};
 pub use effect::{Effect, Label};
 pub use fault::{Cause, Fault, Problem};
 pub use firing::{Elapsed, Firing};
 pub use kinds::KindSet;
 pub use literal::Literal;
-pub use queue::{Arrival, MAX_QUEUE, Port};
+pub use outbox::Outbox;
+pub use queue::{Arrival, Port};
 
 /// The identity of a named object, function or display node, for as long as the object's name exists.
 ///

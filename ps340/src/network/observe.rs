@@ -1,0 +1,72 @@
+//! Who looks on while messages are on their way. Nobody, as a rule: then looking on costs nothing.
+
+use super::Destination;
+use crate::port::ObjectId;
+use protocol::Value;
+
+/// Where an arc begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Which object.
+    pub object: ObjectId,
+    /// Which of its outputs.
+    pub output: u16,
+}
+
+/// What became of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It arrived at an input of a function, where so many wait now.
+    Arrived {
+        /// Messages that wait, itself included; 1 for a constant.
+        waiting: usize,
+    },
+    /// The queue was full, or strings had no more room: it was lost.
+    Lost,
+    /// The function has no such input, or does not accept such a message there.
+    Refused,
+    /// The object is no function: the machine takes it over.
+    Left,
+}
+
+/// Who looks on. The methods of [`Nobody`] are empty, so that the compiler leaves them out.
+pub(super) trait Observer {
+    /// Whether it wants to know at all.
+    const LOOKS: bool;
+
+    /// Whether the network stands still before this function fires.
+    fn stops_before(&mut self, object: ObjectId) -> bool;
+
+    /// A function fires.
+    fn fires(&mut self, object: ObjectId);
+
+    /// A function has a fault.
+    fn fails(&mut self, object: ObjectId);
+
+    /// A copy of a message that is going to be delivered, if it is wanted.
+    fn copy(&self, from: Option<Source>, to: Destination, message: &Value) -> Option<Value>;
+
+    /// A message was delivered.
+    fn passes(&mut self, from: Option<Source>, to: Destination, message: Option<Value>, outcome: Outcome);
+}
+
+/// Nobody looks on.
+pub(super) struct Nobody;
+
+impl Observer for Nobody {
+    const LOOKS: bool = false;
+
+    fn stops_before(&mut self, _: ObjectId) -> bool {
+        false
+    }
+
+    fn fires(&mut self, _: ObjectId) {}
+
+    fn fails(&mut self, _: ObjectId) {}
+
+    fn copy(&self, _: Option<Source>, _: Destination, _: &Value) -> Option<Value> {
+        None
+    }
+
+    fn passes(&mut self, _: Option<Source>, _: Destination, _: Option<Value>, _: Outcome) {}
+}

@@ -1,0 +1,208 @@
+//! The messages behind the first at each input: queues that are lent to the ports that need one.
+
+use super::place::{self, HUSK};
+use protocol::Value;
+
+/// Most messages that wait at one input; later ones are lost, counted and reported. Ours.
+pub const MAX_QUEUE: usize = 10_000;
+
+/// Places above which the memory of a queue that comes back is freed.
+const KEPT_PLACES: usize = 64;
+
+/// The queues of all ports of a network.
+///
+/// The first message lies in its port; only the others need a queue. The queue that came back last is lent next,
+/// so that a wave of messages that runs through a large network works in the memory of a few queues.
+#[derive(Debug, Default)]
+pub struct Backlog {
+    queues: Vec<Ring>,
+    free: Vec<u32>,
+}
+
+/// What a port holds of the queue that it was lent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Lent(u32);
+
+/// Messages in places that are used again and again, going round.
+#[derive(Debug, Default)]
+struct Ring {
+    /// As many as a power of two, or none.
+    places: Vec<Value>,
+    first: usize,
+    length: usize,
+}
+
+impl Lent {
+    /// No queue.
+    pub(super) const NOTHING: Lent = Lent(u32::MAX);
+}
+
+impl Backlog {
+    /// Without queues.
+    pub const fn new() -> Backlog {
+        Backlog { queues: Vec::new(), free: Vec::new() }
+    }
+
+    /// How many queues are lent.
+    pub const fn lent(&self) -> usize {
+        self.queues.len() - self.free.len()
+    }
+
+    /// Moves a message to the end, and lends a queue if there is none yet.
+    ///
+    /// - Returns false if the queue is full, or there is no number for one more queue; the message stays.
+    #[inline(always)]
+    pub(super) fn push(&mut self, lent: &mut Lent, message: &mut Value) -> bool {
+        if *lent == Lent::NOTHING {
+            let Some(number) = self.free.pop().or_else(|| self.more()) else { return false };
+            *lent = Lent(number);
+        }
+        let ring = &mut self.queues[lent.0 as usize];
+        if ring.length + 1 >= MAX_QUEUE {
+            return false;
+        }
+        ring.push(message);
+        true
+    }
+
+    /// Moves the message that came first to a place; the queue comes back when it is empty.
+    ///
+    /// - Returns false if there is no message.
+    #[inline(always)]
+    pub(super) fn pop(&mut self, lent: &mut Lent, to: &mut Value) -> bool {
+        let Some(ring) = self.queues.get_mut(lent.0 as usize) else { return false };
+        ring.pop(to);
+        if ring.length == 0 {
+            if ring.places.len() > KEPT_PLACES {
+                *ring = Ring::default();
+            }
+            self.free.push(lent.0);
+            *lent = Lent::NOTHING;
+        }
+        true
+    }
+
+    /// Moves the message that came last to a place, if there is one; the others go with the queue.
+    pub(super) fn pop_last(&mut self, lent: &mut Lent, to: &mut Value) {
+        if let Some(last) = self.queues.get_mut(lent.0 as usize).and_then(Ring::last) {
+            place::shift(last, to);
+        }
+        self.take_back(lent);
+    }
+
+    /// The messages, the first first.
+    pub(super) fn messages(&self, lent: Lent) -> impl Iterator<Item = &Value> {
+        self.queues.get(lent.0 as usize).into_iter().flat_map(Ring::messages)
+    }
+
+    /// How many messages there are.
+    pub(super) fn length(&self, lent: Lent) -> usize {
+        self.queues.get(lent.0 as usize).map_or(0, |ring| ring.length)
+    }
+
+    /// Takes a queue back, with whatever is in it.
+    #[inline]
+    pub(super) fn take_back(&mut self, lent: &mut Lent) {
+        if let Some(ring) = self.queues.get_mut(lent.0 as usize) {
+            if ring.length > 0 || ring.places.len() > KEPT_PLACES {
+                *ring = Ring::default();
+            }
+            self.free.push(lent.0);
+            *lent = Lent::NOTHING;
+        }
+    }
+
+    /// Makes one more queue.
+    #[cold]
+    fn more(&mut self) -> Option<u32> {
+        let number = u32::try_from(self.queues.len()).ok().filter(|&number| Lent(number) != Lent::NOTHING)?;
+        self.queues.push(Ring::default());
+        Some(number)
+    }
+}
+
+impl Ring {
+    #[inline(always)]
+    fn push(&mut self, message: &mut Value) {
+        if self.length == self.places.len() {
+            self.grow();
+        }
+        let last = (self.first + self.length) & (self.places.len() - 1);
+        place::shift(message, &mut self.places[last]);
+        self.length += 1;
+    }
+
+    /// Moves the first message, which must be there, to a place.
+    #[inline(always)]
+    fn pop(&mut self, to: &mut Value) {
+        place::shift(&mut self.places[self.first], to);
+        self.first = (self.first + 1) & (self.places.len() - 1);
+        self.length -= 1;
+    }
+
+    fn last(&mut self) -> Option<&mut Value> {
+        let last = (self.first + self.length.checked_sub(1)?) & (self.places.len() - 1);
+        Some(&mut self.places[last])
+    }
+
+    fn messages(&self) -> impl Iterator<Item = &Value> {
+        (0..self.length).map(|index| &self.places[(self.first + index) & (self.places.len() - 1)])
+    }
+
+    /// Doubles the places of a ring that is full.
+    #[cold]
+    fn grow(&mut self) {
+        self.places.rotate_left(self.first);
+        self.first = 0;
+        self.places.resize_with((2 * self.length).max(4), || HUSK);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_queue_that_came_back_is_lent_again() {
+        let mut backlog = Backlog::new();
+        let (mut a, mut b, mut place) = (Lent::NOTHING, Lent::NOTHING, HUSK);
+        assert!(!backlog.pop(&mut a, &mut place));
+        for i in 0..3 {
+            assert!(backlog.push(&mut a, &mut Value::Integer(i)));
+        }
+        for i in 0..3 {
+            assert!(backlog.pop(&mut a, &mut place) && place == Value::Integer(i));
+        }
+        assert_eq!((a, backlog.lent()), (Lent::NOTHING, 0));
+        backlog.push(&mut b, &mut Value::Integer(5));
+        backlog.push(&mut a, &mut Value::Integer(6));
+        backlog.push(&mut a, &mut Value::Integer(7));
+        assert_eq!((b, backlog.lent()), (Lent(0), 2));
+        backlog.pop_last(&mut a, &mut place);
+        assert_eq!(place, Value::Integer(7));
+        assert_eq!((backlog.length(a), backlog.length(b), backlog.lent()), (0, 1, 1));
+    }
+
+    #[test]
+    fn a_ring_keeps_the_order_while_it_grows_and_goes_round() {
+        let (mut ring, mut place, mut next_in, mut next_out) = (Ring::default(), HUSK, 0, 0);
+        for burst in [3, 5, 1, 40, 2, 100] {
+            for _ in 0..burst {
+                ring.push(&mut if next_in % 2 == 0 {
+                    Value::string(next_in.to_string())
+                } else {
+                    Value::Integer(next_in)
+                });
+                next_in += 1;
+            }
+            assert_eq!(ring.messages().count(), (next_in - next_out) as usize);
+            for _ in 0..burst * 2 / 3 {
+                ring.pop(&mut place);
+                let expected =
+                    if next_out % 2 == 0 { Value::string(next_out.to_string()) } else { Value::Integer(next_out) };
+                assert_eq!(place, expected);
+                next_out += 1;
+            }
+        }
+    }
+}
