@@ -9,7 +9,7 @@ use crate::{
     line::LineId,
     machine::{Input, Machine, Settings},
 };
-use protocol::command::{Command, CommandReader, Initialize};
+use protocol::command::{Command, CommandReader, Initialize, Object, print};
 
 const LINE: LineId = LineId(1);
 
@@ -94,7 +94,7 @@ impl Reading<'_> {
         while let Some((name, place)) = self.program.open().cloned() {
             self.note(place, Level::Error, format!("BEGIN_STRUCTURE of {name} has no END_STRUCTURE"));
             self.program.close();
-            self.tell("!RESET;");
+            self.tell(b"!RESET;".to_vec());
         }
     }
 
@@ -105,19 +105,27 @@ impl Reading<'_> {
         self.program.add(command, text, place);
         let known = match command {
             Command::Connect(_) | Command::ConnectSeveral { .. } => true,
-            Command::Define { object: protocol::command::Object::Function { function, .. }, .. } => {
+            Command::Define { object: Object::Function { function, .. }, .. } => {
                 crate::functions::find(function.as_str()).is_none()
             }
             _ => false,
         };
-        for text in self.tell(&format!("{command}\n")) {
+        for text in self.tell_command(command) {
             self.said_by.push(Said { place, text, known });
         }
     }
 
+    /// Gives the machine a command and returns what it says.
+    fn tell_command(&mut self, command: &Command) -> Vec<String> {
+        let mut text = Vec::new();
+        print(command, &mut text);
+        text.push(b'\n');
+        self.tell(text)
+    }
+
     /// Gives the machine a text and returns what it says.
-    fn tell(&mut self, text: &str) -> Vec<String> {
-        self.machine.step([Input::Bytes(LINE, text.as_bytes().to_vec())], 0);
+    fn tell(&mut self, text: Vec<u8>) -> Vec<String> {
+        self.machine.step([Input::Bytes(LINE, text)], 0);
         let said = self.machine.counters().messages;
         let new = usize::try_from(said - self.said).unwrap_or(usize::MAX);
         self.said = said;

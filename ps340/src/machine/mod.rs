@@ -17,6 +17,7 @@ use crate::{
     interpreter::{Class, Message},
     line::LineId,
     memory::{MassMemory, Refusal},
+    network::Network,
     picture::Picture,
     port::{Effect, ObjectId},
     raster::FrameBuffer,
@@ -241,6 +242,26 @@ impl Machine {
     /// Objects, structure and network, to look at.
     pub fn memory(&self) -> &MassMemory {
         &self.memory
+    }
+
+    /// The network, to set traces, breaks and counters in it.
+    pub fn instruments(&mut self) -> &mut Network {
+        &mut self.memory.network
+    }
+
+    /// Lets the first function that is ready fire, and stops the network. Returns which it was.
+    pub fn fire_one(&mut self) -> Option<ObjectId> {
+        let fired = self.memory.network.step_one(&mut self.memory.effects);
+        self.counters.firings += u64::from(fired.is_some());
+        self.settle();
+        fired
+    }
+
+    /// Lets a network that stands go on.
+    pub fn resume(&mut self) {
+        self.memory.network.resume();
+        self.work_left = WORK_PER_STEP;
+        self.settle();
     }
 
     /// What an object is, in one line; none if the name is unknown.

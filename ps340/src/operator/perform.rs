@@ -1,6 +1,6 @@
 //! Carrying out an order on a machine.
 
-use super::{ORDERS, Order, Screen};
+use super::{Order, Screen, inspect::inspect, rows};
 use crate::{
     calligraphic::Beam,
     machine::{Event, Machine, TabletEvent},
@@ -64,6 +64,7 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
         Order::Strokes(most) => return Outcome::Done(Ok(strokes(machine, *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
+        Order::Inspect(what) => return Outcome::Done(inspect(what, machine)),
         Order::Panel => return Outcome::Done(Ok(machine.panel().to_string())),
         Order::Terminal => {
             return Outcome::Done(Ok(String::from_utf8_lossy(machine.panel().terminal()).into_owned()));
@@ -77,7 +78,7 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
 }
 
 fn help() -> String {
-    let lines = ORDERS.iter().map(|r| format!("{:<50} {}", format!("{} {}", r.word, r.arguments), r.summary));
+    let lines = rows().map(|r| format!("{:<50} {}", format!("{} {}", r.word, r.arguments), r.summary));
     lines.collect::<Vec<_>>().join("\n")
 }
 
