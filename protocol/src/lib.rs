@@ -4,6 +4,7 @@
 
 pub mod address;
 pub mod capture;
+pub mod parallel;
 pub mod name;
 pub mod value;
 pub mod record;

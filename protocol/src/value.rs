@@ -1,7 +1,8 @@
 //! What flows on the arcs of a function network and in SEND: values and their kinds.
 
+use crate::Name;
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
-use std::fmt;
+use std::{fmt, sync::Arc};
 
 /// A message: one typed value.
 ///
@@ -37,6 +38,84 @@ pub enum Value {
     Matrix4(Box<DMat4>),
     /// What F:XFORMDATA emits and F:LIST turns into lines: the accumulated matrix of an XFORM MATRIX node.
     Transform(Box<DMat4>),
+    /// What F:PICK emits: what was picked. No command can express it.
+    Pick(Box<PickList>),
+    /// What F:LABEL emits: a label for a LABELS node. No command can express it.
+    Label(Box<Label>),
+    /// What F:XFORMDATA emits for an XFORM VECTOR node. Shared, since it may be long. No command can express it.
+    Vectors(Arc<TransformedVectors>),
+}
+
+/// What was picked: the first thing that was drawn inside the pick box.
+///
+/// # Source
+/// Contents as remembered from the manuals; that the index counts from 1 and the codes of the types are ours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PickList {
+    /// Number of the vector, character, label or polygon in its data node, from 1.
+    pub index: u32,
+    /// The pick identifiers on the way from the data up to the root, nearest first.
+    pub identifiers: Vec<Name>,
+    /// The name of the data node, if it has one.
+    pub node: Option<Name>,
+    /// What kind of data: 1 vectors, 2 curve, 3 characters, 4 labels, 5 polygons.
+    pub type_code: i32,
+    /// Where it was picked, in coordinate picking.
+    pub place: Option<PickedPlace>,
+}
+
+/// Where something was picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PickedPlace {
+    /// The picked point, in the coordinates of the data node; z is 0 for 2D data.
+    pub point: DVec3,
+    /// 2 or 3: components that the data has.
+    pub dimension: u8,
+    /// The parameter of a curve there.
+    pub parameter: Option<f64>,
+}
+
+/// One label of a LABELS node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// Lower left corner of its first cell.
+    pub position: DVec3,
+    /// Its text.
+    pub text: Box<[u8]>,
+    /// Whether it is shown.
+    pub on: bool,
+}
+
+/// The vectors below an XFORM VECTOR node, after the accumulated matrix.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TransformedVectors {
+    /// Each end point, in order.
+    pub ends: Vec<VectorEnd>,
+}
+
+/// One end point of a list of vectors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VectorEnd {
+    /// Whether the vector *to* the point is drawn (L) or a move (P).
+    pub line: bool,
+    /// The point.
+    pub point: DVec3,
+}
+
+impl TransformedVectors {
+    /// Some of the vectors; the first one becomes a move, since it begins a list.
+    ///
+    /// - `first`: number of the first vector, from 1.
+    /// - `count`: how many; those beyond the end are left out.
+    pub fn part(&self, first: u32, count: u32) -> TransformedVectors {
+        let from = (first.max(1) as usize - 1).min(self.ends.len());
+        let rest = &self.ends[from..];
+        let mut ends = rest[..rest.len().min(count as usize)].to_vec();
+        if let Some(start) = ends.first_mut() {
+            start.line = false;
+        }
+        TransformedVectors { ends }
+    }
 }
 
 /// Longest string that a command or a function may make, in bytes.
@@ -70,13 +149,19 @@ pub enum Kind {
     Matrix4x3,
     /// A 4x4 matrix.
     Matrix4,
-    /// Transformed data.
+    /// Transformed data: a matrix.
     Transform,
+    /// A pick list.
+    Pick,
+    /// A label.
+    Label,
+    /// Transformed data: vectors.
+    Vectors,
 }
 
 impl Kind {
     /// Every kind, in the order of the enumeration.
-    pub const ALL: [Kind; 12] = [
+    pub const ALL: [Kind; 15] = [
         Kind::Boolean,
         Kind::Integer,
         Kind::Real,
@@ -89,6 +174,9 @@ impl Kind {
         Kind::Matrix4x3,
         Kind::Matrix4,
         Kind::Transform,
+        Kind::Pick,
+        Kind::Label,
+        Kind::Vectors,
     ];
 
     /// The word for the kind in messages and tables.
@@ -106,6 +194,9 @@ impl Kind {
             Kind::Matrix4x3 => "4x3 matrix",
             Kind::Matrix4 => "4x4 matrix",
             Kind::Transform => "transformed data",
+            Kind::Pick => "pick list",
+            Kind::Label => "label",
+            Kind::Vectors => "transformed vectors",
         }
     }
 }
@@ -132,6 +223,9 @@ impl Value {
             Value::Matrix4x3(_) => Kind::Matrix4x3,
             Value::Matrix4(_) => Kind::Matrix4,
             Value::Transform(_) => Kind::Transform,
+            Value::Pick(_) => Kind::Pick,
+            Value::Label(_) => Kind::Label,
+            Value::Vectors(_) => Kind::Vectors,
         }
     }
 
@@ -160,6 +254,39 @@ impl Value {
             Value::Matrix2(m) => m.is_finite(),
             Value::Matrix3(m) => m.is_finite(),
             Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => all_finite(m),
+            Value::Pick(pick) => {
+                pick.place.is_none_or(|place| place.point.is_finite() && place.parameter.is_none_or(f64::is_finite))
+            }
+            Value::Label(label) => label.position.is_finite(),
+            Value::Vectors(vectors) => vectors.ends.iter().all(|end| end.point.is_finite()),
+        }
+    }
+
+    /// Bytes of the value on the heap whose number the user decides: texts, names and vectors.
+    pub fn heap_bytes(&self) -> usize {
+        match self {
+            Value::String(text) => text.len(),
+            Value::Label(label) => label.text.len(),
+            Value::Pick(pick) => pick.identifiers.iter().map(|name| name.as_str().len() + size_of::<Name>()).sum(),
+            Value::Vectors(vectors) => size_of_val(vectors.ends.as_slice()),
+            _ => 0,
+        }
+    }
+}
+
+impl fmt::Display for PickList {
+    /// Index, identifiers joined by commas, name of the node: `3 LEAF,PARENT WORLD.DATA`.
+    ///
+    /// # Source
+    /// Ours: the machine's own text is not known.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ", self.index)?;
+        for (i, identifier) in self.identifiers.iter().enumerate() {
+            write!(f, "{}{identifier}", if i > 0 { "," } else { "" })?;
+        }
+        match &self.node {
+            Some(node) => write!(f, " {node}"),
+            None => Ok(()),
         }
     }
 }
@@ -167,4 +294,38 @@ impl Value {
 /// Whether every element is finite: then all of them times zero are zero, and so is the sum.
 fn all_finite(m: &DMat4) -> bool {
     (m.x_axis * 0.0 + m.y_axis * 0.0) + (m.z_axis * 0.0 + m.w_axis * 0.0) == DVec4::ZERO
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_small_whatever_it_holds() {
+        assert!(size_of::<Value>() <= 40, "{}", size_of::<Value>());
+    }
+
+    #[test]
+    fn a_part_of_vectors_begins_with_a_move() {
+        let end = |x: f64, line| VectorEnd { line, point: DVec3::new(x, 0.0, 0.0) };
+        let all = TransformedVectors { ends: vec![end(0.0, false), end(1.0, true), end(2.0, true)] };
+        assert_eq!(all.part(2, 9).ends, [end(1.0, false), end(2.0, true)]);
+        assert_eq!(all.part(1, 1).ends, [end(0.0, false)]);
+        assert_eq!(all.part(1, u32::MAX), all);
+        assert!(
+            all.part(4, 1).ends.is_empty() && all.part(u32::MAX, 1).ends.is_empty() && all.part(1, 0).ends.is_empty()
+        );
+    }
+
+    #[test]
+    fn what_holds_a_number_that_is_not_finite_is_not_finite() {
+        let nan = DVec3::new(0.0, f64::NAN, 0.0);
+        let place = Some(PickedPlace { point: DVec3::ZERO, dimension: 3, parameter: Some(f64::INFINITY) });
+        let pick = PickList { index: 1, identifiers: Vec::new(), node: None, type_code: 1, place };
+        assert!(!Value::Pick(Box::new(pick.clone())).is_finite());
+        assert!(Value::Pick(Box::new(PickList { place: None, ..pick })).is_finite());
+        assert!(!Value::Label(Box::new(Label { position: nan, text: [].into(), on: true })).is_finite());
+        let vectors = TransformedVectors { ends: vec![VectorEnd { line: true, point: nan }] };
+        assert!(!Value::Vectors(Arc::new(vectors)).is_finite());
+    }
 }

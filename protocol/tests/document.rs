@@ -75,6 +75,7 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "SEND M2D(1,2 3,4) TO <1>A",
         ],
     ),
+    ("commands as text", &["I := IF PHASE IS ON THEN A", "SET PICKING ON", "SEND 3*L TO <2>V"]),
 ];
 
 /// The bytes that a dump shows.

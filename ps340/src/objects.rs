@@ -131,6 +131,13 @@ impl Objects {
         near.filter(inside).cloned().collect()
     }
 
+    /// How many units there are: names with something named inside them, those inside others not counted.
+    pub fn units(&self) -> usize {
+        let mut units: Vec<&str> = self.ids.keys().filter_map(|n| Some(n.as_str().split_once('.')?.0)).collect();
+        units.dedup();
+        units.len()
+    }
+
     /// All user objects, also those without a name.
     pub fn users(&self) -> impl Iterator<Item = ObjectId> + use<> {
         (self.system..self.identities.len()).map(ObjectId::new)
@@ -214,5 +221,6 @@ mod tests {
         }
         assert_eq!(objects.unit("S"), [name("S"), name("S.A"), name("S.A.B")]);
         assert!(objects.unit("T").is_empty());
+        assert_eq!(objects.units(), 2, "S and SA");
     }
 }

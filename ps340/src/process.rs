@@ -3,7 +3,7 @@
 use crate::{
     cli,
     line::LineAddress,
-    machine::{PlainText, Settings},
+    machine::{KeyboardMode, PlainText, Settings},
     shell::{Clock, End, Operator, Options, run},
 };
 use clap::Parser;
@@ -49,6 +49,10 @@ struct Arguments {
     /// Who gets text that arrives outside packets: the command interpreter, or the terminal emulator.
     #[arg(long, value_enum, default_value = "commands")]
     plain_text: PlainText,
+    /// Where typed characters go at the start: to the host as from a terminal, to the command interpreter, or to the
+    /// function network. By default to the network; with '--plain-text terminal' to the host.
+    #[arg(long, value_enum)]
+    keyboard: Option<KeyboardMode>,
     /// Threads that draw; all cores by default.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -92,7 +96,11 @@ pub fn main() -> ExitCode {
         eprintln!("ps340: the standard streams serve one host, or the operator");
         return ExitCode::from(2);
     }
-    let settings = Settings { plain_text: arguments.plain_text };
+    let usual = match arguments.plain_text {
+        PlainText::Commands => KeyboardMode::Interactive,
+        PlainText::Terminal => KeyboardMode::Terminal,
+    };
+    let settings = Settings { plain_text: arguments.plain_text, keyboard: arguments.keyboard.unwrap_or(usual) };
     let options = Options { listen, capture: arguments.capture, operator, clock: arguments.clock, settings };
     // What is not for a host must not stand in its stream.
     let say = |line: &str| match stdio_lines {

@@ -2,13 +2,16 @@
 
 use proptest::prelude::*;
 use protocol::command::{Command, print, strategy};
-use protocol::wire::{Route, write_commands, write_count_packet, write_packet};
+use protocol::parallel;
+use protocol::wire::{DataForm, PacketForm, Route, Sending, write_commands_as, write_packet, write_packet_as};
 use ps340::{
     line::LineId,
     machine::{Input, Machine, Settings},
 };
 
 const LINE: LineId = LineId(1);
+/// A host on the parallel interface, which hears the same.
+const PARALLEL: LineId = LineId(3);
 
 /// Streams tried in an ordinary run.
 const CASES: u32 = 1_500;
@@ -31,19 +34,30 @@ fn streams() -> impl Strategy<Value = Vec<u8>> {
         commands.iter().for_each(|c| print(c, &mut out));
         out
     });
-    let binary = prop::collection::vec(strategy::commands(), 1..6).prop_map(|commands: Vec<Command>| {
+    let data = prop::sample::select(DataForm::ALL.to_vec());
+    let sending = (prop::sample::select(PacketForm::ALL.to_vec()), data);
+    let binary = (prop::collection::vec(strategy::commands(), 1..6), sending);
+    let binary = binary.prop_map(|(commands, (packets, data)): (Vec<Command>, _)| {
         let mut out = Vec::new();
-        let _ = write_commands(&commands, &mut out);
+        let _ = write_commands_as(Sending { packets: packets.0, data: data.0 }, &commands, &mut out);
         out
     });
-    let packet =
-        (any::<u8>(), prop::collection::vec(any::<u8>(), 0..200), any::<bool>()).prop_map(|(route, data, long)| {
-            let mut out = Vec::new();
-            let route = Route::from(route);
-            let _ =
-                if long { write_packet(route, &data, &mut out) } else { write_count_packet(route, &data, &mut out) };
-            out
-        });
+    let forms = prop::sample::select(PacketForm::ALL.to_vec());
+    let packet = (prop_oneof![any::<u8>(), b'0'..=b'?'], prop::collection::vec(any::<u8>(), 0..200), forms);
+    let packet = packet.prop_map(|(route, data, form)| {
+        let mut out = Vec::new();
+        let _ = write_packet_as(form.0, Route::from(route), &data, &mut out);
+        out
+    });
+    let words = (prop::collection::vec((0..16_u16, any::<bool>()), 1..8), prop::collection::vec(any::<u8>(), 0..40));
+    let parallel = words.prop_map(|(words, block)| {
+        let mut out = Vec::new();
+        for (word, is_code) in words {
+            parallel::write_word(if is_code { word << 12 } else { word }, &mut out);
+        }
+        parallel::write_block(&block, &mut out);
+        out
+    });
     let raster = prop::collection::vec(any::<u8>(), 0..64).prop_map(|data| {
         let mut out = Vec::new();
         let _ = write_packet(Route::Raster, &data, &mut out);
@@ -72,11 +86,16 @@ fn streams() -> impl Strategy<Value = Vec<u8>> {
         "C := F:CLFRAMES; SEND FIX(1) TO <1>C; SEND TRUE TO <3>C; SEND TRUE TO <4>C; CONNECT C<1>:<1>C;",
         "M := MATRIX_4X4 0,0,0,0 0,0,0,0 0,0,0,0 0,0,0,0 THEN V;",
         "FORGET A;",
+        "C := F:CI; SEND 'DELETE C; C := F:CI; SEND ''X'' TO <1>C;' TO <1>C;",
+        "K := F:CONSTANT; C := F:CI; CONNECT K<1>:<1>C; SEND 'SEND 1 TO <1>K;' TO <2>K; SEND 1 TO <1>K;",
+        "D := F:DEPACKET; G := F:GATHER_STRING; CONNECT ERROR<1>:<1>D; CONNECT D<2>:<1>G; DELETE G; G := F:LINEEDITOR;",
+        "S := F:SEND; SEND 'S' TO <2>S; SEND FIX(1) TO <3>S; SEND TRUE TO <1>S;",
+        "W := F:WRITEDISK; SEND 'A' TO <2>W; SEND TRUE TO <3>W; CONNECT ERROR<1>:<1>W;",
         "DIALS := NIL;",
     ]);
     let words = prop::collection::vec(words, 1..12).prop_map(|w| w.join(" ").into_bytes());
     let noise = prop::collection::vec(any::<u8>(), 0..300);
-    let piece = prop_oneof![text, binary, packet, raster, words, noise];
+    let piece = prop_oneof![text, binary, packet, raster, words, parallel, noise];
     prop::collection::vec(piece, 1..5).prop_map(|pieces| pieces.concat())
 }
 
@@ -106,13 +125,16 @@ proptest! {
     fn no_stream_stops_the_machine(mut stream in streams(), changes in mutations(), piece in 1_usize..400) {
         mutate(&mut stream, &changes);
         let mut machine = Machine::new(Settings::default());
-        machine.step([Input::Attach(LINE)], 0);
+        machine.step([Input::Attach(LINE), Input::AttachParallel(PARALLEL)], 0);
+        let mut attach = Vec::new();
+        parallel::write_word(parallel::Code::Attach as u16, &mut attach);
+        machine.step([Input::Bytes(PARALLEL, attach)], 0);
         for bytes in stream.chunks(piece) {
-            machine.step([Input::Bytes(LINE, bytes.to_vec())], 0);
+            machine.step([Input::Bytes(LINE, bytes.to_vec()), Input::Bytes(PARALLEL, bytes.to_vec())], 0);
             machine.next_frame();
         }
         // Another host is served, whatever the first one left.
-        machine.step([Input::Attach(LineId(2))], 0);
+        machine.step([Input::Attach(LineId(2)), Input::Detach(PARALLEL)], 0);
         let mark = b"\nMARK := F:NOP; CONNECT MARK<1>:<1>HOST_MESSAGE; SEND 'ALIVE' TO <1>MARK;".to_vec();
         let mut answers = machine.step([Input::Bytes(LineId(2), mark)], 0);
         for _ in 0..3 {

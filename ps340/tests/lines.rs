@@ -63,6 +63,16 @@ fn within_patience<T: Send + 'static>(what: &str, action: impl FnOnce() -> T + S
     receiver.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("{what} takes too long"))
 }
 
+/// Waits until a capture says so many times that a host has left.
+fn wait_until_left(capture: &str, times: usize) {
+    let begin = Instant::now();
+    let left = || fs::read_to_string(capture).unwrap_or_default().lines().filter(|line| line.ends_with(" -")).count();
+    while left() < times {
+        assert!(begin.elapsed() < PATIENCE, "{} of {times} hosts have left", left());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 fn open(path: &str) -> File {
     OpenOptions::new().read(true).write(true).open(path).expect("the terminal can be opened")
 }
@@ -88,7 +98,9 @@ fn ask<S: Read + Write + Send + 'static>(mut line: S, commands: &str, answer: &s
 
 #[test]
 fn a_pseudo_terminal_survives_that_its_host_goes_and_comes() {
-    let process = Process::start(&["--listen", "pty:"]);
+    let folder = tempfile::tempdir().unwrap();
+    let capture = folder.path().join("capture").display().to_string();
+    let process = Process::start(&["--listen", "pty:", "--capture", &capture]);
     let path = process.place(0).to_string();
     assert!(path.starts_with("/dev/"), "{path}");
     let host = ask(open(&path), &format!("{ECHO} SEND 'first' TO <1>E;"), "first");
@@ -96,14 +108,14 @@ fn a_pseudo_terminal_survives_that_its_host_goes_and_comes() {
     for round in 0..3 {
         // Half a command of a host that goes is no part of what the next one says.
         let word = format!("round {round}");
-        std::thread::sleep(Duration::from_millis(100));
+        wait_until_left(&capture, round + 1);
         let mut host = ask(open(&path), &format!("SEND '{word}' TO <1>E;"), &word);
         host.write_all(b"SEND 'half").unwrap();
     }
     // All bytes pass as they are, in both directions.
     let odd = b"\x01\x03\x04\x11\x13\x1a\x7f\r\n\xff\\".to_vec();
+    wait_until_left(&capture, 4);
     let mut host = open(&path);
-    std::thread::sleep(Duration::from_millis(100));
     host.write_all(&[b"SEND '", &odd[..], b"' TO <1>E;"].concat()).unwrap();
     let found = within_patience("the echo", move || read(&mut host, odd.len() + 2, "the echo"));
     assert_eq!(found, b"\x01\x03\x04\x11\x13\x1a\x7f\r\n\xff\\\r\n");
@@ -178,7 +190,7 @@ fn a_capture_is_what_passed_and_plays_again() {
     let process = Process::start(&["--listen", "pty:", "--capture", &first]);
     let host = ask(open(process.place(0)), &format!("{ECHO} SEND 'one' TO <1>E;"), "one");
     drop(ask(host, "\x160SEND 'two' TO <1>E;\x16\x16", "two"));
-    std::thread::sleep(Duration::from_millis(200));
+    wait_until_left(&first, 1);
     drop(process);
     let told = |path: &str| {
         let mut reader = CaptureReader::default();
@@ -201,7 +213,10 @@ fn a_capture_is_what_passed_and_plays_again() {
     let mut process = Process::start(&["--listen", &format!("file:{first},pace=captured"), "--capture", &second]);
     let status = within_patience("the end", move || process.child.wait().unwrap());
     assert!(status.success());
-    assert_eq!(told(&second), (said, String::new(), 1));
+    assert_eq!(told(&second), (said, "one\r\ntwo\r\n".into(), 1), "it answers as before");
+    let before = fs::read(&first).unwrap();
+    let both = Command::new(PS340).args(["--listen", &format!("file:{first}"), "--capture", &first]).output().unwrap();
+    assert_eq!((both.status.code(), fs::read(&first).unwrap() == before), (Some(1), true));
 }
 
 /// The process with a host on its standard streams, at its end.
@@ -235,6 +250,55 @@ fn a_plain_file_is_sent_as_a_host_would() {
     assert!(within_patience("the end", move || process.child.wait().unwrap()).success());
     let captured = fs::read_to_string(capture).unwrap();
     assert!(captured.contains(" < from a file\\r\\n\n"), "{captured}");
+}
+
+#[test]
+fn the_parallel_interface_listens() {
+    use protocol::parallel::{Frame, FrameReader, write_block, write_word};
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let (first, second) = (file("first"), file("second"));
+    let process = Process::start(&["--listen", "parallel:127.0.0.1:0", "--capture", &first]);
+    let (_, address) = process.lines[0].split_once(':').unwrap();
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_nodelay(true).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let mut reader = FrameReader::default();
+    let mut next = |stream: &mut TcpStream| loop {
+        if let Some(frame) = reader.next() {
+            return frame;
+        }
+        let mut buffer = [0; 512];
+        let count = stream.read(&mut buffer).expect("the machine answers");
+        assert!(count > 0);
+        reader.push(&buffer[..count]);
+    };
+    let mut words = |stream: &mut TcpStream, said: &[u16], answer: &[Frame]| {
+        let mut bytes = Vec::new();
+        said.iter().for_each(|word| write_word(*word, &mut bytes));
+        stream.write_all(&bytes).unwrap();
+        answer.iter().for_each(|frame| assert_eq!(next(stream), *frame));
+    };
+    let word = |word: u16| Frame::Word(word);
+    words(&mut stream, &[], &[word(0x3000)]);
+    words(&mut stream, &[0xe000, 0xc000], &[word(0xe000), word(0xc000)]);
+    let text = format!("{ECHO} SEND 'by words' TO <1>E;");
+    words(&mut stream, &[text.len() as u16, 0], &[]);
+    let mut block = Vec::new();
+    write_block(text.as_bytes(), &mut block);
+    stream.write_all(&block).unwrap();
+    words(&mut stream, &[], &[word(0xca00)]);
+    words(&mut stream, &[0x5000], &[word(0x5000)]);
+    let message = Frame::Block(b"by words".into());
+    words(&mut stream, &[80, 0], &[word(0x5100), word(8), message, word(0x5a00)]);
+    // The words play again.
+    drop(stream);
+    wait_until_left(&first, 1);
+    drop(process);
+    let mut process = Process::start(&["--listen", &format!("file:{first}"), "--capture", &second]);
+    assert!(within_patience("the end", move || process.child.wait().unwrap()).success());
+    let captured = fs::read_to_string(second).unwrap();
+    assert!(captured.contains("D\\x00\\x08by wordsWZ\\x00\n"), "{captured}");
 }
 
 #[test]

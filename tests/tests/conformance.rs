@@ -2,10 +2,20 @@
 //!
 //! With `PERIS_LONG=1` every way is walked.
 
+use protocol::command::{
+    Command, CommandReader, Object,
+    binary::{self, Opcode},
+    token::{Lexer, TokenKind},
+    words::Word,
+};
+use ps340::functions;
 use std::{cell::RefCell, collections::BTreeSet, time::Duration};
 use tests::{
     Machine,
-    conformance::{self, Case, Operator, Report, Target, Way, line::Place, person, person::OrderFault, walk},
+    conformance::{
+        self, Case, Operator, Report, Target, Verdict, Way, case::Step, line::Place, person, person::OrderFault,
+        report::failure_text, walk,
+    },
 };
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
@@ -37,21 +47,51 @@ fn all() -> Vec<Case> {
     cases
 }
 
+/// Whether everything is to be walked.
+fn is_long() -> bool {
+    std::env::var_os("PERIS_LONG").is_some()
+}
+
 /// A machine whose time stands while nobody waits.
 fn machine() -> Machine {
     Machine::start(PS340, &["--clock", "virtual"])
 }
 
 fn play<'c>(machine: Machine, way: Way, cut: Option<u64>, cases: impl IntoIterator<Item = &'c Case>) -> Report {
-    let place = Place::Socket(format!("tcp:{}", machine.line).parse().unwrap());
+    play_at(format!("tcp:{}", machine.line).parse().unwrap(), machine, way, cut, cases)
+}
+
+fn play_at<'c>(
+    place: Place,
+    machine: Machine,
+    way: Way,
+    cut: Option<u64>,
+    cases: impl IntoIterator<Item = &'c Case>,
+) -> Report {
     let machine = RefCell::new(machine);
-    let target = Target { place, way, cut, patience: Duration::from_secs(20), any_fault: false };
+    let target = Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false };
     conformance::run(&target, Some(&mut Here(&machine)), cases, |_| {}).unwrap()
 }
 
+/// The cases that the machine cannot pass yet, one a line. The list only becomes shorter.
+fn waiting() -> BTreeSet<&'static str> {
+    include_str!("../conformance/waiting.txt").lines().filter(|l| !l.is_empty() && !l.starts_with('#')).collect()
+}
+
 fn assert_passed(report: &Report, what: &str) {
-    let tally = report.tally();
-    assert!(tally.failed == 0 && tally.skipped == 0, "{what}\n{}", report.text());
+    let waiting = waiting();
+    let failed: Vec<String> = report
+        .failures()
+        .filter(|(case, _)| !waiting.contains(case.id.as_str()))
+        .map(|(c, f)| failure_text(c, f))
+        .collect();
+    assert!(failed.is_empty(), "{what}: {} cases failed\n{}", failed.len(), failed.concat());
+    assert_eq!(report.tally().skipped, 0, "{what}");
+    let passed = report.outcomes.iter().filter(|o| o.verdict == Verdict::Passed).map(|o| o.case.id.as_str());
+    let ready: Vec<&str> = passed.filter(|id| waiting.contains(id)).collect();
+    if !ready.is_empty() {
+        println!("{what}: take out of waiting.txt: {}", ready.join(" "));
+    }
 }
 
 #[test]
@@ -63,7 +103,7 @@ fn every_case_passes_as_text() {
 
 #[test]
 fn cases_pass_in_every_way_and_cut_at_random_places() {
-    let long = std::env::var_os("PERIS_LONG").is_some();
+    let long = is_long();
     let cases = all();
     let ways: Vec<(Way, Option<u64>)> =
         Way::all().into_iter().flat_map(|way| [(way, None), (way, Some(340))]).collect();
@@ -75,6 +115,17 @@ fn cases_pass_in_every_way_and_cut_at_random_places() {
     for (report, way, cut) in machines {
         assert_passed(&report, &format!("{way}, cut with {cut:?}"));
     }
+}
+
+#[test]
+fn a_unix_socket_carries_the_cases_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let address = format!("unix:{}", folder.path().join("line").display());
+    let machine = Machine::start(PS340, &["--clock", "virtual", "--listen", &address]);
+    let cases = all();
+    let some = cases.iter().step_by(if is_long() { 1 } else { 7 });
+    let report = play_at(address.parse().unwrap(), machine, Way::default(), Some(7), some);
+    assert_passed(&report, "Unix socket");
 }
 
 #[test]
@@ -90,11 +141,87 @@ fn a_wrong_expectation_fails_at_its_line() {
 #[test]
 fn every_fact_of_the_client_has_a_case() {
     let proved: BTreeSet<String> = written().into_iter().flat_map(|case| case.facts).collect();
-    let missing: Vec<&str> = FACTS.iter().copied().filter(|fact| !proved.contains(*fact)).collect();
-    assert!(missing.is_empty(), "no case proves: {}", missing.join(", "));
-    let unknown: Vec<&String> = proved.iter().filter(|fact| !FACTS.contains(&fact.as_str())).collect();
-    assert!(unknown.is_empty(), "there are no facts {unknown:?}");
+    let facts: BTreeSet<&str> =
+        include_str!("../conformance/facts.txt").lines().filter(|l| !l.is_empty() && !l.starts_with('#')).collect();
+    let missing: Vec<&&str> = facts.iter().filter(|fact| !proved.contains(**fact)).collect();
+    assert!(missing.is_empty(), "no case proves: {missing:?}");
+    let unknown: Vec<&String> = proved.iter().filter(|fact| !facts.contains(fact.as_str())).collect();
+    assert!(unknown.is_empty(), "facts.txt has no {unknown:?}");
 }
 
-/// The numbered facts about the machine; those about the library of a client are not among them.
-const FACTS: &[&str] = &[];
+/// The commands of all cases, as the parser understands them; those that are meant to be wrong are left out.
+fn commands() -> Vec<Command> {
+    let mut all = Vec::new();
+    for case in written() {
+        let mut reader = CommandReader::default();
+        reader.push(case.text().as_bytes());
+        all.extend(reader.by_ref().filter_map(|read| Some(read.ok()?.command)));
+    }
+    all
+}
+
+#[test]
+fn every_record_of_the_commands_has_a_case() {
+    let mut seen = BTreeSet::new();
+    for command in commands() {
+        let mut first = |record: &[u8]| seen.extend(record.first().copied());
+        binary::records(&command, &mut Vec::new(), &mut first).unwrap();
+    }
+    let missing: Vec<&str> = Opcode::ALL.iter().filter(|o| !seen.contains(&o.code())).map(|o| o.word()).collect();
+    assert!(missing.is_empty(), "no case has {missing:?}");
+}
+
+#[test]
+fn every_word_of_the_commands_has_a_case() {
+    let mut seen = BTreeSet::new();
+    for case in written() {
+        let text = case.text();
+        let mut lexer = Lexer::new(text.as_bytes(), 0);
+        loop {
+            let token = lexer.token();
+            match token.kind {
+                TokenKind::End => break,
+                TokenKind::Name => {
+                    let name = &text.as_bytes()[token.span()];
+                    seen.extend(Word::ALL.iter().filter(|word| word.accepts(name)).map(|word| word.form()));
+                }
+                _ => {}
+            }
+        }
+    }
+    let missing: Vec<&str> = Word::ALL.iter().map(|word| word.form()).filter(|form| !seen.contains(form)).collect();
+    assert!(missing.is_empty(), "no case has the words {missing:?}");
+}
+
+#[test]
+fn every_function_and_every_initial_instance_has_a_case() {
+    let (mut functions, mut names) = (BTreeSet::new(), BTreeSet::new());
+    for case in all() {
+        let mut reader = CommandReader::default();
+        reader.push(case.text().as_bytes());
+        for command in reader.by_ref().filter_map(|read| Some(read.ok()?.command)) {
+            match command {
+                Command::Define { object: Object::Function { function, .. }, .. } => {
+                    functions.insert(function.to_string());
+                }
+                Command::Connect(arc) => names.extend([arc.source.to_string(), arc.destination.name.to_string()]),
+                Command::Send { destination, .. } => {
+                    names.insert(destination.name.to_string());
+                }
+                _ => {}
+            }
+        }
+        names.extend(case.steps.iter().filter_map(|(_, step)| match step {
+            Step::Watch { name, .. } => Some(name.clone()),
+            _ => None,
+        }));
+    }
+    let missing: Vec<&str> = functions::all().map(|row| row.name).filter(|name| !functions.contains(*name)).collect();
+    assert!(missing.is_empty(), "no case has the functions {missing:?}");
+    // One of several equal instances is enough.
+    let bare = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit()).to_string();
+    let named: BTreeSet<String> = names.iter().map(|name| bare(name)).collect();
+    let initial: BTreeSet<String> = functions::devices::initial().map(|initial| bare(&initial.name)).collect();
+    let missing: Vec<&String> = initial.difference(&named).collect();
+    assert!(missing.is_empty(), "no case has the instances {missing:?}");
+}

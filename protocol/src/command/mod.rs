@@ -12,6 +12,7 @@ pub mod reader;
 pub mod binary;
 #[cfg(any(test, feature = "proptest"))]
 pub mod strategy;
+pub mod reference;
 
 pub use binary::{BinaryDecoder, encode};
 pub use error::{CommandError, Problem};

@@ -261,7 +261,7 @@ fn find(bytes: &[u8], wanted: [u8; 4]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::{print, strategy::commands};
+    use crate::command::{print, strategy::commands, syntax::Object};
     use proptest::prelude::*;
 
     fn read(pieces: &[&[u8]]) -> Vec<Result<Spanned<Command>, CommandError>> {
@@ -380,6 +380,11 @@ mod tests {
         assert_eq!(find(&[b'x'; 99], *b";'{!"), None);
     }
 
+    /// Whether a command is printed without `;`.
+    fn begins(command: &Command) -> bool {
+        matches!(command, Command::Define { object: Object::BeginStructure | Object::BeginFont, .. })
+    }
+
     proptest! {
         #[test]
         fn any_split_gives_the_same_commands(
@@ -397,8 +402,16 @@ mod tests {
             let all = read(&pieces);
             prop_assert_eq!(&all, &read(&[&text]));
             let good: Vec<Command> = all.into_iter().filter_map(Result::ok).map(|spanned| spanned.command).collect();
-            // A structure that is begun just before the bad statement shares its fate only in its members.
-            prop_assert_eq!(good, commands);
+            // A structure that is begun just before the bad statement shares its fate only in its members. What !RESET
+            // finds unfinished before it is dropped: the words without `;`.
+            let mut expected: Vec<Command> = Vec::new();
+            for command in commands {
+                while command == Command::Reset && expected.last().is_some_and(begins) {
+                    expected.pop();
+                }
+                expected.push(command);
+            }
+            prop_assert_eq!(good, expected);
         }
 
         #[test]

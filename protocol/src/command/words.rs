@@ -311,6 +311,7 @@ pub const COMPLETE: &[Word] = &[
     Word::BeginFont,
     Word::Instance,
     Word::VectorList,
+    Word::Attributes,
     Word::WriteBack,
     Word::SurfaceRendering,
     Word::SolidRendering,

@@ -2,7 +2,7 @@
 
 use super::packet::{
     COUNT_BIAS, COUNT_RADIX, COUNT_START, ESCAPE, ESCAPE_START, LONG_HEADER, LONG_START, LONG_TRAILER,
-    MAX_ESCAPE_STREAM, MAX_PAYLOAD, PacketForm, Route, header_check, unescape,
+    MAX_ESCAPE_STREAM, MAX_PAYLOAD, PacketForm, Route, header_check, is_escaped, unescape,
 };
 use std::ops::Range;
 
@@ -280,17 +280,16 @@ fn look_escape(bytes: &[u8], scan: &mut Scan) -> Step {
         Some(_) => {}
     }
     let limit = bytes.len().min(MAX_ESCAPE_STREAM + 1);
-    for (at, &byte) in bytes[..limit].iter().enumerate().skip(scan.bytes.max(1)) {
-        if std::mem::take(&mut scan.escaped) {
-            continue;
-        }
-        match byte {
-            ESCAPE => scan.escaped = true,
-            ESCAPE_START | COUNT_START | LONG_START => return Step::Escaped(at),
-            _ => {}
+    let mut at = scan.bytes.max(1) + usize::from(scan.escaped);
+    while at < limit {
+        match bytes[at..limit].iter().position(|byte| is_escaped(*byte)) {
+            Some(clear) if bytes[at + clear] != ESCAPE => return Step::Escaped(at + clear),
+            // What stands behind the escape character is data.
+            Some(clear) => at += clear + 2,
+            None => at = limit,
         }
     }
-    scan.bytes = limit;
+    *scan = Scan { bytes: limit, escaped: at > limit };
     if limit > MAX_ESCAPE_STREAM { Step::Noise(limit, NoiseReason::TooLong) } else { Step::Wait(0) }
 }
 

@@ -197,11 +197,13 @@ pub fn write_escape_packet(route: Route, data: &[u8], out: &mut Vec<u8>) -> Resu
     within("the data of an escape packet", data.len(), MAX_PAYLOAD)?;
     out.reserve(5 + data.len());
     out.push(ESCAPE_START);
-    for &byte in [route.code()].iter().chain(data) {
-        if is_escaped(byte) {
-            out.push(ESCAPE);
+    for mut rest in [&[route.code()], data] {
+        while let Some(at) = rest.iter().position(|byte| is_escaped(*byte)) {
+            out.extend_from_slice(&rest[..at]);
+            out.extend_from_slice(&[ESCAPE, rest[at]]);
+            rest = &rest[at + 1..];
         }
-        out.push(byte);
+        out.extend_from_slice(rest);
     }
     out.extend_from_slice(&[ESCAPE_START; 2]);
     Ok(())

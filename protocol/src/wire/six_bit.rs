@@ -50,16 +50,28 @@ pub fn write_six_bit(bytes: &[u8], out: &mut Vec<u8>) {
 pub fn read_six_bit(characters: &[u8], out: &mut Vec<u8>) -> Result<(), SixBitError> {
     let before = out.len();
     out.reserve(characters.len() / 4 * 3 + 2);
-    let (mut bits, mut count) = (0_u32, 0);
-    for (at, &character) in characters.iter().enumerate() {
+    let (mut bits, mut count, mut at) = (0_u32, 0, 0);
+    while let Some(&character) = characters.get(at) {
+        if let Some(&[a, b, c, d]) = characters[at..].first_chunk::<4>().filter(|_| count == 0) {
+            // Whole groups make up all but the end of a packet.
+            let digits = [a, b, c, d].map(|character| u32::from(character.wrapping_sub(SIX_BIT_ZERO)));
+            if digits.iter().all(|digit| *digit < 64) {
+                let group = digits[0] << 18 | digits[1] << 12 | digits[2] << 6 | digits[3];
+                out.extend_from_slice(&group.to_be_bytes()[1..]);
+                at += 4;
+                continue;
+            }
+        }
         let digit = match character.wrapping_sub(SIX_BIT_ZERO) {
-            digit @ 0..64 => u32::from(digit),
-            _ if character <= b' ' => continue,
+            digit @ 0..64 => Some(u32::from(digit)),
+            _ if character <= b' ' => None,
             _ => {
                 out.truncate(before);
                 return Err(SixBitError::NoCharacter { at, byte: character });
             }
         };
+        at += 1;
+        let Some(digit) = digit else { continue };
         bits = bits << 6 | digit;
         count += 6;
         if count >= 8 {
@@ -114,6 +126,19 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn blanks_anywhere_change_nothing(
+            bytes in prop::collection::vec(any::<u8>(), 0..40),
+            blanks in prop::collection::vec((any::<prop::sample::Index>(), prop::sample::select(b"\r\n \0".to_vec())), 0..10)
+        ) {
+            let mut out = Vec::new();
+            write_six_bit(&bytes, &mut out);
+            for (place, blank) in blanks {
+                out.insert(place.index(out.len() + 1), blank);
+            }
+            prop_assert_eq!(read(&out), Ok(bytes));
+        }
+
         #[test]
         fn bytes_come_back_and_are_printable(bytes in prop::collection::vec(any::<u8>(), 0..100)) {
             let mut out = Vec::new();

@@ -3,6 +3,7 @@
 mod decode;
 mod lint;
 mod play;
+mod reference;
 
 use clap::Subcommand;
 use std::{
@@ -20,6 +21,16 @@ pub enum Tool {
     Play(play::Arguments),
     /// Finds what is wrong in command files: names, inputs, kinds, functions that never fire.
     Lint(lint::Arguments),
+    /// Tells about the functions of the machine: all in a table, or one in full.
+    Functions {
+        /// Which one, such as ROUTE or F:ROUTE.
+        name: Option<String>,
+    },
+    /// Tells about the commands of the language: all in a table, or one in full.
+    Commands {
+        /// Which one, such as 'vector_list' or 'set picking'; may be abbreviated.
+        name: Vec<String>,
+    },
 }
 
 /// What went wrong while a tool ran.
@@ -50,6 +61,8 @@ pub fn run(tool: &Tool) -> ExitCode {
         Tool::Decode(arguments) => decode::run(arguments),
         Tool::Play(arguments) => play::run(arguments),
         Tool::Lint(arguments) => lint::run(arguments),
+        Tool::Functions { name } => reference::functions(name.as_deref()),
+        Tool::Commands { name } => reference::commands(name),
     };
     match result {
         Ok(code) => code,

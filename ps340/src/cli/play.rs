@@ -3,7 +3,7 @@
 use super::{Trouble, read, say};
 use crate::{
     calligraphic::Beam,
-    machine::{PlainText, Settings},
+    machine::Settings,
     play::{EXAMPLES, End, Patience, Player, Script, Watcher, example},
 };
 use std::{
@@ -96,7 +96,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
         return Ok(ExitCode::from(2));
     }
     let patience = Patience { frames: arguments.patience, keep_going: arguments.keep_going };
-    let mut player = Player::new(Settings { plain_text: PlainText::Commands }, patience);
+    let mut player = Player::new(Settings::default(), patience);
     let mut screen = Screen::new(arguments, &scripts)?;
     let end = play(&mut player, &scripts, arguments.frames, &mut screen);
     screen.clear();

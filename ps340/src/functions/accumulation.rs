@@ -1,8 +1,8 @@
-//! Accumulation and change: sums of the turns of a dial, and messages that pass only when something changed.
+//! Accumulation and change: sums and means, limits, and messages that pass only when something changed.
 
 use super::{
     Example, FunctionRow, Source,
-    algebra::{distance, limited, product, sum},
+    algebra::{difference, distance, limited, product, quotient, sum},
 };
 use crate::port::{
     Firing, KindSet,
@@ -92,10 +92,58 @@ pub static ROWS: &[FunctionRow] = &[
             f.remember(LAST, value.clone());
             if edge { f.emit(1, value) } else { Ok(()) }
         },
-        examples: &[Example::of(
-            &[(2, B(true)), (1, B(true)), (1, B(true)), (1, B(false)), (1, B(true))],
-            &[(1, B(true)), (1, B(true))],
-        )],
+        examples: &[
+            Example::of(
+                &[(2, B(true)), (1, B(true)), (1, B(true)), (1, B(false)), (1, B(true))],
+                &[(1, B(true)), (1, B(true))],
+            ),
+            Example::of(
+                &[(2, B(false)), (1, B(true)), (1, B(false)), (1, B(false)), (2, B(true)), (1, B(true))],
+                &[(1, B(false)), (1, B(true))],
+            ),
+        ],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "AVERAGE",
+        summary: "mean of each <2> messages that follow each other",
+        source: Source::manual("the mean of integers is a real: ours"),
+        inputs: &[PortSpec::active(AMOUNT, "value"), PortSpec::constant(KindSet::INTEGER, "how many")],
+        outputs: &["mean"],
+        memory: 2,
+        behaviour: average,
+        examples: &[
+            Example::of(
+                &[(2, I(2)), (1, I(1)), (1, I(2)), (1, R(5.0)), (2, I(1)), (1, I(7)), (1, I(4))],
+                &[(1, R(1.5)), (1, R(6.0)), (1, R(4.0))],
+            ),
+            Example::of(
+                &[(2, I(2)), (1, V2([1.0, 2.0])), (1, V3([1.0; 3])), (1, V2([3.0, 4.0]))],
+                &[(1, V2([2.0, 3.0]))],
+            )
+            .faults(&[5]),
+            Example::of(&[(2, I(0)), (1, I(1))], &[]).faults(&[6]),
+        ],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "ATSCALE",
+        summary: "the value scaled, large ones more than small ones: fine and coarse control with one dial",
+        source: Source::uncertain(
+            "only that the gain grows with the value is remembered; the rule and <2>, <3> are ours",
+        ),
+        inputs: &[
+            PortSpec::active(AMOUNT, "value"),
+            PortSpec::default(KindSet::NUMBER, R(1.0), "factor of small values"),
+            PortSpec::default(KindSet::NUMBER, R(1.0), "size above which the factor grows in proportion to the size"),
+        ],
+        outputs: &["<1> x <2> x the larger of 1 and |<1>| / <3>"],
+        behaviour: scale_by_size,
+        examples: &[
+            Example::of(&[(2, R(10.0)), (3, R(0.5)), (1, R(0.25)), (1, R(-2.0))], &[(1, R(2.5)), (1, R(-80.0))]),
+            Example::of(&[(1, V2([3.0, 4.0])), (1, I(1))], &[(1, V2([15.0, 20.0])), (1, R(1.0))]),
+            Example::of(&[(3, R(0.0)), (1, R(1.0))], &[]).faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -158,4 +206,49 @@ fn accumulate(f: &mut Firing) -> Result<(), Problem> {
         f.emit(1, total)?;
     }
     Ok(())
+}
+
+/// Memory of F:AVERAGE: the sum, and how many values it has.
+const SUM: u8 = 0;
+const SUMMED: u8 = 1;
+
+fn average(f: &mut Firing) -> Result<(), Problem> {
+    let wanted = f.integer(2)?;
+    if wanted < 1 {
+        return Err(Problem::Range(2));
+    }
+    let total = match f.memory(SUM) {
+        Some(before) => sum(before, f.value(1)).ok_or(Problem::Mismatch)?,
+        // As a real, so that a sum of integers cannot wrap.
+        None => quotient(f.value(1), 1.0).ok_or(Problem::Kind(1))?,
+    };
+    if !total.is_finite() {
+        return Err(Problem::Overflow);
+    }
+    let count = 1 + match f.memory(SUMMED) {
+        Some(Value::Integer(count)) => *count,
+        _ => 0,
+    };
+    if count < wanted {
+        f.remember(SUM, total);
+        f.remember(SUMMED, Value::Integer(count));
+        return Ok(());
+    }
+    f.forget(SUM);
+    f.forget(SUMMED);
+    let mean = quotient(&total, count.into()).ok_or(Problem::Kind(1))?;
+    f.emit(1, mean)
+}
+
+fn scale_by_size(f: &mut Firing) -> Result<(), Problem> {
+    let (gain, threshold) = (f.number(2)?, f.number(3)?);
+    if threshold <= 0.0 {
+        return Err(Problem::Range(3));
+    }
+    let value = f.value(1);
+    let zero = difference(value, value).ok_or(Problem::Kind(1))?;
+    let size = distance(value, &zero).ok_or(Problem::Kind(1))?;
+    let factor = gain * (size / threshold).max(1.0);
+    let scaled = product(value, &Value::Real(factor)).ok_or(Problem::Kind(1))?;
+    f.emit(1, scaled)
 }

@@ -96,7 +96,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(ADDEND, 2, DIFFERENCE),
         outputs: &["<1> - <2>"],
         behaviour: subtract,
-        examples: &[Example::of(&[(2, I(1)), (1, I(2))], &[(1, I(1))])],
+        examples: &[
+            Example::of(&[(2, I(1)), (1, I(2))], &[(1, I(1))]),
+            Example::of(&[(2, I(1)), (1, V2([1.0, 1.0])), (1, R(0.5))], &[(1, R(-0.5))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -106,7 +109,11 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(ADDEND, 1, DIFFERENCE),
         outputs: &["<1> - <2>"],
         behaviour: subtract,
-        examples: &[Example::of(&[(1, R(1.0)), (2, I(2))], &[(1, R(-1.0))])],
+        examples: &[
+            Example::of(&[(1, R(1.0)), (2, I(2))], &[(1, R(-1.0))]),
+            Example::of(&[(1, V2([1.0, 1.0])), (2, V2([0.0, 2.0])), (2, V3([0.0; 3]))], &[(1, V2([1.0, -1.0]))])
+                .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -148,7 +155,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(FACTOR, 2, FACTORS),
         outputs: &["<1> times <2>"],
         behaviour: multiply,
-        examples: &[Example::of(&[(2, R(4.0)), (1, R(0.25))], &[(1, R(1.0))])],
+        examples: &[
+            Example::of(&[(2, R(4.0)), (1, R(0.25))], &[(1, R(1.0))]),
+            Example::of(&[(2, I(3)), (1, I(2)), (1, V3([1.0, 0.0, -1.0]))], &[(1, I(6)), (1, V3([3.0, 0.0, -3.0]))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -158,10 +168,13 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(FACTOR, 1, FACTORS),
         outputs: &["<1> times <2>"],
         behaviour: multiply,
-        examples: &[Example::of(
-            &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M2([[0.0, 1.0], [1.0, 0.0]]))],
-            &[(1, M2([[2.0, 1.0], [4.0, 3.0]]))],
-        )],
+        examples: &[
+            Example::of(
+                &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M2([[0.0, 1.0], [1.0, 0.0]]))],
+                &[(1, M2([[2.0, 1.0], [4.0, 3.0]]))],
+            ),
+            Example::of(&[(1, R(0.5)), (2, I(3)), (2, V2([2.0, 4.0]))], &[(1, R(1.5)), (1, V2([1.0, 2.0]))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -188,7 +201,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(ADDEND, QUOTIENT[0]), PortSpec::constant(KindSet::NUMBER, QUOTIENT[1])],
         outputs: &["<1> / <2>"],
         behaviour: divide,
-        examples: &[Example::of(&[(2, I(4)), (1, M3([[4.0; 3]; 3]))], &[(1, M3([[1.0; 3]; 3]))])],
+        examples: &[
+            Example::of(&[(2, I(4)), (1, M3([[4.0; 3]; 3]))], &[(1, M3([[1.0; 3]; 3]))]),
+            Example::of(&[(2, I(0)), (1, I(1)), (2, I(-2)), (1, I(7))], &[(1, I(-3))]).faults(&[7]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -199,7 +215,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> / <2>"],
         behaviour: divide,
         examples: &[
-            Example::of(&[(1, R(1.0)), (2, R(8.0)), (2, I(0)), (2, I(2))], &[(1, R(0.125)), (1, R(0.5))]).faults(&[7])
+            Example::of(&[(1, R(1.0)), (2, R(8.0)), (2, I(0)), (2, I(2))], &[(1, R(0.125)), (1, R(0.5))]).faults(&[7]),
+            Example::of(&[(1, I(7)), (2, I(2)), (2, R(2.0))], &[(1, I(3)), (1, R(3.5))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -223,7 +240,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(KindSet::INTEGER, 2, QUOTIENT),
         outputs: &["remainder"],
         behaviour: modulo,
-        examples: &[Example::of(&[(2, I(3)), (1, I(8))], &[(1, I(2))])],
+        examples: &[
+            Example::of(&[(2, I(3)), (1, I(8))], &[(1, I(2))]),
+            Example::of(&[(2, I(0)), (1, I(8)), (2, I(-3)), (1, I(8)), (1, R(8.0))], &[(1, I(2))]).faults(&[7, 5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -236,7 +256,10 @@ pub static ROWS: &[FunctionRow] = &[
             let root = f.number(1)?.sqrt();
             f.emit(1, Value::Real(root))
         },
-        examples: &[Example::of(&[(1, I(16)), (1, R(-1.0)), (1, R(0.25))], &[(1, R(4.0)), (1, R(0.5))]).faults(&[7])],
+        examples: &[
+            Example::of(&[(1, I(16)), (1, R(-1.0)), (1, R(0.25))], &[(1, R(4.0)), (1, R(0.5))]).faults(&[7]),
+            Example::of(&[(1, R(0.0)), (1, V2([1.0, 1.0]))], &[(1, R(0.0))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -263,7 +286,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::NUMBER, "number")],
         outputs: &["integer"],
         behaviour: |f| to_integer(f, f64::round),
-        examples: &[Example::of(&[(1, R(2.5)), (1, R(-2.5)), (1, R(3e9))], &[(1, I(3)), (1, I(-3))]).faults(&[6])],
+        examples: &[
+            Example::of(&[(1, R(2.5)), (1, R(-2.5)), (1, R(3e9))], &[(1, I(3)), (1, I(-3))]).faults(&[6]),
+            Example::of(&[(1, I(7)), (1, R(-0.4))], &[(1, I(7)), (1, I(0))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -273,7 +299,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::NUMBER, "number")],
         outputs: &["integer"],
         behaviour: |f| to_integer(f, f64::trunc),
-        examples: &[Example::of(&[(1, R(2.9)), (1, R(-2.9))], &[(1, I(2)), (1, I(-2))])],
+        examples: &[
+            Example::of(&[(1, R(2.9)), (1, R(-2.9))], &[(1, I(2)), (1, I(-2))]),
+            Example::of(&[(1, R(-2147483648.5)), (1, R(2147483648.0))], &[(1, I(i32::MIN))]).faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -283,7 +312,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::NUMBER, "number")],
         outputs: &["integer"],
         behaviour: |f| to_integer(f, f64::ceil),
-        examples: &[Example::of(&[(1, R(2.1)), (1, R(-2.9))], &[(1, I(3)), (1, I(-2))])],
+        examples: &[
+            Example::of(&[(1, R(2.1)), (1, R(-2.9))], &[(1, I(3)), (1, I(-2))]),
+            Example::of(&[(1, R(-0.5)), (1, I(4)), (1, R(2147483647.5))], &[(1, I(0)), (1, I(4))]).faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -296,7 +328,10 @@ pub static ROWS: &[FunctionRow] = &[
             let real = f.number(1)?;
             f.emit(1, Value::Real(real))
         },
-        examples: &[Example::of(&[(1, I(-3))], &[(1, R(-3.0))])],
+        examples: &[
+            Example::of(&[(1, I(-3))], &[(1, R(-3.0))]),
+            Example::of(&[(1, R(0.5)), (1, I(i32::MIN))], &[(1, R(0.5)), (1, R(-2147483648.0))]),
+        ],
         ..FunctionRow::PLAIN
     },
 ];

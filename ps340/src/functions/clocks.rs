@@ -1,4 +1,4 @@
-//! Clocks: sequences of values, one at each interval of frames, hundredths of a second or system ticks.
+//! Clocks: sequences of values, one at each interval of frames, hundredths of a second or system ticks; and a time-out.
 //!
 //! A clock has only constant inputs: it never fires on a message, but as time passes. The first output comes one
 //! interval after the clock began to run. The numbering of the inputs is uncertain.
@@ -10,10 +10,14 @@
 //! - A fault stops the clock (<4> becomes FALSE), so that it does not come again at each frame.
 
 use super::{
-    FunctionRow, Source,
+    Example, FunctionRow, Source,
     algebra::{difference, sum},
 };
-use crate::port::{Elapsed, Firing, KindSet, Literal::B, PortSpec, Problem};
+use crate::port::{
+    Elapsed, Firing, KindSet,
+    Literal::{B, I, S},
+    PortSpec, Problem,
+};
 use protocol::Value;
 
 /// Most outputs of a clock for one advance of time; more are left out and reported. Ours.
@@ -56,6 +60,32 @@ pub static ROWS: &[FunctionRow] = &[
         clock: Some(|f, elapsed: &Elapsed| advance(f, elapsed.ticks)),
         ..CLOCK
     },
+    FunctionRow {
+        name: "TIMEOUT",
+        summary: "the constant <3> when no message came for a while after one",
+        source: Source::uncertain("hundredths of a second, and that the first message starts the watch: ours"),
+        inputs: &[
+            PortSpec::active(KindSet::ANY, "message: the time begins anew"),
+            PortSpec::constant(KindSet::INTEGER, "time, hundredths of a second"),
+            PortSpec::constant(KindSet::ANY, "what is sent then, once"),
+        ],
+        outputs: &["<3>"],
+        memory: 1,
+        behaviour: |f| {
+            let time = f.integer(2)?;
+            if time < 1 {
+                return Err(Problem::Range(2));
+            }
+            f.remember(REMAINING, Value::Integer(time));
+            Ok(())
+        },
+        clock: Some(time_out),
+        examples: &[
+            Example::of(&[(2, I(50)), (3, S("LATE")), (1, B(true))], &[]),
+            Example::of(&[(2, I(0)), (3, S("LATE")), (1, B(true))], &[]).faults(&[6]),
+        ],
+        ..FunctionRow::PLAIN
+    },
 ];
 
 const INTERVAL: u16 = 1;
@@ -71,6 +101,21 @@ const REMAINING: u8 = 0;
 const NEXT: u8 = 1;
 /// Memory: how many outputs are left of the count.
 const LEFT: u8 = 2;
+
+/// Sends the constant of F:TIMEOUT when its time has passed.
+fn time_out(f: &mut Firing, elapsed: &Elapsed) -> Result<u64, Problem> {
+    let Some(remaining) = cell(f, REMAINING) else { return Ok(0) };
+    match i32::try_from(elapsed.centiseconds) {
+        Ok(passed) if passed < remaining => f.remember(REMAINING, Value::Integer(remaining - passed)),
+        _ => {
+            f.forget(REMAINING);
+            if let Some(value) = f.optional(3).cloned() {
+                f.emit(1, value)?;
+            }
+        }
+    }
+    Ok(0)
+}
 
 /// Lets a clock advance; returns how many outputs were left out.
 fn advance(f: &mut Firing, elapsed: u64) -> Result<u64, Problem> {

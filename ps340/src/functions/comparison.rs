@@ -67,7 +67,11 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(EQUATABLE, 2),
         outputs: &["Boolean"],
         behaviour: |f| equate(f, true),
-        examples: &[Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))])],
+        examples: &[
+            Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(2, S("A")), (1, S("A")), (1, I(1)), (1, S("B"))], &[(1, B(true)), (1, B(false))])
+                .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -77,7 +81,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(EQUATABLE, 0),
         outputs: &["Boolean"],
         behaviour: |f| equate(f, false),
-        examples: &[Example::of(&[(1, V2([1.0, 2.0])), (2, V2([1.0, 2.5]))], &[(1, B(true))])],
+        examples: &[
+            Example::of(&[(1, V2([1.0, 2.0])), (2, V2([1.0, 2.5]))], &[(1, B(true))]),
+            Example::of(&[(1, S("A")), (2, I(1)), (2, S("A"))], &[(1, B(false))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -87,7 +94,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(EQUATABLE, 2),
         outputs: &["Boolean"],
         behaviour: |f| equate(f, false),
-        examples: &[Example::of(&[(2, S("X")), (1, S("X")), (1, S("Y"))], &[(1, B(false)), (1, B(true))])],
+        examples: &[
+            Example::of(&[(2, S("X")), (1, S("X")), (1, S("Y"))], &[(1, B(false)), (1, B(true))]),
+            Example::of(&[(2, I(2)), (1, R(2.0)), (1, B(true))], &[(1, B(false))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     ordering(
@@ -95,84 +105,128 @@ pub static ROWS: &[FunctionRow] = &[
         "whether <1> is greater than <2>",
         0,
         |f| order(f, Ordering::is_gt),
-        &[Example::of(&[(1, I(3)), (2, R(2.5)), (1, I(2)), (2, I(2))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(1, I(3)), (2, R(2.5)), (1, I(2)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(false))]).faults(&[5]),
+        ],
     ),
     ordering(
         "GTC",
         "whether <1> is greater than the constant <2>",
         2,
         |f| order(f, Ordering::is_gt),
-        &[Example::of(&[(2, R(0.0)), (1, R(0.5)), (1, R(-0.5))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(2, R(0.0)), (1, R(0.5)), (1, R(-0.5))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(true))])
+                .faults(&[5]),
+        ],
     ),
     ordering(
         "CGT",
         "whether the constant <1> is greater than <2>",
         1,
         |f| order(f, Ordering::is_gt),
-        &[Example::of(&[(1, R(0.0)), (2, R(0.5)), (2, R(-0.5))], &[(1, B(false)), (1, B(true))])],
+        &[
+            Example::of(&[(1, R(0.0)), (2, R(0.5)), (2, R(-0.5))], &[(1, B(false)), (1, B(true))]),
+            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(false))])
+                .faults(&[5]),
+        ],
     ),
     ordering(
         "GE",
         "whether <1> is not less than <2>",
         0,
         |f| order(f, Ordering::is_ge),
-        &[Example::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(true))]).faults(&[5]),
+        ],
     ),
     ordering(
         "GEC",
         "whether <1> is not less than the constant <2>",
         2,
         |f| order(f, Ordering::is_ge),
-        &[Example::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(true)), (1, B(true))])
+                .faults(&[5]),
+        ],
     ),
     ordering(
         "CGE",
         "whether the constant <1> is not less than <2>",
         1,
         |f| order(f, Ordering::is_ge),
-        &[Example::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(true)), (1, B(false))])
+                .faults(&[5]),
+        ],
     ),
     ordering(
         "LT",
         "whether <1> is less than <2>",
         0,
         |f| order(f, Ordering::is_lt),
-        &[Example::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))])],
+        &[
+            Example::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))]),
+            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(false))]).faults(&[5]),
+        ],
     ),
     ordering(
         "LTC",
         "whether <1> is less than the constant <2>",
         2,
         |f| order(f, Ordering::is_lt),
-        &[Example::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(false)), (1, B(true))])],
+        &[
+            Example::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(false)), (1, B(true))]),
+            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(false))])
+                .faults(&[5]),
+        ],
     ),
     ordering(
         "CLT",
         "whether the constant <1> is less than <2>",
         1,
         |f| order(f, Ordering::is_lt),
-        &[Example::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))])],
+        &[
+            Example::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))]),
+            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(true))])
+                .faults(&[5]),
+        ],
     ),
     ordering(
         "LE",
         "whether <1> is not greater than <2>",
         0,
         |f| order(f, Ordering::is_le),
-        &[Example::of(&[(1, I(2)), (2, I(2)), (1, I(3)), (2, I(2))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(1, I(2)), (2, I(2)), (1, I(3)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(true))]).faults(&[5]),
+        ],
     ),
     ordering(
         "LEC",
         "whether <1> is not greater than the constant <2>",
         2,
         |f| order(f, Ordering::is_le),
-        &[Example::of(&[(2, I(1)), (1, I(1)), (1, I(2))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(2, I(1)), (1, I(1)), (1, I(2))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(true)), (1, B(false))])
+                .faults(&[5]),
+        ],
     ),
     ordering(
         "CLE",
         "whether the constant <1> is not greater than <2>",
         1,
         |f| order(f, Ordering::is_le),
-        &[Example::of(&[(1, I(1)), (2, I(1)), (2, I(0))], &[(1, B(true)), (1, B(false))])],
+        &[
+            Example::of(&[(1, I(1)), (2, I(1)), (2, I(0))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(true)), (1, B(true))])
+                .faults(&[5]),
+        ],
     ),
 ];
 

@@ -1,7 +1,11 @@
 //! Logic: and, or, exclusive or and not of Booleans.
 
 use super::{Example, FunctionRow, Source};
-use crate::port::{Firing, KindSet, Literal::B, PortSpec, Problem};
+use crate::port::{
+    Firing, KindSet,
+    Literal::{B, I},
+    PortSpec, Problem,
+};
 use protocol::Value;
 
 const BOTH: &[PortSpec] = &[PortSpec::active(KindSet::BOOLEAN, "first"), PortSpec::active(KindSet::BOOLEAN, "second")];
@@ -16,10 +20,14 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "TRUE if both are TRUE",
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a && b),
-        examples: &[Example::of(
-            &[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))],
-            &[(1, B(true)), (1, B(false))],
-        )],
+        examples: &[
+            Example::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(true)), (1, B(false))]),
+            Example::of(
+                &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
+                &[(1, B(true)), (1, B(false))],
+            )
+            .faults(&[5]),
+        ],
         ..LOGICAL
     },
     FunctionRow {
@@ -27,7 +35,10 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "TRUE if both are TRUE, the second a constant",
         inputs: FIRST,
         behaviour: |f| combine(f, |a, b| a && b),
-        examples: &[Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))])],
+        examples: &[
+            Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(false)), (1, B(true))]),
+        ],
         ..LOGICAL
     },
     FunctionRow {
@@ -35,10 +46,14 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "TRUE if one is TRUE",
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a || b),
-        examples: &[Example::of(
-            &[(1, B(false)), (2, B(true)), (2, B(false)), (1, B(false))],
-            &[(1, B(true)), (1, B(false))],
-        )],
+        examples: &[
+            Example::of(&[(1, B(false)), (2, B(true)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            Example::of(
+                &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
+                &[(1, B(true)), (1, B(true))],
+            )
+            .faults(&[5]),
+        ],
         ..LOGICAL
     },
     FunctionRow {
@@ -46,7 +61,10 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "TRUE if one is TRUE, the second a constant",
         inputs: FIRST,
         behaviour: |f| combine(f, |a, b| a || b),
-        examples: &[Example::of(&[(2, B(false)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))])],
+        examples: &[
+            Example::of(&[(2, B(false)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            Example::of(&[(2, B(true)), (1, B(false)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+        ],
         ..LOGICAL
     },
     FunctionRow {
@@ -54,10 +72,14 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "TRUE if exactly one is TRUE",
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a != b),
-        examples: &[Example::of(
-            &[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))],
-            &[(1, B(false)), (1, B(true))],
-        )],
+        examples: &[
+            Example::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(false)), (1, B(true))]),
+            Example::of(
+                &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
+                &[(1, B(false)), (1, B(true))],
+            )
+            .faults(&[5]),
+        ],
         ..LOGICAL
     },
     FunctionRow {
@@ -65,7 +87,10 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "TRUE if exactly one is TRUE, the second a constant",
         inputs: FIRST,
         behaviour: |f| combine(f, |a, b| a != b),
-        examples: &[Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))])],
+        examples: &[
+            Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))]),
+            Example::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(true)), (1, B(false))]),
+        ],
         ..LOGICAL
     },
     FunctionRow {
@@ -76,7 +101,10 @@ pub static ROWS: &[FunctionRow] = &[
             let opposite = !f.boolean(1)?;
             f.emit(1, Value::Boolean(opposite))
         },
-        examples: &[Example::of(&[(1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))])],
+        examples: &[
+            Example::of(&[(1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))]),
+            Example::of(&[(1, I(0)), (1, B(false))], &[(1, B(true))]).faults(&[5]),
+        ],
         ..LOGICAL
     },
 ];

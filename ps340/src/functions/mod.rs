@@ -8,10 +8,16 @@ mod row;
 pub mod accumulation;
 pub mod algebra;
 pub mod arithmetic;
+pub mod characters;
 pub mod clocks;
 pub mod comparison;
 pub mod devices;
+pub mod host_line;
+pub mod labels;
 pub mod logic;
+pub mod naming;
+pub mod page;
+pub mod picking;
 pub mod printing;
 pub mod routing;
 pub mod selection;
@@ -25,7 +31,7 @@ pub use row::{Behaviour, Clock, Confidence, Example, Family, FunctionRow, MAX_SI
 use std::{collections::HashMap, sync::LazyLock};
 
 /// The families of functions that a command can instance, in the order of the manuals.
-pub static FAMILIES: [(&str, &[FunctionRow]); 12] = [
+pub static FAMILIES: [(&str, &[FunctionRow]); 17] = [
     ("arithmetic", arithmetic::ROWS),
     ("logic", logic::ROWS),
     ("comparison", comparison::ROWS),
@@ -36,8 +42,13 @@ pub static FAMILIES: [(&str, &[FunctionRow]); 12] = [
     ("accumulation", accumulation::ROWS),
     ("clocks", clocks::ROWS),
     ("strings", strings::ROWS),
+    ("characters", characters::ROWS),
     ("printing", printing::ROWS),
-    ("selection", selection::ROWS),
+    ("labels", labels::ROWS),
+    ("picking", picking::ROWS),
+    ("transformed data", selection::ROWS),
+    ("names and files", naming::ROWS),
+    ("host line", host_line::ROWS),
 ];
 
 /// The rows of all functions that a command can instance.
@@ -53,3 +64,6 @@ pub fn find(name: &str) -> Option<&'static FunctionRow> {
         LazyLock::new(|| all().map(|row| (row.name, row)).collect());
     BY_NAME.get(name).copied()
 }
+
+#[cfg(test)]
+mod tests;

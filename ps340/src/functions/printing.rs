@@ -7,19 +7,30 @@
 use super::{Example, FunctionRow, Source};
 use crate::port::{
     KindSet,
-    Literal::{B, I, M2, R, S, V2, V3},
-    PortSpec,
+    Literal::{B, I, Label, M2, M3, M4, M43, Pick, R, S, T, V2, V3, V4, Vectors},
+    PickLiteral, PortSpec, Problem,
 };
-use protocol::Value;
+use protocol::{Value, value::MAX_STRING};
 
 /// Significant digits of a real in F:PRINT.
 pub const DIGITS: usize = 9;
+
+const PICKED: PickLiteral = PickLiteral {
+    index: 3,
+    identifiers: &["I00F", "GROUP"],
+    node: "WORLD.DATA",
+    type_code: 1,
+    point: None,
+    parameter: None,
+};
 
 /// The functions of this family.
 pub static ROWS: &[FunctionRow] = &[FunctionRow {
     name: "PRINT",
     summary: "the value as text",
-    source: Source::confirmed("integers without a leading blank, V before a vector; digits and matrices are ours"),
+    source: Source::confirmed(
+        "integers without a leading blank, V before a vector; digits, matrices, pick lists, labels are ours",
+    ),
     inputs: &[
         PortSpec::active(KindSet::ANY, "value"),
         PortSpec::default(KindSet::BOOLEAN, B(false), "TRUE: reals with an exponent"),
@@ -27,6 +38,9 @@ pub static ROWS: &[FunctionRow] = &[FunctionRow {
     outputs: &["string"],
     behaviour: |f| {
         let text = print(f.value(1), f.boolean(2)?);
+        if text.len() > MAX_STRING {
+            return Err(Problem::TooLong);
+        }
         f.emit(1, Value::String(text.into()))
     },
     examples: &[
@@ -36,6 +50,30 @@ pub static ROWS: &[FunctionRow] = &[FunctionRow {
         Example::of(&[(1, S("I001")), (1, B(true))], &[(1, S("I001")), (1, S("TRUE"))]),
         Example::of(&[(2, B(true)), (1, R(-0.15)), (1, I(3))], &[(1, S("-1.5E-01")), (1, S("3"))]),
         Example::of(&[(1, M2([[1.0, 0.0], [0.5, 2.0]]))], &[(1, S("M 1,0 0.5,2"))]),
+        Example::of(
+            &[
+                (1, V4([1.0, 2.0, 3.0, 0.5])),
+                (1, M3([[1.0; 3]; 3])),
+                (1, M43([[1.0; 3], [2.0; 3], [3.0; 3], [4.0; 3]])),
+            ],
+            &[(1, S("V 1,2,3,0.5")), (1, S("M 1,1,1 1,1,1 1,1,1")), (1, S("M 1,1,1 2,2,2 3,3,3 4,4,4"))],
+        ),
+        Example::of(
+            &[(1, M4([[0.5; 4]; 4])), (1, T([[2.0; 4]; 4]))],
+            &[
+                (1, S("M 0.5,0.5,0.5,0.5 0.5,0.5,0.5,0.5 0.5,0.5,0.5,0.5 0.5,0.5,0.5,0.5")),
+                (1, S("M 2,2,2,2 2,2,2,2 2,2,2,2 2,2,2,2")),
+            ],
+        ),
+        Example::of(
+            &[(1, Pick(PICKED)), (1, Label([1.0, 2.0, 0.0], "A", true))],
+            &[(1, S("3 I00F,GROUP WORLD.DATA")), (1, S("V 1,2,0 TRUE A"))],
+        ),
+        Example::of(
+            &[(1, Vectors(&[(false, [0.0; 3]), (true, [1.0, 0.0, 0.5])]))],
+            &[(1, S("VECTOR_LIST ITEMIZED N=2 P 0,0,0 L 1,0,0.5"))],
+        ),
+        Example::of(&[(2, B(true)), (1, V2([10.0, 0.0])), (1, S("TEXT"))], &[(1, S("V 1E+01,0E+00")), (1, S("TEXT"))]),
     ],
     ..FunctionRow::PLAIN
 }];
@@ -59,6 +97,21 @@ pub fn print(value: &Value, exponential: bool) -> Vec<u8> {
         Value::Matrix3(m) => rows(&m.to_cols_array_2d().each_ref().map(|row| &row[..])).into(),
         Value::Matrix4x3(m) => rows(&m.to_cols_array_2d().each_ref().map(|row| &row[..3])).into(),
         Value::Matrix4(m) | Value::Transform(m) => rows(&m.to_cols_array_2d().each_ref().map(|row| &row[..])).into(),
+        Value::Pick(pick) => pick.to_string().into(),
+        Value::Label(label) => {
+            let on = if label.on { "TRUE" } else { "FALSE" };
+            let mut text = format!("V {} {on} ", list(&label.position.to_array())).into_bytes();
+            text.extend_from_slice(&label.text);
+            text
+        }
+        Value::Vectors(vectors) => {
+            let mut text = format!("VECTOR_LIST ITEMIZED N={}", vectors.ends.len());
+            for end in &vectors.ends {
+                text.push_str(if end.line { " L " } else { " P " });
+                text.push_str(&list(&end.point.to_array()));
+            }
+            text.into()
+        }
     }
 }
 

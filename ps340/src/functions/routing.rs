@@ -6,6 +6,7 @@ use crate::port::{
     Literal::{B, I, R, S},
     PortSpec, Problem,
 };
+use protocol::Value;
 
 const ANY: PortSpec = PortSpec::active(KindSet::ANY, "message");
 const HELD: PortSpec = PortSpec::constant(KindSet::ANY, "message");
@@ -19,7 +20,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[ANY],
         outputs: &["message"],
         behaviour: |f| pass(f, 1, 1),
-        examples: &[Example::of(&[(1, S("A")), (1, I(2))], &[(1, S("A")), (1, I(2))])],
+        examples: &[
+            Example::of(&[(1, S("A")), (1, I(2))], &[(1, S("A")), (1, I(2))]),
+            Example::of(&[(1, B(false)), (1, R(0.5))], &[(1, B(false)), (1, R(0.5))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -38,7 +42,10 @@ pub static ROWS: &[FunctionRow] = &[
             }
             Ok(())
         },
-        examples: &[Example::of(&[(2, I(7)), (1, R(1.0)), (2, I(8))], &[(2, I(7)), (1, R(1.0)), (2, I(8))]).sized(3)],
+        examples: &[
+            Example::of(&[(2, I(7)), (1, R(1.0)), (2, I(8))], &[(2, I(7)), (1, R(1.0)), (2, I(8))]).sized(3),
+            Example::of(&[(1, S("A")), (1, S("B")), (2, S("C"))], &[(1, S("A")), (1, S("B")), (2, S("C"))]).sized(2),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -48,7 +55,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::ANY, "trigger"), HELD],
         outputs: &["<2>"],
         behaviour: |f| pass(f, 2, 1),
-        examples: &[Example::of(&[(1, B(true)), (2, I(0)), (1, S("GO"))], &[(1, I(0)), (1, I(0))])],
+        examples: &[
+            Example::of(&[(1, B(true)), (2, I(0)), (1, S("GO"))], &[(1, I(0)), (1, I(0))]),
+            Example::of(&[(2, I(1)), (2, S("LAST")), (1, I(0))], &[(1, S("LAST"))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -58,7 +68,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::BOOLEAN, "selector"), ANY],
         outputs: &["<2> if TRUE", "<2> if FALSE"],
         behaviour: route_by_boolean,
-        examples: &[Example::of(&[(1, B(true)), (2, I(1)), (2, I(2)), (1, B(false))], &[(1, I(1)), (2, I(2))])],
+        examples: &[
+            Example::of(&[(1, B(true)), (2, I(1)), (2, I(2)), (1, B(false))], &[(1, I(1)), (2, I(2))]),
+            Example::of(&[(1, I(1)), (1, B(true)), (2, S("A"))], &[(1, S("A"))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -68,7 +81,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::BOOLEAN, "selector"), HELD],
         outputs: &["<2> if TRUE", "<2> if FALSE"],
         behaviour: route_by_boolean,
-        examples: &[Example::of(&[(2, I(5)), (1, B(false)), (1, B(true))], &[(2, I(5)), (1, I(5))])],
+        examples: &[
+            Example::of(&[(2, I(5)), (1, B(false)), (1, B(true))], &[(2, I(5)), (1, I(5))]),
+            Example::of(&[(2, S("A")), (2, S("B")), (1, B(true))], &[(1, S("B"))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -78,7 +94,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::constant(KindSet::BOOLEAN, "selector"), ANY],
         outputs: &["<2> if TRUE", "<2> if FALSE"],
         behaviour: route_by_boolean,
-        examples: &[Example::of(&[(1, B(false)), (2, I(5)), (2, I(6))], &[(2, I(5)), (2, I(6))])],
+        examples: &[
+            Example::of(&[(1, B(false)), (2, I(5)), (2, I(6))], &[(2, I(5)), (2, I(6))]),
+            Example::of(&[(1, B(true)), (2, I(1)), (1, B(false)), (2, I(2))], &[(1, I(1)), (2, I(2))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -91,7 +110,10 @@ pub static ROWS: &[FunctionRow] = &[
             let chosen = if f.boolean(1)? { 2 } else { 3 };
             pass(f, chosen, 1)
         },
-        examples: &[Example::of(&[(2, S("YES")), (3, I(0)), (1, B(true)), (1, B(false))], &[(1, S("YES")), (1, I(0))])],
+        examples: &[
+            Example::of(&[(2, S("YES")), (3, I(0)), (1, B(true)), (1, B(false))], &[(1, S("YES")), (1, I(0))]),
+            Example::of(&[(3, I(3)), (1, B(true)), (1, B(false)), (2, I(2))], &[(1, I(2)), (1, I(3))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -118,7 +140,12 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<2>"],
         family: Family::Outputs,
         behaviour: route_by_integer,
-        examples: &[Example::of(&[(2, S("X")), (1, I(2)), (1, I(3))], &[(2, S("X"))]).sized(2).faults(&[6])],
+        examples: &[
+            Example::of(&[(2, S("X")), (1, I(2)), (1, I(3))], &[(2, S("X"))]).sized(2).faults(&[6]),
+            Example::of(&[(1, I(1)), (2, S("A")), (1, I(-1)), (1, I(2))], &[(1, S("A")), (2, S("A"))])
+                .sized(2)
+                .faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -129,7 +156,10 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<2>"],
         family: Family::Outputs,
         behaviour: route_by_integer,
-        examples: &[Example::of(&[(1, I(2)), (2, S("X")), (2, S("Y"))], &[(2, S("X")), (2, S("Y"))]).sized(2)],
+        examples: &[
+            Example::of(&[(1, I(2)), (2, S("X")), (2, S("Y"))], &[(2, S("X")), (2, S("Y"))]).sized(2),
+            Example::of(&[(1, I(3)), (2, S("A")), (1, I(1)), (2, S("B"))], &[(1, S("B"))]).sized(2).faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -146,12 +176,41 @@ pub static ROWS: &[FunctionRow] = &[
                 _ => Err(Problem::Range(selector)),
             }
         },
-        examples: &[Example::of(
-            &[(1, S("A")), (2, S("B")), (3, I(2)), (3, I(3)), (3, I(1))],
-            &[(1, S("B")), (1, S("A"))],
-        )
-        .sized(3)
-        .faults(&[6])],
+        examples: &[
+            Example::of(&[(1, S("A")), (2, S("B")), (3, I(2)), (3, I(3)), (3, I(1))], &[(1, S("B")), (1, S("A"))])
+                .sized(3)
+                .faults(&[6]),
+            Example::of(&[(1, I(7)), (2, I(0)), (2, I(1))], &[(1, I(7))]).sized(2).faults(&[6]),
+        ],
+        ..FunctionRow::PLAIN
+    },
+    FunctionRow {
+        name: "RANGE_SELECT",
+        summary: "the number to output 1 if it lies in a range, else to output 2",
+        source: Source::uncertain("inputs and outputs; the limits belong to the range"),
+        inputs: &[
+            PortSpec::active(KindSet::NUMBER, "number"),
+            PortSpec::constant(KindSet::NUMBER, "lower limit"),
+            PortSpec::constant(KindSet::NUMBER, "upper limit"),
+        ],
+        outputs: &["<1> if inside", "<1> if outside", "whether it is inside"],
+        behaviour: |f| {
+            let (number, low, high) = (f.number(1)?, f.number(2)?, f.number(3)?);
+            if low > high {
+                return Err(Problem::Range(3));
+            }
+            let inside = (low..=high).contains(&number);
+            pass(f, 1, if inside { 1 } else { 2 })?;
+            f.emit(3, Value::Boolean(inside))
+        },
+        examples: &[
+            Example::of(
+                &[(2, I(1)), (3, I(3)), (1, I(3)), (1, R(3.5))],
+                &[(1, I(3)), (3, B(true)), (2, R(3.5)), (3, B(false))],
+            ),
+            Example::of(&[(2, R(1.0)), (3, R(1.0)), (1, I(1)), (2, R(2.0)), (1, I(1))], &[(1, I(1)), (3, B(true))])
+                .faults(&[6]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {

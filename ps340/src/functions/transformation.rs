@@ -31,7 +31,14 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: DEGREES,
         outputs: &["3x3 rotation"],
         behaviour: |f| rotate(f, Axis::X),
-        examples: &[Example::of(&[(1, R(90.0))], &[(1, M3([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]))])],
+        examples: &[
+            Example::of(&[(1, R(90.0))], &[(1, M3([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]))]),
+            Example::of(
+                &[(1, V2([1.0, 0.0])), (1, I(360))],
+                &[(1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))],
+            )
+            .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -41,7 +48,14 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: DEGREES,
         outputs: &["3x3 rotation"],
         behaviour: |f| rotate(f, Axis::Y),
-        examples: &[Example::of(&[(1, I(-270))], &[(1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]))])],
+        examples: &[
+            Example::of(&[(1, I(-270))], &[(1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]))]),
+            Example::of(
+                &[(1, V2([1.0, 0.0])), (1, I(360))],
+                &[(1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))],
+            )
+            .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -51,7 +65,14 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: DEGREES,
         outputs: &["3x3 rotation"],
         behaviour: |f| rotate(f, Axis::Z),
-        examples: &[Example::of(&[(1, R(180.0))], &[(1, M3([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]))])],
+        examples: &[
+            Example::of(&[(1, R(180.0))], &[(1, M3([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]))]),
+            Example::of(
+                &[(1, V2([1.0, 0.0])), (1, I(360))],
+                &[(1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))],
+            )
+            .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -61,22 +82,28 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: DIAL_ROTATION,
         outputs: DIAL_OUTPUTS,
         behaviour: |f| rotate_by_dial(f, Axis::X),
-        examples: &[Example::of(
-            &[(2, R(0.0)), (3, R(200.0)), (1, R(0.1)), (1, R(-0.1))],
-            &[
-                (
-                    1,
-                    M3([
-                        [1.0, 0.0, 0.0],
-                        [0.0, 0.9396926207859084, 0.3420201433256687],
-                        [0.0, -0.3420201433256687, 0.9396926207859084],
-                    ]),
-                ),
-                (2, R(20.0)),
-                (1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])),
-                (2, R(0.0)),
-            ],
-        )],
+        examples: &[
+            Example::of(
+                &[(2, R(0.0)), (3, R(200.0)), (1, R(0.1)), (1, R(-0.1))],
+                &[
+                    (
+                        1,
+                        M3([
+                            [1.0, 0.0, 0.0],
+                            [0.0, 0.9396926207859084, 0.3420201433256687],
+                            [0.0, -0.3420201433256687, 0.9396926207859084],
+                        ]),
+                    ),
+                    (2, R(20.0)),
+                    (1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])),
+                    (2, R(0.0)),
+                ],
+            ),
+            Example::of(
+                &[(2, R(300.0)), (1, R(150.0))],
+                &[(1, M3([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])), (2, R(90.0))],
+            ),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -86,10 +113,21 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: DIAL_ROTATION,
         outputs: DIAL_OUTPUTS,
         behaviour: |f| rotate_by_dial(f, Axis::Y),
-        examples: &[Example::of(
-            &[(2, R(45.0)), (1, R(45.0))],
-            &[(1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])), (2, R(90.0))],
-        )],
+        examples: &[
+            Example::of(
+                &[(2, R(45.0)), (1, R(45.0))],
+                &[(1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])), (2, R(90.0))],
+            ),
+            Example::of(
+                &[(1, R(90.0)), (2, R(0.0)), (1, R(0.0))],
+                &[
+                    (1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])),
+                    (2, R(90.0)),
+                    (1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])),
+                    (2, R(0.0)),
+                ],
+            ),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -99,10 +137,17 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: DIAL_ROTATION,
         outputs: DIAL_OUTPUTS,
         behaviour: |f| rotate_by_dial(f, Axis::Z),
-        examples: &[Example::of(
-            &[(3, I(100)), (1, R(4.5))],
-            &[(1, M3([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])), (2, R(90.0))],
-        )],
+        examples: &[
+            Example::of(
+                &[(3, I(100)), (1, R(4.5))],
+                &[(1, M3([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])), (2, R(90.0))],
+            ),
+            Example::of(
+                &[(1, V3([0.0; 3])), (1, R(-90.0))],
+                &[(1, M3([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])), (2, R(-90.0))],
+            )
+            .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -167,7 +212,10 @@ pub static ROWS: &[FunctionRow] = &[
             let turned = rotation(Axis::Z, f.number(1)?);
             f.emit(1, Value::Matrix2(Box::new(DMat2::from_mat3(turned))))
         },
-        examples: &[Example::of(&[(1, R(90.0))], &[(1, M2([[0.0, 1.0], [-1.0, 0.0]]))])],
+        examples: &[
+            Example::of(&[(1, R(90.0))], &[(1, M2([[0.0, 1.0], [-1.0, 0.0]]))]),
+            Example::of(&[(1, R(-450.0))], &[(1, M2([[0.0, -1.0], [1.0, 0.0]]))]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -183,10 +231,13 @@ pub static ROWS: &[FunctionRow] = &[
             };
             f.emit(1, Value::Matrix2(Box::new(DMat2::from_diagonal(factors))))
         },
-        examples: &[Example::of(
-            &[(1, I(2)), (1, V2([1.0, 3.0]))],
-            &[(1, M2([[2.0, 0.0], [0.0, 2.0]])), (1, M2([[1.0, 0.0], [0.0, 3.0]]))],
-        )],
+        examples: &[
+            Example::of(
+                &[(1, I(2)), (1, V2([1.0, 3.0]))],
+                &[(1, M2([[2.0, 0.0], [0.0, 2.0]])), (1, M2([[1.0, 0.0], [0.0, 3.0]]))],
+            ),
+            Example::of(&[(1, V3([1.0; 3])), (1, R(0.0))], &[(1, M2([[0.0; 2]; 2]))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
 ];

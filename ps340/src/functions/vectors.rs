@@ -35,7 +35,14 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(HEAD, "first components"), PortSpec::constant(KindSet::NUMBER, "last component")],
         outputs: &["vector"],
         behaviour: append,
-        examples: &[Example::of(&[(2, R(0.0)), (1, V2([1.0, 2.0]))], &[(1, V3([1.0, 2.0, 0.0]))])],
+        examples: &[
+            Example::of(&[(2, R(0.0)), (1, V2([1.0, 2.0]))], &[(1, V3([1.0, 2.0, 0.0]))]),
+            Example::of(
+                &[(2, I(4)), (1, I(3)), (1, V3([1.0, 2.0, 3.0])), (1, V4([0.0; 4]))],
+                &[(1, V2([3.0, 4.0])), (1, V4([1.0, 2.0, 3.0, 4.0]))],
+            )
+            .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -45,7 +52,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::constant(HEAD, "first components"), PortSpec::active(KindSet::NUMBER, "last component")],
         outputs: &["vector"],
         behaviour: append,
-        examples: &[Example::of(&[(1, R(1.0)), (2, R(2.0)), (2, R(3.0))], &[(1, V2([1.0, 2.0])), (1, V2([1.0, 3.0]))])],
+        examples: &[
+            Example::of(&[(1, R(1.0)), (2, R(2.0)), (2, R(3.0))], &[(1, V2([1.0, 2.0])), (1, V2([1.0, 3.0]))]),
+            Example::of(&[(1, V2([1.0, 2.0])), (2, V2([0.0; 2])), (2, I(3))], &[(1, V3([1.0, 2.0, 3.0]))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -68,7 +78,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::NUMBER, "y")],
         outputs: &["3D vector"],
         behaviour: |f| along(f, DVec3::Y),
-        examples: &[Example::of(&[(1, I(-3))], &[(1, V3([0.0, -3.0, 0.0]))])],
+        examples: &[
+            Example::of(&[(1, I(-3))], &[(1, V3([0.0, -3.0, 0.0]))]),
+            Example::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([0.0, 2.0, 0.0]))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -78,7 +91,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::NUMBER, "z")],
         outputs: &["3D vector"],
         behaviour: |f| along(f, DVec3::Z),
-        examples: &[Example::of(&[(1, R(1.0))], &[(1, V3([0.0, 0.0, 1.0]))])],
+        examples: &[
+            Example::of(&[(1, R(1.0))], &[(1, V3([0.0, 0.0, 1.0]))]),
+            Example::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([0.0, 0.0, 2.0]))]).faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -91,7 +107,14 @@ pub static ROWS: &[FunctionRow] = &[
             let matrix = DMat2::from_cols(f.vector2(1)?, f.vector2(2)?);
             f.emit(1, Value::Matrix2(Box::new(matrix)))
         },
-        examples: &[Example::of(&[(1, V2([1.0, 2.0])), (2, V2([3.0, 4.0]))], &[(1, M2([[1.0, 2.0], [3.0, 4.0]]))])],
+        examples: &[
+            Example::of(&[(1, V2([1.0, 2.0])), (2, V2([3.0, 4.0]))], &[(1, M2([[1.0, 2.0], [3.0, 4.0]]))]),
+            Example::of(
+                &[(1, V2([1.0, 0.0])), (2, V3([0.0; 3])), (2, V2([0.0, 1.0]))],
+                &[(1, M2([[1.0, 0.0], [0.0, 1.0]]))],
+            )
+            .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -108,10 +131,16 @@ pub static ROWS: &[FunctionRow] = &[
             let matrix = DMat3::from_cols(f.point(1)?, f.point(2)?, f.point(3)?);
             f.emit(1, Value::Matrix3(Box::new(matrix)))
         },
-        examples: &[Example::of(
-            &[(3, V3([0.5, 1.0, 0.0])), (1, V3([-0.9, 0.9, 0.0])), (2, V3([-0.8, 0.8, 0.0]))],
-            &[(1, M3([[-0.9, 0.9, 0.0], [-0.8, 0.8, 0.0], [0.5, 1.0, 0.0]]))],
-        )],
+        examples: &[
+            Example::of(
+                &[(3, V3([0.5, 1.0, 0.0])), (1, V3([-0.9, 0.9, 0.0])), (2, V3([-0.8, 0.8, 0.0]))],
+                &[(1, M3([[-0.9, 0.9, 0.0], [-0.8, 0.8, 0.0], [0.5, 1.0, 0.0]]))],
+            ),
+            Example::of(
+                &[(1, V3([1.0; 3])), (1, V3([9.0; 3])), (2, V3([2.0; 3])), (3, V3([3.0; 3]))],
+                &[(1, M3([[1.0; 3], [2.0; 3], [3.0; 3]]))],
+            ),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -129,10 +158,17 @@ pub static ROWS: &[FunctionRow] = &[
             let matrix = DMat4::from_cols(vector4(f, 1)?, vector4(f, 2)?, vector4(f, 3)?, vector4(f, 4)?);
             f.emit(1, Value::Matrix4(Box::new(matrix)))
         },
-        examples: &[Example::of(
-            &[(1, V4([1.0; 4])), (2, V4([2.0; 4])), (3, V4([3.0; 4])), (4, V4([4.0; 4]))],
-            &[(1, crate::port::Literal::M4([[1.0; 4], [2.0; 4], [3.0; 4], [4.0; 4]]))],
-        )],
+        examples: &[
+            Example::of(
+                &[(1, V4([1.0; 4])), (2, V4([2.0; 4])), (3, V4([3.0; 4])), (4, V4([4.0; 4]))],
+                &[(1, crate::port::Literal::M4([[1.0; 4], [2.0; 4], [3.0; 4], [4.0; 4]]))],
+            ),
+            Example::of(
+                &[(1, V4([1.0; 4])), (2, V3([0.0; 3])), (2, V4([2.0; 4])), (3, V4([3.0; 4])), (4, V4([4.0; 4]))],
+                &[(1, crate::port::Literal::M4([[1.0; 4], [2.0; 4], [3.0; 4], [4.0; 4]]))],
+            )
+            .faults(&[5]),
+        ],
         ..FunctionRow::PLAIN
     },
     FunctionRow {

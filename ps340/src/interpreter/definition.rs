@@ -23,7 +23,7 @@ pub(super) enum Content {
     /// What one command says.
     Object(Object),
     /// What stood between BEGIN_FONT and END_FONT.
-    Font(Box<BTreeMap<u8, FontCharacter>>),
+    Font(BTreeMap<u8, FontCharacter>),
 }
 
 /// Where references are looked up.
@@ -114,7 +114,7 @@ pub(super) fn node(
     memory: &mut MassMemory,
 ) -> Result<Node, Message> {
     let object = match content {
-        Content::Font(font) => return Ok(Node::Font(font)),
+        Content::Font(font) => return Ok(Node::Font(Box::new(font))),
         Content::Object(object) => object,
     };
     let range = |text: String| Message::Range { name: name.cloned(), text };

@@ -26,6 +26,8 @@ pub(super) struct Draft {
     open: Vec<Name>,
     /// The full names of everything named inside.
     names: HashSet<Name>,
+    /// Structures that were refused because they are too deep, and whose END_STRUCTURE is still to come.
+    refused: usize,
     bytes: usize,
 }
 
@@ -40,7 +42,7 @@ impl Draft {
     /// BEGIN_STRUCTURE outside of others.
     pub(super) fn new(name: Name) -> Draft {
         let begin = Step::Begin { path: name.clone(), named: true };
-        Draft { steps: vec![begin], open: vec![name], names: HashSet::new(), bytes: 0 }
+        Draft { steps: vec![begin], open: vec![name], names: HashSet::new(), refused: 0, bytes: 0 }
     }
 
     /// The names of the structures that are open, the outermost first.
@@ -59,15 +61,16 @@ impl Draft {
     }
 
     /// The full name of something named inside.
-    fn inner_name(&mut self, name: Option<Name>) -> Result<Option<Name>, Message> {
+    fn inner_name(&self, name: Option<Name>) -> Result<Option<Name>, Message> {
         let (Some(name), Some(outer)) = (name, self.open.last()) else { return Ok(None) };
         let full = outer.join(&name).map_err(|e| Message::Structure(e.to_string()))?;
         Ok(Some(full))
     }
 
-    /// BEGIN_STRUCTURE inside.
+    /// BEGIN_STRUCTURE inside. One that is too deep is left out, its members come to the structure around it.
     pub(super) fn begin(&mut self, name: Option<Name>) -> Result<(), Message> {
         if self.open.len() >= MAX_NESTING {
+            self.refused += 1;
             return Err(Message::Structure(format!("structures nest at most {MAX_NESTING} deep")));
         }
         let full = self.inner_name(name)?;
@@ -92,6 +95,10 @@ impl Draft {
 
     /// END_STRUCTURE. Returns whether the outermost structure is complete.
     pub(super) fn end(&mut self) -> bool {
+        if self.refused > 0 {
+            self.refused -= 1;
+            return false;
+        }
         self.open.pop();
         self.add(Step::End, 0);
         self.open.is_empty()

@@ -13,6 +13,7 @@ use protocol::{
     Name,
     command::{NamePattern, Operate},
 };
+use std::collections::HashSet;
 
 pub(super) fn display(name: &Name, memory: &mut MassMemory) -> Result<(), Message> {
     let id = memory.object(name)?;
@@ -49,20 +50,26 @@ fn user_object(name: &Name, memory: &MassMemory) -> Result<Option<ObjectId>, Mes
     }
 }
 
-/// Deletes what it can, and says what it cannot.
+/// Deletes what it can, and says what it cannot. Arcs to functions that are deleted go.
 pub(super) fn delete(patterns: &[NamePattern], memory: &mut MassMemory, messages: &mut Vec<Message>) {
+    let mut gone = Vec::new();
     for pattern in patterns {
         match pattern {
+            // An initial structure is then as it was at the start.
+            NamePattern::Name(name) if memory.objects.find(name.as_str()).is_some_and(|id| memory.restore(id)) => {}
             NamePattern::Name(name) => match user_object(name, memory) {
-                Ok(Some(id)) if memory.is_defined(id) => memory.undefine_all(vec![id]),
+                Ok(Some(id)) if memory.is_defined(id) => gone.push(id),
                 Ok(_) => messages.push(Refusal::NotFound(name.clone()).into()),
                 Err(message) => messages.push(message),
             },
-            NamePattern::Prefix(prefix) => {
-                let found = memory.objects.user_objects(prefix);
-                memory.undefine_all(found);
-            }
+            NamePattern::Prefix(prefix) => gone.extend(memory.objects.user_objects(prefix)),
         }
+    }
+    let functions: HashSet<ObjectId> =
+        gone.iter().copied().filter(|id| memory.network.function(*id).is_some()).collect();
+    memory.undefine_all(gone);
+    if !functions.is_empty() {
+        memory.network.retain_arcs(|_, _, to| !functions.contains(&to.object));
     }
 }
 

@@ -133,12 +133,13 @@ pub(super) fn send_marks(
 
 /// SETUP CNESS.
 pub(super) fn setup_cness(
-    _constant: bool,
+    constant: bool,
     destination: &command::Destination,
     memory: &mut MassMemory,
 ) -> Result<(), Message> {
-    receiver(&destination.name, memory)?;
-    Err(Message::Structure("SETUP CNESS is not there yet".into()))
+    let to = receiver(&destination.name, memory)?;
+    let done = memory.network.setup_cness(to, destination.input, constant);
+    done.map_err(|fault| Message::Function { name: destination.name.to_string(), fault })
 }
 
 /// VARIABLE: makes variables without a value, at once and with full names, also while a structure is open.

@@ -1,6 +1,6 @@
 //! The numbered messages of the machine.
 
-use crate::{memory::Refusal, port::Fault, structure::NodeFault, traversal::Trouble};
+use crate::{disk::DiskFault, memory::Refusal, port::Fault, structure::NodeFault, traversal::Trouble};
 use protocol::{Name, command::CommandError, record::BinaryError};
 
 /// Which of the three instances ERROR, WARNING and INFORMATION passes a message on.
@@ -61,6 +61,8 @@ pub enum Message {
     Diagnostic(String),
     /// W 30 to 33, E 550 to 558: a raster operation.
     Raster(crate::raster::RasterFault),
+    /// E 2, E 8: a file of the disk.
+    Disk(DiskFault),
 }
 
 impl Message {
@@ -90,6 +92,7 @@ impl Message {
             Message::Line(_) => 12,
             Message::Diagnostic(_) => 13,
             Message::Raster(fault) => fault.number(),
+            Message::Disk(fault) => fault.number(),
         }
     }
 }
@@ -120,6 +123,7 @@ impl std::fmt::Display for Message {
             Message::Line(text) => f.write_str(text),
             Message::Diagnostic(text) => write!(f, "Host says: {text}"),
             Message::Raster(fault) => write!(f, "{fault}"),
+            Message::Disk(fault) => write!(f, "{fault}"),
         }
     }
 }

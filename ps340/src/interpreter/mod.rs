@@ -212,7 +212,7 @@ impl Interpreter {
 
     fn end_font(&mut self, memory: &mut MassMemory, messages: &mut Vec<Message>) -> Result<(), Message> {
         let font = self.font.take().ok_or_else(|| Message::Structure("END_FONT without BEGIN_FONT".into()))?;
-        self.add(font.name, Content::Font(Box::new(font.characters)), memory, messages)
+        self.add(font.name, Content::Font(font.characters), memory, messages)
     }
 
     /// BEGIN: the picture stands still until the END of it. What is commanded and sent in between acts in order.
@@ -254,11 +254,12 @@ impl Interpreter {
                 self.abandon(memory);
                 memory.initialize();
             }
-            Initialize::Connections => memory.network.retain_arcs(|_, _, _| false),
+            Initialize::Connections => memory.restore_arcs(),
             Initialize::Displays => memory.structures.clear_displayed(),
             Initialize::Names => {
                 let users = memory.objects.user_objects("");
                 memory.undefine_all(users);
+                memory.restore_structures();
             }
         }
     }

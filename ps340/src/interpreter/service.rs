@@ -29,6 +29,7 @@ impl Interpreter {
             format!("OPTIMIZE STRUCTURE {}", on(self.optimizing)),
             format!("configure mode {}", on(self.privileged)),
             format!("{users} objects of users, {} of the system", memory.objects.system_len()),
+            format!("{} units", memory.objects.units()),
             format!("{} of {MASS_MEMORY} bytes in use", memory.bytes()),
             format!("{} bytes of working storage", memory.system.working_storage),
         ];

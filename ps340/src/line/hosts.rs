@@ -50,13 +50,14 @@ impl Writer {
     }
 }
 
-/// The way to a host that throws away what it is told; needs a tokio runtime.
-pub(super) fn silent_writer() -> Writer {
+/// The way to a host that is not there: what it is told is captured, and that is all. Needs a tokio runtime.
+pub(super) fn silent_writer(line: LineId, around: Surroundings) -> Writer {
     let (writer, mut queued) = Writer::new();
     let waiting = writer.waiting.clone();
     tokio::spawn(async move {
         while let Some(bytes) = queued.recv().await {
             waiting.fetch_sub(bytes.len(), Ordering::Relaxed);
+            around.tap(line, || Event::ToHost(bytes));
         }
     });
     writer

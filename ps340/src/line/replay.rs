@@ -23,6 +23,10 @@ use tokio::{
 
 /// Bytes read from a file at a time.
 const READ_BYTES: usize = 64 << 10;
+/// Latest time in a capture that is waited for: a year. Ours.
+const MAX_MICROS: u64 = 365 * 24 * 3600 * 1_000_000;
+/// How the names of hosts on the parallel interface begin, so that a capture tells them from others.
+pub(super) const PARALLEL: &str = "parallel:";
 /// Pieces that are read ahead.
 const READ_AHEAD: usize = 4;
 
@@ -132,7 +136,7 @@ async fn play(
                 }
             };
             if timed {
-                sleep_until(begin + Duration::from_micros(record.micros)).await;
+                sleep_until(begin + Duration::from_micros(record.micros.min(MAX_MICROS))).await;
             }
             let sent = match record.event {
                 Event::ToHost(_) => continue,
@@ -147,9 +151,10 @@ async fn play(
                         None => {
                             let line = LineId::next();
                             lines.insert(record.line, line);
-                            let peer = format!("{peer} line {}", record.line);
-                            let writer = silent_writer();
-                            if !around.attach(line, peer, Interface::Stream, writer).await {
+                            let (kind, interface) = interface(&record.event);
+                            let peer = format!("{kind}{peer} line {}", record.line);
+                            let writer = silent_writer(line, around.clone());
+                            if !around.attach(line, peer, interface, writer).await {
                                 return;
                             }
                             line
@@ -172,5 +177,13 @@ async fn play(
     }
     for line in lines.into_values() {
         around.close(line, None).await;
+    }
+}
+
+/// What a captured line spoke, and how the names of such hosts begin.
+fn interface(opened: &Event) -> (&'static str, Interface) {
+    match opened {
+        Event::Open(peer) if peer.starts_with(PARALLEL) => (PARALLEL, Interface::Parallel),
+        _ => ("", Interface::Stream),
     }
 }

@@ -4,7 +4,7 @@ use super::{
     Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, Surroundings,
     hosts::{Host, MAX_HOSTS, serve},
     open_serial,
-    replay::{feed, pieces, replay},
+    replay::{PARALLEL, feed, pieces, replay},
     terminal::Terminal,
 };
 use protocol::address::{Conditions, Place, Serial};
@@ -112,6 +112,10 @@ async fn serve_sockets(listener: Listener, interface: Interface, conditions: Con
             Ok((stream, peer)) => match places.clone().try_acquire_owned() {
                 Ok(place) => {
                     let around = around.clone();
+                    let peer = match interface {
+                        Interface::Stream => peer,
+                        Interface::Parallel => format!("{PARALLEL}{peer}"),
+                    };
                     tokio::spawn(async move {
                         serve(stream, Host { peer, interface, conditions, half_closes: true }, around).await;
                         drop(place);

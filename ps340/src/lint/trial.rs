@@ -8,7 +8,7 @@ use crate::{
     functions::FunctionRow,
     memory::MassMemory,
     network::Network,
-    port::{Cause, Effect, Fault, KindSet, Literal, ObjectId, Role},
+    port::{Cause, Effect, Fault, KindSet, Literal, ObjectId, PickLiteral, Role},
     structure::{Node, NodeFault, Operation},
 };
 use protocol::{Kind, Name, Value, command::Input};
@@ -21,6 +21,15 @@ const FIRINGS: u64 = 1000;
 const TICKS: u64 = 6;
 const TICK_FRAMES: u64 = 30;
 const TICK_CENTISECONDS: u64 = 50;
+/// A pick list with everything in it.
+const PICKED: PickLiteral = PickLiteral {
+    index: 1,
+    identifiers: &["A", "B"],
+    node: "C",
+    type_code: 1,
+    point: Some(([0.5, 0.25, 0.0], 3)),
+    parameter: None,
+};
 /// The function that is tried, and the first object of those that its outputs are connected to.
 const FUNCTION: ObjectId = ObjectId(0);
 const BEYOND: u32 = 1;
@@ -123,9 +132,9 @@ fn one_of_each_kind(samples: &[Value]) -> Vec<Value> {
     Kind::ALL.into_iter().filter_map(first).collect()
 }
 
-/// Messages of a kind, the most usual first; none if nothing is known of it.
+/// Messages of a kind, the most usual first.
 pub(super) fn samples(kind: Kind) -> Vec<Value> {
-    use Literal::{B, I, M2, M3, M4, M43, R, S, T, V2, V3, V4};
+    use Literal::{B, I, Label, M2, M3, M4, M43, Pick, R, S, T, V2, V3, V4, Vectors};
     let square: [[f64; 4]; 4] =
         [[1.0, 0.0, 0.0, 0.0], [0.0, 2.0, 0.0, 0.0], [0.0, 0.0, 3.0, 0.0], [1.0, 2.0, 3.0, 1.0]];
     let literals: &[Literal] = match kind {
@@ -141,8 +150,9 @@ pub(super) fn samples(kind: Kind) -> Vec<Value> {
         Kind::Matrix4x3 => &[M43([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0], [1.0, 2.0, 3.0]])],
         Kind::Matrix4 => &[M4(square)],
         Kind::Transform => &[T(square)],
-        #[allow(unreachable_patterns)]
-        _ => &[],
+        Kind::Pick => &[Pick(PICKED), Pick(PickLiteral { type_code: 2, parameter: Some(0.5), ..PICKED })],
+        Kind::Label => &[Label([1.0, 2.0, 3.0], "A", true)],
+        Kind::Vectors => &[Vectors(&[(false, [1.0, 2.0, 3.0]), (true, [2.0, 2.0, 3.0])])],
     };
     literals.iter().map(Literal::value).collect()
 }
@@ -159,11 +169,7 @@ pub(super) fn accepted(node: &Node, input: Input) -> Option<KindSet> {
     let mut kinds = KindSet::NONE;
     let mut exists = false;
     for kind in Kind::ALL {
-        let values = samples(kind);
-        if values.is_empty() {
-            return None;
-        }
-        for value in values {
+        for value in samples(kind) {
             let mut memory = MassMemory::default();
             let id = memory.define_node(&name, node.clone()).ok()?;
             match memory.accept(id, input, value) {

@@ -5,7 +5,7 @@ use crate::{
     port::ObjectId,
     structure::{Member, Node, Operation},
 };
-use protocol::command::CharacterOrientation;
+use protocol::{Value, command::CharacterOrientation};
 use std::fmt::Write;
 
 /// Members, names and labels that are shown of each object.
@@ -77,12 +77,18 @@ fn of_node(memory: &MassMemory, node: &Node) -> String {
         Node::Pattern(pattern) => {
             let lengths = pattern.segments.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
             let around = if pattern.around_corners { " AROUND_CORNERS" } else { "" };
-            let matched = if pattern.matched { " MATCH" } else { "" };
+            let matched = if pattern.matched { " MATCH" } else { " NOMATCH" };
             format!("PATTERN {lengths}{around}{matched} LENGTH {}", pattern.length)
         }
         Node::RawBlock(bytes) => format!("RAWBLOCK {}", bytes.len()),
         Node::Variable(None) => "VARIABLE without a value".into(),
-        Node::Variable(Some(value)) => format!("VARIABLE, {}: {value:?}", value.kind()),
+        Node::Variable(Some(value)) => match value {
+            Value::Boolean(b) => format!("VARIABLE, {}", if *b { "TRUE" } else { "FALSE" }),
+            Value::Integer(i) => format!("VARIABLE, FIX({i})"),
+            Value::Real(r) => format!("VARIABLE, {r}"),
+            Value::String(text) => format!("VARIABLE, '{}'", String::from_utf8_lossy(text)),
+            value => format!("VARIABLE, a {}", value.kind()),
+        },
     }
 }
 

@@ -1,11 +1,13 @@
-//! Dials, keys, buttons, tablet and keyboard: what their initial instances send.
+//! What a person does at the devices, and what their initial instances send for it.
 //!
-//! # Source
-//! Outputs of TABLETIN: a press sends `<6>` exactly once and `<3>` with the new code, a release `<3>` = 0 and
-//! `<2>` = FALSE, as clients of the time rely on; `<1>` and `<4>` are the position while in range (remembered) and while
-//! pressed (uncertain).
+//! Dials speak at samples, everything else at once. Keyboard and screen have rooms of their own (`keyboard`, `tube`).
 
-use glam::DVec2;
+use super::{
+    dials::Dials,
+    keyboard::{Key, KeyboardMode},
+    tablet::{Tablet, TabletEvent},
+};
+use crate::port::{DialSetting, TabletCommand};
 use protocol::Value;
 
 /// Something that a person does.
@@ -24,113 +26,61 @@ pub enum Event {
     Button(u8),
     /// Uses the tablet.
     Tablet(TabletEvent),
-    /// Types characters in interactive mode.
+    /// Types characters.
     Type(Vec<u8>),
-}
-
-/// What the puck does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TabletEvent {
-    /// Is put or moved to a place, -1..=1.
-    Move([f64; 2]),
-    /// Buttons with this sum of codes (1, 2, 4, 8) are down.
-    Press(u8),
-    /// All buttons are up.
-    Release,
-    /// Is taken off the tablet.
-    Away,
+    /// Presses a key of the keyboard that has a name.
+    Press(Key),
+    /// Gives the keyboard another mode, as the keys HOST, LOCAL and COMMAND do.
+    Mode(KeyboardMode),
 }
 
 /// Instance, output and value of a message from a device.
 pub(super) type Emission = (&'static str, u16, Value);
 
-/// The state of the devices.
+/// The state of dials and tablet.
 #[derive(Debug, Default)]
 pub(super) struct Devices {
-    /// Turns of each dial since the last frame.
-    dials: [f64; 8],
-    in_range: bool,
-    position: [f64; 2],
-    buttons: u8,
+    dials: Dials,
+    tablet: Tablet,
 }
 
 impl Devices {
-    /// Whether nothing waits for the next frame.
+    /// Whether nothing waits for a frame.
     pub(super) fn is_quiet(&self) -> bool {
-        self.dials.iter().all(|t| *t == 0.0)
+        self.dials.is_quiet()
     }
 
     /// What an event makes the instances send at once.
-    pub(super) fn event(&mut self, event: Event) -> Vec<Emission> {
+    pub(super) fn event(&mut self, event: &Event) -> Vec<Emission> {
         match event {
             Event::Dial { dial, turns } => {
-                if let Some(sum) = self.dials.get_mut(usize::from(dial).wrapping_sub(1))
-                    && turns.is_finite()
-                {
-                    *sum += turns;
-                }
+                self.dials.turn(*dial, *turns);
                 Vec::new()
             }
-            Event::Key(key) => vec![("FKEYS", 1, Value::Integer(key.into()))],
-            Event::Button(button) => vec![("BUTTONSIN", 1, Value::Integer(button.into()))],
-            Event::Tablet(event) => self.tablet(event),
-            Event::Type(text) => {
-                let places = [("KEYBOARD", 1), ("KBHANDLER", 4)];
-                let typed = text.iter().flat_map(|c| places.map(|(to, output)| (to, output, Value::string([*c]))));
-                typed.collect()
-            }
+            Event::Key(key) => vec![("FKEYS", 1, Value::Integer((*key).into()))],
+            Event::Button(button) => vec![("BUTTONSIN", 1, Value::Integer((*button).into()))],
+            Event::Tablet(event) => self.tablet.event(*event),
+            Event::Type(_) | Event::Press(_) | Event::Mode(_) => Vec::new(),
         }
     }
 
-    /// What the dials send at a frame: one message a dial at most, with the sum of its turns. Ours.
-    pub(super) fn frame(&mut self) -> Vec<Emission> {
-        let turned = std::mem::take(&mut self.dials);
-        let moved = (1..).zip(turned).filter(|(_, turns)| *turns != 0.0);
-        moved.map(|(output, turns)| ("DIALS", output, Value::Real(turns))).collect()
+    /// What the dials send at a frame.
+    pub(super) fn frame(&mut self, frame: u64) -> Vec<Emission> {
+        self.dials.sample(frame)
     }
 
-    fn tablet(&mut self, event: TabletEvent) -> Vec<Emission> {
-        const TABLET: &str = "TABLETIN";
-        let mut out = Vec::new();
-        let here = |at: [f64; 2]| Value::Vector2(DVec2::from_array(at));
-        match event {
-            TabletEvent::Move(at) => {
-                self.position = at;
-                if !std::mem::replace(&mut self.in_range, true) {
-                    out.push((TABLET, 5, Value::Boolean(true)));
-                }
-                out.push((TABLET, 1, here(at)));
-                if self.buttons != 0 {
-                    out.push((TABLET, 4, here(at)));
-                }
-            }
-            TabletEvent::Press(code) => {
-                let before = std::mem::replace(&mut self.buttons, code);
-                if before == code {
-                    return out;
-                }
-                if before == 0 {
-                    out.push((TABLET, 2, Value::Boolean(true)));
-                }
-                out.push((TABLET, 3, Value::Integer(code.into())));
-                if before == 0 {
-                    out.push((TABLET, 4, here(self.position)));
-                    out.push((TABLET, 6, here(self.position)));
-                }
-            }
-            TabletEvent::Release => {
-                if std::mem::take(&mut self.buttons) != 0 {
-                    out.push((TABLET, 3, Value::Integer(0)));
-                    out.push((TABLET, 2, Value::Boolean(false)));
-                }
-            }
-            TabletEvent::Away => {
-                out.extend(self.tablet(TabletEvent::Release));
-                if std::mem::take(&mut self.in_range) {
-                    out.push((TABLET, 5, Value::Boolean(false)));
-                }
-            }
-        }
-        out
+    /// How a dial is sampled from now on.
+    pub(super) fn set_dial(&mut self, dial: u8, setting: DialSetting) {
+        self.dials.set(dial, setting);
+    }
+
+    /// A command to the tablet, and what it answers.
+    pub(super) fn command_tablet(&mut self, command: TabletCommand) -> Vec<Emission> {
+        self.tablet.command(command)
+    }
+
+    /// Where stylus or puck is, -1..=1, while it is in range.
+    pub(super) fn pointer(&self) -> Option<[f64; 2]> {
+        self.tablet.pointer()
     }
 }

@@ -81,7 +81,7 @@ impl Decoders {
         match frame {
             Frame::Text(text) => match self.plain_text {
                 PlainText::Commands => self.commands(text, machine),
-                PlainText::Terminal => machine.panel.type_text(text),
+                PlainText::Terminal => machine.show_text(Some(self.line), text),
             },
             Frame::Packet { route, payload, .. } => self.packet(route, payload, machine),
             Frame::Empty(_) => {}
@@ -96,12 +96,12 @@ impl Decoders {
         match route {
             Route::Text => self.commands(payload, machine),
             Route::Binary => self.binary(payload, machine),
-            Route::Raster => raster_records(payload, machine),
+            Route::Raster => drop(raster_records(payload, machine)),
             Route::SixBitBinary | Route::SixBitRaster => {
                 let mut records = Vec::new();
                 match read_six_bit(payload, &mut records) {
                     Ok(()) if route == Route::SixBitBinary => self.binary(&records, machine),
-                    Ok(()) => raster_records(&records, machine),
+                    Ok(()) => drop(raster_records(&records, machine)),
                     Err(error) => machine.report(Message::Line(format!("a 6-bit packet is dropped: {error}"))),
                 }
             }
@@ -115,14 +115,15 @@ impl Decoders {
                 machine.carry_effects();
                 machine.settle();
             }
-            Route::Terminal => machine.panel.type_text(payload),
+            Route::Terminal => machine.show_text(Some(self.line), payload),
             Route::Diagnostic => {
                 let text: String = payload.escape_ascii().map(char::from).take(DIAGNOSTIC_CHARACTERS).collect();
                 machine.report(Message::Diagnostic(text));
             }
             Route::Message => {
+                // A line without a writer has only one form.
                 let writer = machine.writers.get_mut(&self.line);
-                if !writer.is_some_and(|w| w.request(payload)) {
+                if writer.is_some_and(|w| !w.request(payload)) {
                     machine.report(Message::Line("a packet on the route of messages asks for no form".into()));
                 }
             }
@@ -135,9 +136,9 @@ impl Decoders {
 
     fn commands(&mut self, text: &[u8], machine: &mut Machine) {
         self.text.push(text);
-        while let Some(read) = self.text.next() {
+        for read in self.text.by_ref() {
             match read {
-                Ok(spanned) => self.execute(spanned.command, machine),
+                Ok(spanned) => machine.execute(&mut self.interpreter, spanned.command),
                 Err(error) => machine.report(Message::Syntax(error)),
             }
         }
@@ -148,32 +149,26 @@ impl Decoders {
         let commands: Vec<_> = self.binary.push(payload).collect();
         for read in commands {
             match read {
-                Ok(command) => self.execute(command, machine),
+                Ok(command) => machine.execute(&mut self.interpreter, command),
                 Err(error) => machine.report(Message::Binary(error)),
             }
         }
     }
-
-    fn execute(&mut self, command: protocol::command::Command, machine: &mut Machine) {
-        machine.counters.commands += 1;
-        self.interpreter.execute(command, &mut machine.memory, &mut machine.messages);
-        machine.network_idle = false;
-        machine.carry_effects();
-        // What a command sends into the network is carried out before the next one, as long as the share of this
-        // step lasts; after that the queues fill, and what is too much for them is counted and reported.
-        machine.settle();
-    }
 }
 
-fn raster_records(payload: &[u8], machine: &mut Machine) {
+/// Carries out raster records; returns how many.
+pub(super) fn raster_records(payload: &[u8], machine: &mut Machine) -> usize {
+    let mut completed = 0;
     for read in raster::decode(payload) {
         match read {
             Ok(command) => {
                 if let Err(fault) = machine.frame_buffer.apply(&command) {
                     machine.report(Message::Raster(fault));
                 }
+                completed += 1;
             }
             Err(error) => machine.report(Message::Line(error.to_string())),
         }
     }
+    completed
 }

@@ -1,42 +1,62 @@
 //! The whole machine: owns the parts, wires them, and moves in steps. No thread, window or wall clock here.
 
+mod carry;
 mod counters;
 mod describe;
 mod devices;
+mod dials;
 mod host_line;
+mod initial;
+mod keyboard;
+mod parallel;
 mod panel;
+mod requests;
+mod streams;
+mod tablet;
+mod tube;
+mod watch;
 
 pub use counters::Counters;
-pub use devices::{Event, TabletEvent};
+pub use devices::Event;
 pub use host_line::PlainText;
+pub use keyboard::{Key, KeyboardMode};
 pub use panel::Panel;
+pub use tablet::TabletEvent;
 
 use crate::{
     calligraphic::Beam,
+    disk::Disk,
     functions::devices::initial,
     interpreter::{Class, Message},
     line::LineId,
-    memory::{MassMemory, Refusal},
+    memory::MassMemory,
     network::Network,
     picture::Picture,
     port::{Effect, ObjectId},
     raster::FrameBuffer,
-    traversal::{self, Requests, Stroke, Trouble, Update},
+    terminal::Terminal,
+    traversal::Update,
 };
 use devices::Devices;
 use host_line::HostLine;
+use keyboard::Keyboard;
+use parallel::{Mailbox, ParallelLine};
 use protocol::{
-    Name, Value,
+    Value,
     wire::{MessageForm, MessageWriter},
 };
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use requests::Waiting;
+use std::collections::{BTreeMap, VecDeque};
+use streams::Streams;
+use tube::Tube;
+use watch::Watch;
 
 /// Frames a second: the nominal refresh rate, as remembered from the manuals.
 pub const FRAMES_PER_SECOND: u64 = 60;
 /// Messages that functions deliver in one step of the machine: a frame, or some input (at least one a firing). What is
 /// left waits for the next step, so that a network that never rests stops neither the display nor the lines. Ours.
 pub const WORK_PER_STEP: u64 = 200_000;
-/// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames; the rest are logged and
+/// Messages of the machine that reach ERROR, WARNING, INFORMATION and the terminal between two frames; the rest are logged and
 /// counted only, so that a message that causes messages ends.
 pub const REPORTS_PER_FRAME: u64 = 1000;
 /// Messages of the machine between two frames that are written to the log of the process one by one.
@@ -54,6 +74,8 @@ pub type Micros = u64;
 pub enum Input {
     /// A host line opens.
     Attach(LineId),
+    /// A host line opens that speaks the words of the parallel interface.
+    AttachParallel(LineId),
     /// Bytes from a host.
     Bytes(LineId, Vec<u8>),
     /// A host line closes.
@@ -76,6 +98,8 @@ pub struct Output {
 pub struct Settings {
     /// Who gets text that arrives outside packets.
     pub plain_text: PlainText,
+    /// The mode of the keyboard at the start.
+    pub keyboard: KeyboardMode,
 }
 
 /// The PS 340.
@@ -84,9 +108,16 @@ pub struct Machine {
     settings: Settings,
     memory: MassMemory,
     lines: BTreeMap<LineId, HostLine>,
+    parallels: BTreeMap<LineId, ParallelLine>,
+    /// Messages for the hosts of `parallels`.
+    mailboxes: BTreeMap<LineId, Mailbox>,
     /// How messages go to each host.
     writers: BTreeMap<LineId, MessageWriter>,
     devices: Devices,
+    keyboard: Keyboard,
+    terminal: Terminal,
+    tube: Tube,
+    watch: Watch,
     panel: Panel,
     frame_buffer: FrameBuffer,
     frame: u64,
@@ -97,8 +128,10 @@ pub struct Machine {
     update: Update,
     /// Version of the structure that `update` shows; none before the first.
     updated: Option<u64>,
-    /// XFORMDATA functions that wait for the next update, with the names of their nodes.
-    transforms: Vec<(ObjectId, Name)>,
+    /// What functions want of the next update.
+    waiting: Waiting,
+    streams: Streams,
+    disk: Disk,
     messages: Vec<Message>,
     log: VecDeque<String>,
     to_host: VecDeque<Vec<u8>>,
@@ -109,12 +142,18 @@ pub struct Machine {
 impl Machine {
     /// A machine as after its start: the initial function instances exist, nothing is displayed.
     pub fn new(settings: Settings) -> Machine {
-        Machine {
+        let mut machine = Machine {
             settings,
             memory: initial_memory(),
             lines: BTreeMap::new(),
+            parallels: BTreeMap::new(),
+            mailboxes: BTreeMap::new(),
             writers: BTreeMap::new(),
             devices: Devices::default(),
+            keyboard: Keyboard::default(),
+            terminal: Terminal::default(),
+            tube: Tube::default(),
+            watch: Watch::default(),
             panel: Panel::default(),
             frame_buffer: FrameBuffer::default(),
             frame: 0,
@@ -123,13 +162,17 @@ impl Machine {
             network_idle: true,
             update: Update::default(),
             updated: None,
-            transforms: Vec::new(),
+            waiting: Waiting::default(),
+            streams: Streams::default(),
+            disk: Disk::default(),
             messages: Vec::new(),
             log: VecDeque::new(),
             to_host: VecDeque::new(),
             outputs: Vec::new(),
             counters: Counters::default(),
-        }
+        };
+        machine.switch_keyboard(settings.keyboard);
+        machine
     }
 
     /// Takes the inputs, in order, at the time of the machine; then lets time run to `until` (a time in the
@@ -142,6 +185,12 @@ impl Machine {
                     self.lines.insert(line, HostLine::new(line, self.settings.plain_text));
                     self.writers.insert(line, MessageWriter::default());
                 }
+                Input::AttachParallel(line) => {
+                    let mut bytes = Vec::new();
+                    let parallel = ParallelLine::new(line, self.settings.plain_text, &mut bytes);
+                    self.parallels.insert(line, parallel);
+                    self.outputs.push(Output { line, bytes });
+                }
                 Input::Bytes(line, bytes) => self.receive(line, &bytes),
                 Input::Detach(line) => self.detach(line),
                 Input::Event(event) => self.event(event),
@@ -151,14 +200,23 @@ impl Machine {
         while time_of_frame(self.frame + 1) <= until {
             self.next_frame();
         }
+        self.with_parallels(|parallel, machine, out| parallel.serve_mail(machine, out));
         std::mem::take(&mut self.outputs)
     }
 
     /// Something that a person does. Dials speak at the next frame, everything else at once.
     pub fn event(&mut self, event: Event) {
         self.work_left = WORK_PER_STEP;
-        let emissions = self.devices.event(event);
-        self.emit(emissions);
+        self.activity();
+        match event {
+            Event::Type(text) => self.type_characters(&text),
+            Event::Press(key) => self.press(key),
+            Event::Mode(mode) => self.switch_keyboard(mode),
+            event => {
+                let emissions = self.devices.event(&event);
+                self.emit(emissions);
+            }
+        }
         self.settle();
     }
 
@@ -167,13 +225,16 @@ impl Machine {
         self.frame += 1;
         self.work_left = WORK_PER_STEP;
         self.account_for_reports();
-        let emissions = self.devices.frame();
+        let emissions = self.devices.frame(self.frame);
         self.emit(emissions);
+        self.watch();
         self.memory.structures.set_frame(self.frame);
         self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
         self.settle();
+        self.with_parallels(|parallel, machine, out| parallel.frame(machine, out));
         self.update_picture();
         self.settle();
+        self.update_overlay();
     }
 
     /// The number of frames that have passed.
@@ -183,23 +244,23 @@ impl Machine {
 
     /// Whether nothing is left to do until something comes in, or a clock ticks.
     pub fn is_idle(&self) -> bool {
-        self.network_rests() && self.devices.is_quiet() && self.updated == Some(self.memory.structures.version())
+        self.network_rests()
+            && self.devices.is_quiet()
+            && self.updated == Some(self.memory.structures.version())
+            && self.overlay_is_current()
     }
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.transforms.is_empty()
+        self.network_idle && self.waiting.is_empty() && self.streams.are_quiet()
     }
 
     /// What the vector screen shows now.
     pub fn vector_picture(&mut self, beam: &Beam) -> Picture {
         self.update_picture();
         self.settle();
-        if self.update.scopes.is_empty() {
-            return beam.picture(&self.update.strokes);
-        }
-        let strokes: Vec<Stroke> = self.update.on_screen(0).copied().collect();
-        beam.picture(&strokes)
+        self.update_overlay();
+        beam.picture(&self.visible_strokes())
     }
 
     /// What the raster screen shows now.
@@ -212,9 +273,24 @@ impl Machine {
         &self.update
     }
 
+    /// The terminal emulator: its text, cursor and modes.
+    pub fn terminal(&self) -> &Terminal {
+        &self.terminal
+    }
+
     /// Labels, lights and texts around the screens.
     pub fn panel(&self) -> &Panel {
         &self.panel
+    }
+
+    /// The files that functions read and write.
+    pub fn disk(&self) -> &Disk {
+        &self.disk
+    }
+
+    /// The same, to put files there before the machine starts.
+    pub fn disk_mut(&mut self) -> &mut Disk {
+        &mut self.disk
     }
 
     /// The latest messages of the machine, oldest first.
@@ -280,15 +356,46 @@ impl Machine {
     }
 
     fn receive(&mut self, line: LineId, bytes: &[u8]) {
-        let Some(mut host) = self.lines.remove(&line) else { return };
+        self.activity();
         self.counters.bytes_in += bytes.len() as u64;
-        host.receive(bytes, self);
-        self.lines.insert(line, host);
+        if let Some(mut host) = self.lines.remove(&line) {
+            host.receive(bytes, self);
+            self.lines.insert(line, host);
+        } else if let Some(mut parallel) = self.parallels.remove(&line) {
+            let mut answer = Vec::new();
+            parallel.receive(bytes, self, &mut answer);
+            self.parallels.insert(line, parallel);
+            self.answer(line, answer);
+        }
+    }
+
+    /// Does something with every host on the parallel interface, and sends what it answers.
+    fn with_parallels(&mut self, action: impl Fn(&mut ParallelLine, &mut Machine, &mut Vec<u8>)) {
+        for (line, mut parallel) in std::mem::take(&mut self.parallels) {
+            let mut answer = Vec::new();
+            action(&mut parallel, self, &mut answer);
+            self.parallels.insert(line, parallel);
+            self.answer(line, answer);
+        }
+    }
+
+    fn answer(&mut self, line: LineId, bytes: Vec<u8>) {
+        if !bytes.is_empty() {
+            self.outputs.push(Output { line, bytes });
+        }
+    }
+
+    fn mailbox(&mut self, line: LineId) -> &mut Mailbox {
+        self.mailboxes.entry(line).or_default()
     }
 
     fn detach(&mut self, line: LineId) {
         self.writers.remove(&line);
-        if let Some(open) = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory)) {
+        self.keyboard.detach(line);
+        self.mailboxes.remove(&line);
+        let host = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory));
+        let parallel = self.parallels.remove(&line).and_then(|mut parallel| parallel.abandon(&mut self.memory));
+        if let Some(open) = host.or(parallel) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
     }
@@ -305,7 +412,7 @@ impl Machine {
             self.work_left = self.work_left.saturating_sub(ran.work);
             self.counters.firings += ran.firings;
             self.network_idle = ran.idle;
-            if self.memory.effects.is_empty() {
+            if self.memory.effects.is_empty() && !self.interpret_next() {
                 return;
             }
         }
@@ -339,30 +446,14 @@ impl Machine {
         self.frame_buffer = FrameBuffer::default();
         self.update = Update::default();
         self.updated = None;
-        self.transforms.clear();
+        self.waiting = Waiting::default();
+        self.streams = Streams::default();
+        self.keyboard = Keyboard::default();
+        self.terminal = Terminal::default();
+        self.tube = Tube::default();
+        self.watch = Watch::default();
+        self.switch_keyboard(self.settings.keyboard);
         self.messages.push(Message::Information("the machine was started again".into()));
-    }
-
-    fn carry(&mut self, effect: Effect) {
-        match effect {
-            Effect::Deliver { object, input, value } => {
-                if let Err(fault) = self.memory.accept(object, input, value) {
-                    let name = self.memory.objects.name(object).to_string();
-                    self.messages.push(Message::Node { name, fault });
-                }
-            }
-            Effect::Fault { object, fault } => {
-                let name = self.memory.objects.name(object).to_string();
-                self.messages.push(Message::Function { name, fault });
-            }
-            Effect::RequestTransform { function, node } => self.transforms.push((function, node)),
-            Effect::ReportMemory { function } => {
-                let text = format!("{:>8} bytes in use", self.memory.bytes());
-                self.memory.network.emit(function, 1, Value::string(text), &mut self.memory.effects);
-            }
-            Effect::Host { bytes, binary } => self.send_to_host(&bytes, binary),
-            effect => self.panel.carry(effect),
-        }
     }
 
     /// A message to the host goes to every host that is attached; a `binary` one without an end of line.
@@ -372,6 +463,7 @@ impl Machine {
             self.to_host.pop_front();
         }
         self.to_host.push_back(message.to_vec());
+        self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
         for (line, writer) in &self.writers {
             let mut bytes = Vec::new();
             let written = if binary && writer.form() == MessageForm::Text {
@@ -404,6 +496,7 @@ impl Machine {
         }
         self.log.push_back(text.clone());
         if self.reported <= REPORTS_PER_FRAME {
+            self.show_message(&text);
             self.emit(vec![(instance, 1, Value::string(&text))]);
         }
     }
@@ -417,52 +510,6 @@ impl Machine {
             tracing::warn!("{rest} more messages in one frame; {unheard} of them did not reach ERROR and WARNING");
         }
     }
-
-    fn update_picture(&mut self) {
-        if self.memory.structures.is_held() {
-            return; // between BEGIN and END
-        }
-        for (id, fault) in self.memory.structures.renew_dashes() {
-            let name = Name::new(self.memory.objects.name(id)).ok();
-            self.report(Message::Range { name, text: format!("the pattern is given up: {fault}") });
-        }
-        let version = self.memory.structures.version();
-        let stays = self.update.next_change.is_none_or(|change| self.frame < change);
-        if self.updated == Some(version) && self.transforms.is_empty() && stays {
-            return;
-        }
-        let requests = std::mem::take(&mut self.transforms);
-        let wanted: BTreeSet<ObjectId> =
-            requests.iter().filter_map(|(_, name)| self.memory.objects.find(name.as_str())).collect();
-        let wanted = Requests { transforms: wanted, ..Requests::default() };
-        let update = traversal::update(&self.memory.structures, self.frame, &wanted);
-        self.counters.updates += 1;
-        // What was said of the update before is not said again.
-        match update.trouble.filter(|trouble| self.update.trouble != Some(*trouble)) {
-            Some(Trouble::ContainsItself(id)) => {
-                let name = self.memory.objects.name(id).to_owned();
-                self.report(Message::Structure(format!("{name} contains itself")));
-            }
-            Some(trouble) => self.report(Message::Update(trouble)),
-            None => {}
-        }
-        for (function, name) in requests {
-            // The function may have gone since it asked, and its place may be another object's.
-            if self.memory.network.function(function).is_none_or(|row| row.name != "XFORMDATA") {
-                continue;
-            }
-            let matrix = self.memory.objects.find(name.as_str()).and_then(|id| update.transforms.get(&id));
-            match matrix {
-                Some(m) => {
-                    let value = Value::Transform(Box::new(*m));
-                    self.memory.network.emit(function, 1, value, &mut self.memory.effects);
-                }
-                None => self.report(Refusal::NotFound(name).into()),
-            }
-        }
-        self.update = update;
-        self.updated = Some(version);
-    }
 }
 
 /// The mass memory after the start: the initial function instances exist.
@@ -472,6 +519,8 @@ fn initial_memory() -> MassMemory {
         let made = memory.define_initial(&initial);
         debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
     }
+    let structures = initial::define_structures(&mut memory);
+    debug_assert!(structures.is_ok(), "{structures:?}");
     memory.objects.seal_system();
     memory
 }
@@ -486,5 +535,9 @@ pub fn time_of_frame(frame: u64) -> Micros {
     frame * 1_000_000 / FRAMES_PER_SECOND
 }
 
+#[cfg(test)]
+mod answer_tests;
+#[cfg(test)]
+mod device_tests;
 #[cfg(test)]
 mod tests;

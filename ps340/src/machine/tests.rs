@@ -308,3 +308,113 @@ fn a_damaged_six_bit_packet_is_dropped_with_a_message() {
     assert_eq!(warnings.len(), 2, "{warnings:?}");
     assert!(tell(&mut machine, "SEND 'x' TO <1>HOST_MESSAGE;") == ["x\r\n"]);
 }
+
+#[test]
+fn what_is_between_begin_and_end_is_seen_at_once() {
+    let mut machine = told(&format!("{DOT} DISPLAY D;"));
+    assert_eq!(strokes(&mut machine)[0].start, [0.5, 0.0]);
+    tell(&mut machine, "BEGIN; D := VECTOR_LIST DOTS 0.25,0,0; BEGIN; A := INSTANCE OF D; END; DISPLAY A;");
+    assert_eq!(strokes(&mut machine).len(), 1, "the picture stands still");
+    assert_eq!(strokes(&mut machine)[0].start, [0.5, 0.0]);
+    tell(&mut machine, "X := F:XFORMDATA; SEND 'NOWHERE' TO <2>X; SEND TRUE TO <1>X;");
+    frames(&mut machine, 2);
+    assert!(errors(&machine).is_empty(), "what asks for an update waits for it");
+    tell(&mut machine, "END;");
+    let drawn = strokes(&mut machine);
+    assert_eq!(drawn.iter().map(|s| s.start).collect::<Vec<_>>(), [[0.25, 0.0]; 2]);
+    assert_eq!(errors(&machine), ["E 2 *** Name not found: NOWHERE"]);
+}
+
+#[test]
+fn a_line_that_closes_after_begin_lets_the_picture_go_on() {
+    let mut machine = told(&format!("DISPLAY D; BEGIN; {DOT}"));
+    assert!(strokes(&mut machine).is_empty());
+    machine.step([Input::Detach(LINE)], 0);
+    assert_eq!(strokes(&mut machine).len(), 1);
+    assert_eq!(errors(&machine), ["E 4 *** the line closed while BEGIN was open"]);
+}
+
+#[test]
+fn the_dashes_of_a_pattern_follow_its_list_at_the_next_frame() {
+    let mut machine = told(
+        "V := VECTOR_LIST 0,0 0.8,0; DISPLAY V; P := PATTERN 1 1 LENGTH 0.2; PATTERN V WITH P;
+         CONNECT FKEYS<1>:<delete>V;",
+    );
+    assert_eq!(strokes(&mut machine).len(), 4);
+    tell(&mut machine, "SEND V2D(0.4,0) TO <2>V;");
+    assert_eq!(strokes(&mut machine).len(), 2);
+    machine.event(Event::Key(1));
+    assert!(strokes(&mut machine).is_empty());
+    tell(&mut machine, "SEND V2D(1E9,0) TO <append>V; SEND V2D(2E9,0) TO <append>V;");
+    frames(&mut machine, 1);
+    assert_eq!(errors(&machine).len(), 1, "{:?}", errors(&machine));
+    assert!(errors(&machine)[0].starts_with("E 6 *** Value out of range in V: the pattern is given up"));
+}
+
+#[test]
+fn a_restart_leaves_time_lines_and_password_only() {
+    let mut machine = told(&format!(
+        "{DOT} DISPLAY D; CONFIGURE X; SETUP PASSWORD SESAME; SEND 'X' TO <1>DLABEL1; DELETE FKEYS;
+         A := BEGIN_STRUCTURE BEGIN; CONNECT ERROR<1>:<1>HOST_MESSAGE;"
+    ));
+    machine.step([Input::Attach(LineId(2)), Input::Bytes(LineId(2), b"BEGIN; B := BEGIN_STRUCTURE ".to_vec())], 0);
+    frames(&mut machine, 3);
+    tell(&mut machine, "REBOOT WRONG; REBOOT SESAME;");
+    assert_eq!(errors(&machine), ["E 4 *** the password is wrong"]);
+    assert!(strokes(&mut machine).is_empty());
+    assert_eq!(machine.describe("D"), None);
+    assert!(machine.describe("FKEYS").is_some() && machine.frame() == 4);
+    assert_ne!(machine.panel().label(Label::Dial(1)), b"X");
+    let said = tell(&mut machine, "NONSENSE; C := F:CLFRAMES; COMMAND STATUS; CONFIGURE WRONG;");
+    assert!(said.is_empty(), "the connections are gone: {said:?}");
+    let log: Vec<&str> = machine.log().collect();
+    assert!(log.contains(&"I 11 *** the machine was started again") && log.contains(&"I 11 *** 0 BEGIN open"));
+    assert_eq!(errors(&machine).last(), Some(&"E 4 *** the password is wrong"));
+    tell(&mut machine, &format!("{DOT} DISPLAY D;"));
+    assert_eq!(strokes(&mut machine).len(), 1);
+    machine.step([Input::Bytes(LineId(2), b"END;".to_vec())], 0);
+    assert_eq!(errors(&machine).last(), Some(&"E 4 *** END without BEGIN"), "the other line begins anew, too");
+}
+
+#[test]
+fn information_reaches_the_host_that_asks_for_it() {
+    let mut machine = told("CONNECT INFORMATION<1>:<1>HOST_MESSAGE; SETUP INTERFACE PORT1/SPEED=9600;");
+    assert_eq!(tell(&mut machine, "SHOW INTERFACE PORT1;"), ["I 11 *** interface PORT1: SPEED=9600\r\n"]);
+}
+
+#[test]
+fn every_kind_of_object_is_described() {
+    let mut machine = told(
+        "S := BEGIN_STRUCTURE T := SET RATE 2 3; BEGIN_STRUCTURE NIL; END_STRUCTURE; END_STRUCTURE; A := S;
+         F := BEGIN_FONT C[65]: P 0,0 L 1,1; END_FONT; G := CHARACTER FONT F APPLIED TO S; VARIABLE V;
+         L := LABELS 0,0 'ONE' 1,1 'TWO'; P := POLYGON 0,0,0 1,0,0 0,1,0; Q := PATTERN 1 2 NOMATCH LENGTH 3;
+         B := POLYNOMIAL ORDER = 1 COEFFICIENTS = 1,0 0,0 CHORDS = 2; PATTERN B WITH Q; R := RAWBLOCK 7;",
+    );
+    tell(&mut machine, "STORE FIX(3) IN V; PREFIX G WITH SET PICKING ON;");
+    let cases = [
+        ("A", "A := S"),
+        ("S", "S := BEGIN_STRUCTURE, 2 members: S.T (structure)"),
+        ("S.T", "S.T := SET RATE 2 3 ON 0"),
+        ("F", "F := BEGIN_FONT, 1 characters"),
+        ("G", "G := SET PICKING ON APPLIED TO (CHARACTER FONT)"),
+        ("V", "V := VARIABLE, FIX(3)"),
+        ("L", "L := LABELS, 2: 'ONE' 'TWO'"),
+        ("P", "P := POLYGON, 1 polygons, 3 vertices"),
+        ("Q", "Q := PATTERN 1 2 NOMATCH LENGTH 3"),
+        ("B", "B := VECTOR_LIST Connected, 3 vectors, a curve over 0:1, in 4 vectors of a pattern"),
+        ("R", "R := RAWBLOCK 7"),
+    ];
+    for (name, expected) in cases {
+        assert_eq!(machine.describe(name).as_deref(), Some(expected));
+    }
+}
+
+#[test]
+fn an_initial_structure_that_is_restored_has_no_prefix() {
+    let mut machine = told("PREFIX PICK_LOCATION WITH SCALE BY 2; DELETE PICK_LOCATION;");
+    assert!(errors(&machine).is_empty(), "{:?}", errors(&machine));
+    tell(&mut machine, "SEND V2D(0.1,0.1) TO <2>PICK_LOCATION;");
+    assert!(errors(&machine).is_empty(), "it takes the size of the pick box again: {:?}", errors(&machine));
+    tell(&mut machine, "REMOVE PREFIX OF PICK_LOCATION;");
+    assert_eq!(errors(&machine), ["E 4 *** PICK_LOCATION is a name without a prefix"]);
+}

@@ -2,6 +2,8 @@
 
 mod refusal;
 mod system;
+mod initial;
+mod physical;
 mod insertion;
 mod rendering;
 
@@ -13,8 +15,9 @@ use crate::{
     network::Network,
     objects::Objects,
     port::{Effect, ObjectId},
-    structure::{Node, NodeFault, Structures},
+    structure::{Node, NodeFault, Operation, Structures},
 };
+use initial::InitialStructures;
 use insertion::Insertions;
 use protocol::{Name, Value, command::Input};
 use std::collections::HashSet;
@@ -37,6 +40,7 @@ pub struct MassMemory {
     pub network: Network,
     /// What the network wants of its surroundings, in order.
     pub effects: Vec<Effect>,
+    initial: InitialStructures,
     /// Settings of the machine.
     pub system: System,
     /// Whether the command at hand comes from a line in configure mode, which may change what is the system's.
@@ -164,6 +168,9 @@ impl MassMemory {
             return Err(Refusal::Full);
         }
         let id = self.user_object(name)?;
+        if self.objects.is_system(id) && !self.privileged {
+            return Err(Refusal::System(name.clone()));
+        }
         let defined = self.network.define(id, row, size);
         defined.map_err(|e| Refusal::FunctionSize(function.clone(), e.to_string()))?;
         let mut gone = self.insertions_of(id);
@@ -214,7 +221,21 @@ impl MassMemory {
         if input == Input::Number(1) && self.is_rendering(node) {
             return self.render(node, &value);
         }
+        if input == Input::Number(1) && self.is_write_back(node) {
+            return match value {
+                Value::Boolean(true) => {
+                    self.effects.push(Effect::RequestWriteBack { node: Some(node) });
+                    Ok(())
+                }
+                Value::Boolean(false) => Ok(()),
+                value => Err(NodeFault::Kind { input, kind: value.kind() }),
+            };
+        }
         self.structures.accept(node, input, value)
+    }
+
+    fn is_write_back(&self, id: ObjectId) -> bool {
+        matches!(self.structures.node(id), Some(Node::Operate { operation: Operation::WriteBack, .. }))
     }
 
     /// The value of a variable; none if nothing was stored yet.
@@ -242,8 +263,10 @@ impl MassMemory {
         Ok(self.network.function(group).is_none() && self.structures.include(member, group))
     }
 
-    /// INITIALIZE: user objects, all connections, the display list and the working storage go.
+    /// INITIALIZE: user objects, all connections, the display list and the working storage go, initial
+    /// structures are restored.
     pub fn initialize(&mut self) {
+        self.restore_structures();
         for id in self.objects.users() {
             self.network.undefine(id);
             self.structures.undefine(id);
@@ -252,7 +275,7 @@ impl MassMemory {
         self.objects.clear_user();
         self.system.working_storage = 0;
         self.structures.clear_displayed();
-        self.network.retain_arcs(|_, _, _| false);
+        self.restore_arcs();
     }
 
     /// RESERVE_WORKING_STORAGE: a larger request takes the place of one before.
@@ -276,6 +299,3 @@ impl MassMemory {
         Ok(id)
     }
 }
-
-#[cfg(test)]
-mod tests;

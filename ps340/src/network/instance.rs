@@ -3,9 +3,10 @@
 use super::{Destination, pool::Run};
 use crate::{
     functions::{FunctionRow, Rule},
+    port::KindSet,
     port::Port,
 };
-use protocol::{Kind, command::Input};
+use protocol::command::Input;
 
 /// What a missing constant counts in [`Instance::missing`]. More than all active inputs together, since no function
 /// does without one.
@@ -34,7 +35,7 @@ pub(super) struct Instance {
     pub(super) missing: u16,
     /// How much may be missing when it fires.
     pub(super) slack: u16,
-    /// Whether an active input accepts strings.
+    /// Whether an active input accepts values whose size the user decides.
     pub(super) strings: bool,
     /// Whether it stands in the list of those that are ready.
     pub(super) queued: bool,
@@ -89,6 +90,6 @@ impl Instance {
         self.missing = wanting.map(|port| if port.is_active() { 1 } else { CONSTANT }).sum();
         self.missing += if queues == 0 { PASSIVE } else { 0 };
         self.slack = if any { queues.saturating_sub(1) } else { 0 };
-        self.strings = active.clone().any(|port| port.accepts(Kind::String));
+        self.strings = active.clone().any(|port| KindSet::HEAVY.iter().any(|kind| port.accepts(kind)));
     }
 }

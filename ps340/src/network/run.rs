@@ -4,7 +4,7 @@ use super::{
     Destination, MAX_STRING_BYTES, Network,
     observe::{Nobody, Observer, Outcome, Source},
 };
-use crate::port::{Arrival, Backlog, Cause, Effect, Elapsed, Fault, Firing, ObjectId, Outbox, Port, Problem};
+use crate::port::{Arrival, Backlog, Cause, Effect, Elapsed, Fault, Firing, KindSet, ObjectId, Outbox, Port, Problem};
 use protocol::{Kind, Value, command::Input};
 
 /// Hundredths of a second in one tick of the system clock.
@@ -323,7 +323,7 @@ impl Network {
         if !port.accepts(kind) {
             return self.refuse(to.object, Cause::Kind { input: place as u16 + 1, kind }, effects);
         }
-        let arrival = if kind == Kind::String || (self.string_bytes > 0 && !port.is_active()) {
+        let arrival = if KindSet::HEAVY.contains(kind) || (self.string_bytes > 0 && !port.is_active()) {
             arrive_with_strings(port, message, &mut self.backlog, &mut self.string_bytes)
         } else {
             port.arrive(message, &mut self.backlog)
@@ -388,14 +388,11 @@ impl Network {
     }
 }
 
-/// Lets a message arrive where strings are involved, whose bytes are counted and limited.
+/// Lets a message arrive where values of any size are involved, whose bytes are counted and limited.
 #[cold]
 fn arrive_with_strings(port: &mut Port, message: &mut Value, backlog: &mut Backlog, bytes: &mut usize) -> Arrival {
     let replaced = if port.is_active() { 0 } else { port.string_bytes(backlog) };
-    let added = match message {
-        Value::String(text) => text.len(),
-        _ => 0,
-    };
+    let added = message.heap_bytes();
     if added > 0 && *bytes - replaced + added > MAX_STRING_BYTES {
         return Arrival::Lost;
     }

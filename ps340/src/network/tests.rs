@@ -204,7 +204,7 @@ fn a_matrix_comes_back_to_the_host_in_five_messages() {
         .define("FXF:=F:XFORMDATA FLIST:=F:LIST FPRINT:=F:PRINT")
         .connect("FXF<1>:<1>FLIST FLIST<1>:<1>FPRINT FPRINT<1>:<1>HOST_MESSAGE");
     let effects = bench.send(S("r001.mxform1"), 2, "FXF").send(B(true), 1, "FXF").run();
-    let [Effect::RequestTransform { function, node }] = &effects[..] else { panic!("{effects:?}") };
+    let [Effect::RequestTransform { function, node, .. }] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!((node.as_str(), *function), ("R001.MXFORM1", bench.id("FXF")));
     let matrix = DMat4::from_scale_rotation_translation(
         DVec3::splat(1.1),

@@ -1,6 +1,8 @@
 //! The orders of the operator: their table and their text form.
 
 use super::inspect::{self, Inspection};
+use crate::machine::{Key, KeyboardMode};
+use clap::ValueEnum;
 
 /// One row of the table of orders, from which `help` is made.
 #[derive(Clone, Copy, Debug)]
@@ -35,18 +37,24 @@ pub enum Order {
     },
     /// Presses a function key: 1..=12, with SHIFT 13..=24, with CONTROL 25..=36.
     Key(u8),
+    /// Presses a key of the keyboard that has a name.
+    Press(Key),
+    /// Lists the names of the keys.
+    Keys,
+    /// Gives the keyboard another mode, or says which it has.
+    Mode(Option<KeyboardMode>),
     /// Presses a lighted button, 1..=32.
     Button(u8),
-    /// Moves the puck, -1..=1.
+    /// Moves stylus or puck, -1..=1.
     PuckMove([f64; 2]),
-    /// Presses puck buttons: 1, 2, 4, 8 or sums.
+    /// Presses puck buttons: 1, 2, 4, 8 or sums; the tip of the stylus is 1.
     PuckPress(u8),
-    /// Lets all puck buttons go.
+    /// Lets all buttons go.
     PuckRelease,
-    /// Takes the puck off the tablet.
+    /// Takes stylus or puck off the tablet.
     PuckAway,
-    /// Types text on the keyboard.
-    Type(String),
+    /// Types characters on the keyboard.
+    Type(Vec<u8>),
     /// Waits for so many frames.
     Frames(u64),
     /// Waits until nothing is left to do, for so many frames at most.
@@ -66,11 +74,13 @@ pub enum Order {
     Show(String),
     /// The strokes of the latest update, the first so many.
     Strokes(usize),
+    /// The strokes over the picture, the first so many.
+    Overlay(usize),
     /// Counters of the machine.
     Counters,
-    /// Labels of dials and keys, lights, message line.
+    /// Labels of dials and keys, lights, message line, mode of the keyboard, switches of the screen.
     Panel,
-    /// The text that the terminal emulator was sent.
+    /// The text on the screen of the terminal emulator.
     Terminal,
     /// Looks into the network or the structure.
     Inspect(Inspection),
@@ -124,15 +134,38 @@ pub fn rows() -> impl Iterator<Item = &'static OrderRow> {
 /// The orders of a person at the machine.
 const ORDERS: &[OrderRow] = &[
     OrderRow { word: "dial", arguments: "1..8 TURNS", summary: "turn a dial", read: dial },
-    OrderRow { word: "key", arguments: "1..12 [shift|control]", summary: "press a function key", read: key },
+    OrderRow {
+        word: "key",
+        arguments: "1..12 [shift|control] | NAME",
+        summary: "press a function key, or a key of the list 'keys'",
+        read: key,
+    },
+    OrderRow { word: "keys", arguments: "", summary: "names of keys", read: |_| Ok(Order::Keys) },
     OrderRow { word: "button", arguments: "1..32", summary: "press a lighted button", read: button },
     OrderRow {
         word: "puck",
         arguments: "move X Y | press [1|2|4|8] | release | away",
-        summary: "use the tablet, -1..1",
+        summary: "use the tablet with the puck, -1..1",
         read: puck,
     },
-    OrderRow { word: "type", arguments: "TEXT", summary: "type on the keyboard (\\r is RETURN)", read: type_text },
+    OrderRow {
+        word: "stylus",
+        arguments: "move X Y | down | up | away",
+        summary: "use the tablet with the stylus, -1..1",
+        read: stylus,
+    },
+    OrderRow {
+        word: "type",
+        arguments: "TEXT",
+        summary: "type on the keyboard (\\r RETURN, \\n, \\t, \\b, \\e ESC, \\d DEL, \\\\, \\xHH)",
+        read: type_text,
+    },
+    OrderRow {
+        word: "mode",
+        arguments: "[terminal|command|interactive]",
+        summary: "where typed characters go: to the host, the command interpreter, the network",
+        read: mode,
+    },
     OrderRow { word: "frames", arguments: "N", summary: "wait for N frames (60 a second)", read: frames },
     OrderRow {
         word: "idle",
@@ -165,6 +198,12 @@ const ORDERS: &[OrderRow] = &[
         read: |w| Ok(Order::Strokes(w.optional("a number of strokes")?.unwrap_or(STROKES))),
     },
     OrderRow {
+        word: "overlay",
+        arguments: "[N]",
+        summary: "the same of what is drawn over the picture: terminal, message line, cursor",
+        read: |w| Ok(Order::Overlay(w.optional("a number of strokes")?.unwrap_or(STROKES))),
+    },
+    OrderRow {
         word: "counters",
         arguments: "[NAME]",
         summary: "counters of the machine, or of a function after 'count on'",
@@ -175,13 +214,13 @@ const ORDERS: &[OrderRow] = &[
     OrderRow {
         word: "panel",
         arguments: "",
-        summary: "labels of dials and keys, lights, message line",
+        summary: "labels of dials and keys, lights, message line, switches",
         read: |_| Ok(Order::Panel),
     },
     OrderRow {
         word: "terminal",
         arguments: "",
-        summary: "the text that the terminal emulator was sent",
+        summary: "the text on the screen of the terminal",
         read: |_| Ok(Order::Terminal),
     },
     OrderRow { word: "log", arguments: "", summary: "the latest messages of the machine", read: |_| Ok(Order::Log) },
@@ -241,7 +280,11 @@ fn dial(words: &mut Words<'_>) -> Result<Order, OrderError> {
 }
 
 fn key(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    let key = words.integer(1, 12, "a function key, 1 to 12")?;
+    if let Some(named) = words.rest.split_whitespace().next().and_then(Key::named) {
+        words.next();
+        return Ok(Order::Press(named));
+    }
+    let key = words.integer(1, 12, "a function key, 1 to 12, or a key of the list 'keys'")?;
     match words.next() {
         None => Ok(Order::Key(key)),
         Some("shift") => Ok(Order::Key(key + 12)),
@@ -257,10 +300,7 @@ fn button(words: &mut Words<'_>) -> Result<Order, OrderError> {
 fn puck(words: &mut Words<'_>) -> Result<Order, OrderError> {
     let expected = "'move', 'press', 'release' or 'away'";
     match words.required(expected)? {
-        "move" => {
-            let mut coordinate = || words.real(-1.0, 1.0, "a coordinate, -1 to 1");
-            Ok(Order::PuckMove([coordinate()?, coordinate()?]))
-        }
+        "move" => place(words),
         "press" => {
             let code = words.optional("a sum of the button codes 1, 2, 4 and 8")?.unwrap_or(1);
             if (1..=15).contains(&code) {
@@ -275,12 +315,59 @@ fn puck(words: &mut Words<'_>) -> Result<Order, OrderError> {
     }
 }
 
+fn stylus(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let expected = "'move', 'down', 'up' or 'away'";
+    match words.required(expected)? {
+        "move" => place(words),
+        "down" => Ok(Order::PuckPress(1)),
+        "up" => Ok(Order::PuckRelease),
+        "away" => Ok(Order::PuckAway),
+        other => Err(OrderError::Bad { found: other.into(), expected }),
+    }
+}
+
+fn place(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let mut coordinate = || words.real(-1.0, 1.0, "a coordinate, -1 to 1");
+    Ok(Order::PuckMove([coordinate()?, coordinate()?]))
+}
+
+fn mode(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let Some(word) = words.next() else { return Ok(Order::Mode(None)) };
+    let expected = "'terminal', 'command' or 'interactive'";
+    let read = KeyboardMode::from_str(word, true);
+    Ok(Order::Mode(Some(read.map_err(|_| OrderError::Bad { found: word.into(), expected })?)))
+}
+
 fn type_text(words: &mut Words<'_>) -> Result<Order, OrderError> {
     let text = std::mem::take(&mut words.rest);
     if text.is_empty() {
         return Err(OrderError::Missing("the text"));
     }
-    Ok(Order::Type(text.replace("\\r", "\r").replace("\\n", "\n")))
+    Ok(Order::Type(unescape(text)))
+}
+
+/// The characters that a text with backslashes stands for; a backslash before anything else stands for itself.
+fn unescape(text: &str) -> Vec<u8> {
+    let mut typed = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let [first, after @ ..] = rest {
+        let digit = |byte: u8| char::from(byte).to_digit(16).and_then(|d| u8::try_from(d).ok());
+        let hexadecimal = |a: u8, b: u8| Some(digit(a)? * 16 + digit(b)?);
+        let (character, length) = match (first, after) {
+            (b'\\', [b'r', ..]) => (b'\r', 2),
+            (b'\\', [b'n', ..]) => (b'\n', 2),
+            (b'\\', [b't', ..]) => (b'\t', 2),
+            (b'\\', [b'b', ..]) => (8, 2),
+            (b'\\', [b'e', ..]) => (27, 2),
+            (b'\\', [b'd', ..]) => (127, 2),
+            (b'\\', [b'\\', ..]) => (b'\\', 2),
+            (b'\\', [b'x', a, b, ..]) => hexadecimal(*a, *b).map_or((b'\\', 1), |code| (code, 4)),
+            _ => (*first, 1),
+        };
+        typed.push(character);
+        rest = &rest[length..];
+    }
+    typed
 }
 
 fn frames(words: &mut Words<'_>) -> Result<Order, OrderError> {

@@ -3,7 +3,8 @@
 use super::{Order, Screen, inspect::inspect, rows};
 use crate::{
     calligraphic::Beam,
-    machine::{Event, Machine, TabletEvent},
+    machine::{Event, Key, Machine, TabletEvent},
+    traversal::Stroke,
 };
 use std::path::Path;
 
@@ -51,24 +52,29 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
     let event = match order {
         Order::Dial { dial, turns } => Event::Dial { dial: *dial, turns: *turns },
         Order::Key(key) => Event::Key(*key),
+        Order::Press(key) => Event::Press(*key),
+        Order::Mode(Some(mode)) => Event::Mode(*mode),
+        Order::Mode(None) => return Outcome::Done(Ok(machine.keyboard_mode().word().into())),
+        Order::Keys => return Outcome::Done(Ok(Key::names().collect::<Vec<_>>().join(" "))),
         Order::Button(button) => Event::Button(*button),
         Order::PuckMove(at) => Event::Tablet(TabletEvent::Move(*at)),
         Order::PuckPress(code) => Event::Tablet(TabletEvent::Press(*code)),
         Order::PuckRelease => Event::Tablet(TabletEvent::Release),
         Order::PuckAway => Event::Tablet(TabletEvent::Away),
-        Order::Type(text) => Event::Type(text.clone().into_bytes()),
+        Order::Type(text) => Event::Type(text.clone()),
         Order::Frames(n) => return Outcome::Waiting(Wait::Frame(frame.saturating_add(*n))),
         Order::Idle(n) => return Outcome::Waiting(Wait::Idle(frame.saturating_add(*n))),
         Order::Message(n) => return Outcome::Waiting(Wait::Message(frame.saturating_add(*n))),
         Order::Picture { screen, file, size } => return Outcome::Done(picture(machine, *screen, file, *size)),
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
-        Order::Strokes(most) => return Outcome::Done(Ok(strokes(machine, *most))),
+        Order::Strokes(most) => return Outcome::Done(Ok(strokes(&machine.latest_update().strokes, *most))),
+        Order::Overlay(most) => return Outcome::Done(Ok(strokes(machine.overlay(), *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
         Order::Inspect(what) => return Outcome::Done(inspect(what, machine)),
-        Order::Panel => return Outcome::Done(Ok(machine.panel().to_string())),
-        Order::Terminal => {
-            return Outcome::Done(Ok(String::from_utf8_lossy(machine.panel().terminal()).into_owned()));
+        Order::Panel => {
+            return Outcome::Done(Ok(format!("{}\n{}", machine.panel(), machine.switches())));
         }
+        Order::Terminal => return Outcome::Done(Ok(machine.terminal().text())),
         Order::Log => return Outcome::Done(Ok(machine.log().collect::<Vec<_>>().join("\n"))),
         Order::Help => return Outcome::Done(Ok(help())),
         Order::Quit => return Outcome::Quit,
@@ -83,8 +89,7 @@ fn help() -> String {
 }
 
 /// The number of strokes, then on each line x and y of start and end, the intensities there, red, green and blue.
-fn strokes(machine: &Machine, most: usize) -> String {
-    let strokes = &machine.latest_update().strokes;
+fn strokes(strokes: &[Stroke], most: usize) -> String {
     let shown = &strokes[..strokes.len().min(most)];
     let mut text = format!("{} strokes", shown.len());
     for stroke in shown {

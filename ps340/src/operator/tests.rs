@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     line::LineId,
-    machine::{Input, Machine, Settings},
+    machine::{Input, Key, KeyboardMode, Machine, Settings},
 };
 
 #[test]
@@ -19,6 +19,13 @@ fn orders_read_back() {
     assert_eq!(parse("key 2 shift"), Ok(Order::Key(14)));
     assert_eq!(parse("puck move 0.5 -1"), Ok(Order::PuckMove([0.5, -1.0])));
     assert_eq!(parse("type a b\\r"), Ok(Order::Type("a b\r".into())));
+    assert_eq!(parse(r"type \e[A\x41\\x41\q\x4"), Ok(Order::Type(b"\x1b[AA\\x41\\q\\x4".to_vec())));
+    assert_eq!(parse("key Up"), Ok(Order::Press(Key::named("up").unwrap())));
+    assert_eq!(parse("key setup"), Ok(Order::Press(Key::Setup)));
+    assert_eq!(parse("mode command"), Ok(Order::Mode(Some(KeyboardMode::Command))));
+    assert_eq!(parse("mode"), Ok(Order::Mode(None)));
+    assert_eq!(parse("stylus down"), Ok(Order::PuckPress(1)));
+    assert_eq!(parse("stylus move 1 0.5"), Ok(Order::PuckMove([1.0, 0.5])));
     let file = "my picture.png".to_string();
     assert_eq!(
         parse("picture vector my picture.png 512"),
@@ -32,6 +39,15 @@ fn bad_orders_name_the_word_that_is_wrong() {
     assert_eq!(parse("dance"), Err(OrderError::Unknown("dance".into())));
     assert_eq!(parse("dial 9 1"), Err(OrderError::Bad { found: "9".into(), expected: "a dial, 1 to 8" }));
     assert_eq!(parse("dial 1 NaN"), Err(OrderError::Bad { found: "NaN".into(), expected: "a number of turns" }));
+    let expected = "a function key, 1 to 12, or a key of the list 'keys'";
+    assert_eq!(parse("key hyper"), Err(OrderError::Bad { found: "hyper".into(), expected }));
+    assert_eq!(parse("key up shift"), Err(OrderError::TooMuch("shift".into())));
+    let expected = "'terminal', 'command' or 'interactive'";
+    assert_eq!(parse("mode chat"), Err(OrderError::Bad { found: "chat".into(), expected }));
+    assert_eq!(
+        parse("stylus press"),
+        Err(OrderError::Bad { found: "press".into(), expected: "'move', 'down', 'up' or 'away'" })
+    );
     assert_eq!(parse("button 3 4"), Err(OrderError::TooMuch("4".into())));
 }
 
@@ -126,4 +142,47 @@ fn graphs_show_functions_arcs_and_nodes() {
         let text = json.strip_prefix("ok ").unwrap().replace("\\n", "\n").replace("\\\\", "\\");
         serde_json::from_str::<serde_json::Value>(&text).unwrap();
     }
+}
+
+fn performed(machine: &mut Machine, order: &str) -> String {
+    match perform(&parse(order).unwrap(), machine) {
+        Outcome::Done(Ok(text)) => text,
+        other => panic!("{order}: {other:?}"),
+    }
+}
+
+#[test]
+fn help_lists_every_order_and_keys_every_key() {
+    let mut machine = Machine::new(Settings::default());
+    let help = performed(&mut machine, "help");
+    assert_eq!(help.lines().count(), rows().count());
+    for row in rows() {
+        assert!(help.lines().any(|line| line.starts_with(row.word) && line.ends_with(row.summary)), "{}", row.word);
+    }
+    for key in performed(&mut machine, "keys").split(' ') {
+        assert!(parse(&format!("key {key}")).is_ok(), "{key}");
+    }
+}
+
+#[test]
+fn a_person_works_at_the_terminal_by_orders() {
+    let mut machine = Machine::new(Settings::default());
+    assert_eq!(performed(&mut machine, "mode"), "interactive");
+    performed(&mut machine, "key command");
+    performed(&mut machine, r"type SEND 'HELLO' TO <1>FLABEL2;\r");
+    assert_eq!(performed(&mut machine, "terminal"), "@@ SEND 'HELLO' TO <1>FLABEL2;\n@@");
+    let panel = performed(&mut machine, "panel");
+    assert!(panel.starts_with("key 2: HELLO\n") && panel.contains("keyboard: command"), "{panel}");
+    assert_eq!(performed(&mut machine, "mode"), "command");
+}
+
+#[test]
+fn the_cursor_is_an_overlay_and_no_stroke_of_the_structure() {
+    let mut machine = Machine::new(Settings::default());
+    performed(&mut machine, "stylus move 0.5 0");
+    machine.next_frame();
+    assert_eq!(performed(&mut machine, "strokes"), "0 strokes");
+    let overlay = performed(&mut machine, "overlay");
+    assert!(overlay.starts_with("2 strokes\n0.46 0 0.54 0 1 1 1 1 1\n"), "{overlay}");
+    assert_eq!(performed(&mut machine, "overlay 1").lines().count(), 2);
 }

@@ -103,5 +103,5 @@ fn every_example_plays_without_an_error_and_says_what_it_is() {
         assert_eq!(player.take_failures(), [], "{}", e.name);
         assert!(!player.machine().latest_update().strokes.is_empty(), "{} draws nothing", e.name);
     }
-    assert!(example("dail").unwrap_err().contains("'dials'"));
+    assert!(example("dails").unwrap_err().contains("'dials'"));
 }

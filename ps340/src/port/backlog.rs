@@ -65,21 +65,21 @@ impl Backlog {
         true
     }
 
-    /// Moves the message that came first to a place; the queue comes back when it is empty.
+    /// Moves the message that came first to a place. A queue that is empty comes back.
     ///
     /// - Returns false if there is no message.
     #[inline(always)]
     pub(super) fn pop(&mut self, lent: &mut Lent, to: &mut Value) -> bool {
-        let Some(ring) = self.queues.get_mut(lent.0 as usize) else { return false };
-        ring.pop(to);
-        if ring.length == 0 {
-            if ring.places.len() > KEPT_PLACES {
-                *ring = Ring::default();
+        match self.queues.get_mut(lent.0 as usize) {
+            Some(ring) if ring.length > 0 => {
+                ring.pop(to);
+                true
             }
-            self.free.push(lent.0);
-            *lent = Lent::NOTHING;
+            _ => {
+                self.take_back(lent);
+                false
+            }
         }
-        true
     }
 
     /// Moves the message that came last to a place, if there is one; the others go with the queue.
@@ -101,7 +101,7 @@ impl Backlog {
     }
 
     /// Takes a queue back, with whatever is in it.
-    #[inline]
+    #[inline(never)]
     pub(super) fn take_back(&mut self, lent: &mut Lent) {
         if let Some(ring) = self.queues.get_mut(lent.0 as usize) {
             if ring.length > 0 || ring.places.len() > KEPT_PLACES {
@@ -173,6 +173,8 @@ mod tests {
         for i in 0..3 {
             assert!(backlog.pop(&mut a, &mut place) && place == Value::Integer(i));
         }
+        assert_eq!(backlog.lent(), 1, "it comes back when it is asked in vain");
+        assert!(!backlog.pop(&mut a, &mut place));
         assert_eq!((a, backlog.lent()), (Lent::NOTHING, 0));
         backlog.push(&mut b, &mut Value::Integer(5));
         backlog.push(&mut a, &mut Value::Integer(6));

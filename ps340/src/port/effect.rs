@@ -1,6 +1,7 @@
 //! What the function network wants of the rest of the machine.
 
 use super::{Fault, ObjectId};
+use glam::DVec2;
 use protocol::{Name, Value, command::Input};
 
 /// One thing that the network asks for. The machine carries it out, in order.
@@ -51,13 +52,117 @@ pub enum Effect {
     Terminal(Box<[u8]>),
     /// The vector display goes on again after a static picture.
     TurnOnDisplay,
-    /// The accumulated matrix of an XFORM node is wanted at the next update. The answer is a message
-    /// [`Value::Transform`] from output 1 of the function.
+    /// The raster screen is filled with a colour.
+    WashScreen {
+        /// Red, green, blue.
+        color: [u8; 3],
+    },
+    /// Characters to the host line, without any frame.
+    HostCharacters(Box<[u8]>),
+    /// How a dial is sampled from now on.
+    Dial {
+        /// 1..=8.
+        dial: u8,
+        /// What changes.
+        setting: DialSetting,
+    },
+    /// A command to the tablet.
+    Tablet(TabletCommand),
+    /// The colour of the terminal's text.
+    TerminalColor {
+        /// Degrees, 0 is blue.
+        hue: f64,
+        /// 0 white, 1 pure.
+        saturation: f64,
+    },
+    /// Whether the terminal's text is in colour.
+    TerminalCsm(bool),
+    /// Somebody is there: the screen is not blanked.
+    Activity,
+    /// The accumulated matrix of an XFORM MATRIX node, or the vectors of an XFORM VECTOR node, are wanted at the next
+    /// update. The answer is a message [`Value::Transform`] or [`Value::Vectors`] from output 1 of the function.
     RequestTransform {
         /// The function that asks.
         function: ObjectId,
         /// The path of the node.
         node: Name,
+        /// A name that becomes an object with the data.
+        destination: Option<Name>,
+        /// Of vectors: the number of the first one, from 1.
+        first: u32,
+        /// Of vectors: how many.
+        count: u32,
+    },
+    /// A pick is wanted: the first thing that an update draws inside the pick box. The answer is a message
+    /// [`Value::Pick`] from output 1 of the function, or, if nothing is met in time, FALSE from output 2.
+    RequestPick {
+        /// The function that asks. A new request of it replaces the one before.
+        function: ObjectId,
+        /// The position that came with the request, -1..=1.
+        at: DVec2,
+        /// Whether the place on the vector is wanted too.
+        coordinates: bool,
+        /// Refresh frames to wait for a hit, at least 1.
+        frames: u32,
+    },
+    /// The picture is wanted after the next update, from the outputs of the instance WRITEBACK.
+    RequestWriteBack {
+        /// The WRITEBACK node below which; none for all that is displayed.
+        node: Option<ObjectId>,
+    },
+    /// The value of a VARIABLE is wanted, from output 1 of the function.
+    Fetch {
+        /// The function that asks.
+        function: ObjectId,
+        /// The variable.
+        name: Name,
+    },
+    /// A message for a named object, as by the command SEND.
+    SendTo {
+        /// The object.
+        name: Name,
+        /// Which input of it.
+        input: Input,
+        /// The message.
+        value: Value,
+    },
+    /// A label of a LABELS node is wanted: its text from output 1 of the function, its position from 2, whether it is
+    /// shown from 3.
+    ExtractLabel {
+        /// The function that asks.
+        function: ObjectId,
+        /// The node.
+        name: Name,
+        /// Number of the label, from 1.
+        index: u32,
+    },
+    /// A file of the disk is wanted, from output 1 of the function; a long one in several messages.
+    ReadDisk {
+        /// The function that asks.
+        function: ObjectId,
+        /// The file.
+        name: FileName,
+    },
+    /// Bytes for a file of the disk.
+    WriteDisk {
+        /// The file; it is made if need be.
+        name: FileName,
+        /// What is written.
+        bytes: Box<[u8]>,
+        /// Whether the bytes go to the end of the file; otherwise they replace what is there.
+        append: bool,
+    },
+    /// Bytes for an interpreter of the function's own, which remembers what is unfinished. When they are read, the number
+    /// of commands that they completed leaves output 1 of the function.
+    Interpret {
+        /// The function, to which the interpreter belongs.
+        function: ObjectId,
+        /// What the bytes are.
+        stream: Stream,
+        /// Some of them; a command may go on in the next.
+        bytes: Box<[u8]>,
+        /// Whether these are the first since the function was instanced: what was unfinished before is forgotten.
+        fresh: bool,
     },
     /// The machine starts again: REBOOT.
     Restart,
@@ -66,6 +171,69 @@ pub enum Effect {
         /// The function that asks.
         function: ObjectId,
     },
+}
+
+/// One setting of a dial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DialSetting {
+    /// Whether it sends its position, not its change.
+    Absolute(bool),
+    /// Steps that it must turn before it sends.
+    MinimumChange(u32),
+    /// Samples a second, 1..=60.
+    SamplesPerSecond(u8),
+    /// Its position is this number of turns.
+    Reset(f64),
+}
+
+/// A command to the tablet: when it sends the position from output 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TabletCommand {
+    /// While the stylus or puck is in range.
+    #[default]
+    Stream,
+    /// While a switch is down.
+    SwitchStream,
+    /// Once at a press.
+    Point,
+    /// On demand only.
+    Remote,
+    /// Now, once.
+    Trigger,
+}
+
+/// What bytes for an interpreter are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stream {
+    /// Text of commands.
+    Text,
+    /// Binary records of commands.
+    Binary,
+    /// Raster records.
+    Raster,
+}
+
+/// Longest name of a file of the disk, in bytes. Ours.
+pub const MAX_FILE_NAME: usize = 64;
+
+/// The name of a file of the disk: 1 to [`MAX_FILE_NAME`] letters, digits, `_`, `$`, `-` and `.`, the first no `.`; always
+/// upper case. So it is a plain name in a folder of any computer too.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FileName(Box<str>);
+
+impl FileName {
+    /// Reads a name, blanks around it left out; none if it is no name of a file.
+    pub fn new(text: &[u8]) -> Option<FileName> {
+        let text = text.trim_ascii();
+        let plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"_$-.".contains(byte);
+        let is_name = (1..=MAX_FILE_NAME).contains(&text.len()) && text[0] != b'.' && text.iter().all(plain);
+        is_name.then(|| FileName(text.iter().map(|byte| char::from(byte.to_ascii_uppercase())).collect()))
+    }
+
+    /// The characters, in upper case.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
 }
 
 /// A place for text on the control devices.
@@ -85,6 +253,19 @@ impl Label {
         match self {
             Label::Dial(_) | Label::Key(_) => 8,
             Label::Strip => 96,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_plain() {
+        assert_eq!(FileName::new(b" config.dat ").unwrap().as_str(), "CONFIG.DAT");
+        for bad in ["", "..", ".HIDDEN", "A/B", "A\\B", "A B", "\u{e4}", &"A".repeat(65)] {
+            assert_eq!(FileName::new(bad.as_bytes()), None, "{bad}");
         }
     }
 }

@@ -71,6 +71,8 @@ pub enum Cause {
         /// How many were lost there in all.
         lost: u64,
     },
+    /// A function of the user, which is code for another processor.
+    UserCode,
     /// Outputs of a clock were left out because time advanced too far at once.
     Late {
         /// How many were left out.
@@ -90,6 +92,7 @@ impl Fault {
             Cause::DivisionByZero | Cause::Overflow | Cause::Degenerate => 7,
             Cause::TooLong | Cause::TooManyArcs { .. } => 8,
             Cause::NoSuchInput(_) | Cause::NoSuchOutput(_) | Cause::NotAFunction => 9,
+            Cause::UserCode => 10,
             Cause::Flood { .. } | Cause::Late { .. } => 12,
         }
     }
@@ -120,6 +123,7 @@ impl Fault {
             Cause::NoSuchOutput(output) => format!("No such output <{output}> of {name}"),
             Cause::NotAFunction => format!("{name} is no function"),
             Cause::Flood { input, lost } => format!("Queue full at <{input}>{name}: {lost} messages lost"),
+            Cause::UserCode => format!("{name}: functions of the user are code for another processor"),
             Cause::Late { lost } => format!("Clock {name} is late: {lost} outputs left out"),
         };
         format!("{class} {number} *** {what}")

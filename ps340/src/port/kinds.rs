@@ -20,6 +20,8 @@ impl KindSet {
     pub const NUMBER: KindSet = KindSet::of(&[Kind::Integer, Kind::Real]);
     /// Strings.
     pub const STRING: KindSet = KindSet::of(&[Kind::String]);
+    /// Kinds whose values are as large as the user makes them; the network keeps an account of their bytes.
+    pub const HEAVY: KindSet = KindSet::of(&[Kind::String, Kind::Vectors, Kind::Pick, Kind::Label]);
     /// 2D vectors.
     pub const VECTOR2: KindSet = KindSet::of(&[Kind::Vector2]);
     /// 3D vectors.
@@ -32,8 +34,14 @@ impl KindSet {
     pub const SQUARE: KindSet = KindSet::of(&[Kind::Matrix2, Kind::Matrix3, Kind::Matrix4]);
     /// All matrices.
     pub const MATRIX: KindSet = KindSet::SQUARE.or(KindSet::of(&[Kind::Matrix4x3]));
-    /// Transformed data.
-    pub const TRANSFORM: KindSet = KindSet::of(&[Kind::Transform]);
+    /// Transformed data: a matrix or vectors.
+    pub const TRANSFORM: KindSet = KindSet::of(&[Kind::Transform, Kind::Vectors]);
+    /// Transformed vectors.
+    pub const VECTORS: KindSet = KindSet::of(&[Kind::Vectors]);
+    /// Pick lists.
+    pub const PICK: KindSet = KindSet::of(&[Kind::Pick]);
+    /// Labels.
+    pub const LABEL: KindSet = KindSet::of(&[Kind::Label]);
 
     /// The set of some kinds.
     pub const fn of(kinds: &[Kind]) -> KindSet {

@@ -11,11 +11,11 @@ mod place;
 mod queue;
 
 pub use backlog::{Backlog, MAX_QUEUE};
-pub use effect::{Effect, Label};
+pub use effect::{DialSetting, Effect, FileName, Label, MAX_FILE_NAME, Stream, TabletCommand};
 pub use fault::{Cause, Fault, Problem};
 pub use firing::{Elapsed, Firing};
 pub use kinds::KindSet;
-pub use literal::Literal;
+pub use literal::{Literal, PickLiteral};
 pub use outbox::Outbox;
 pub use queue::{Arrival, Port};
 

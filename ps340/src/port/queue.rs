@@ -190,12 +190,10 @@ impl Port {
     }
 }
 
-/// Bytes of the string in a value, 0 for other kinds.
+/// Bytes of what the user made as large as it is: text, names, vectors.
+#[inline]
 pub(super) fn string_bytes(value: &Value) -> usize {
-    match value {
-        Value::String(text) => text.len(),
-        _ => 0,
-    }
+    value.heap_bytes()
 }
 
 #[cfg(test)]

@@ -8,12 +8,14 @@ use crate::{
     },
     machine::Settings,
 };
+use protocol::address::Place;
 use std::{io, path::PathBuf, time::Duration};
 use tokio::sync::{mpsc, oneshot};
 use turns::Turns;
 
 /// Events that wait for the machine; with [`LineEvent::Bytes`] of a quarter megabyte this bounds memory.
 const WAITING_EVENTS: usize = 16;
+
 /// Where the time of the machine comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Clock {
@@ -72,7 +74,11 @@ pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
         io::Error::new(e.kind(), format!("cannot listen on {address}: {e}"))
     };
     let capture = options.capture.as_deref().map(|path| {
-        let created = Capture::create(path);
+        let is_read = |line: &LineAddress| matches!(&line.place, Place::File { path: read, .. } if read == path);
+        let created = match options.listen.iter().any(is_read) {
+            true => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is to be played")),
+            false => Capture::create(path),
+        };
         created.map_err(|e| io::Error::new(e.kind(), format!("cannot write {}: {e}", path.display())))
     });
     let around = Surroundings { events: events.clone(), capture: capture.transpose()? };

@@ -2,7 +2,7 @@
 
 use super::{Clock, End, Operator, Options, WAITING_EVENTS};
 use crate::{
-    line::{LineEvent, LineId, Writer},
+    line::{Interface, LineEvent, LineId, Writer},
     machine::{Input, Machine, Micros, time_of_frame},
     operator::{Outcome, Wait, parse, perform, reply},
 };
@@ -118,10 +118,14 @@ impl Turns {
 
     fn take(&mut self, event: LineEvent) -> Option<End> {
         match event {
-            LineEvent::Attached { line, peer, interface: _, writer } => {
+            LineEvent::Attached { line, peer, interface, writer } => {
                 tracing::info!("host line {peer} attached");
                 self.writers.insert(line, (peer, writer));
-                self.step(Some(Input::Attach(line)), 0);
+                let attach = match interface {
+                    Interface::Stream => Input::Attach(line),
+                    Interface::Parallel => Input::AttachParallel(line),
+                };
+                self.step(Some(attach), 0);
             }
             LineEvent::Bytes(line, bytes) => self.step(Some(Input::Bytes(line, bytes)), 0),
             LineEvent::Closed { line, error } => {

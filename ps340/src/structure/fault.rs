@@ -25,6 +25,12 @@ pub enum NodeFault {
         /// Which input.
         input: Input,
     },
+    /// The message is for a name without a definition.
+    #[error("Name not found at {input}")]
+    Undefined {
+        /// Which input.
+        input: Input,
+    },
     /// The node has no such input.
     #[error("No such input {input}")]
     NoSuchInput {
@@ -81,6 +87,7 @@ impl NodeFault {
     /// The number of the message: those of the same faults of functions.
     pub fn number(&self) -> u16 {
         match self {
+            NodeFault::Undefined { .. } => 2,
             NodeFault::Kind { .. } | NodeFault::Vectors { .. } | NodeFault::Dots { .. } => 5,
             NodeFault::Range { .. } => 6,
             NodeFault::Full { .. } | NodeFault::NoWorkingStorage => 8,
@@ -99,6 +106,7 @@ impl NodeFault {
             NodeFault::Dots { input } => {
                 format!("Bad message type at {input}{name}: dots are neither lines nor positions")
             }
+            NodeFault::Undefined { input } => format!("Name not found: {name}, for a message at {input}"),
             NodeFault::NoSuchInput { input } => format!("No such input {input} of {name}"),
             NodeFault::Full { input } => format!("Insufficient memory at {input}{name}"),
             NodeFault::Range { input } => format!("Value out of range at {input}{name}"),

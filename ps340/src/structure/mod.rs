@@ -5,11 +5,13 @@ mod operation;
 mod fault;
 mod inputs;
 mod copy;
+mod physical;
 
 pub use copy::{CopyFault, copy};
 pub use fault::{NodeFault, RenderingFault};
 pub use node::{Labels, Member, Node, Polygons, Vectors};
 pub use operation::{CONDITIONAL_BITS, Degenerate, MAX_LEVEL, Operation};
+pub use physical::{PhysicalFault, VECTOR_WORDS};
 
 use crate::{
     pattern::{self, PatternFault},
@@ -106,8 +108,10 @@ impl Structures {
     /// then keeps what it had.
     pub fn accept(&mut self, id: ObjectId, input: Input, value: Value) -> Result<(), NodeFault> {
         let frame = self.frame;
-        let node = self.node_mut(id).ok_or(NodeFault::NoSuchInput { input })?;
-        let shown = !matches!(node, Node::Variable(_));
+        let node = self.node_mut(id).ok_or(NodeFault::Undefined { input })?;
+        // Neither a variable nor the place of the pick box is part of the picture.
+        let pick_box = matches!(node, Node::Operate { operation: Operation::PickLocation { .. }, .. });
+        let shown = !pick_box && !matches!(node, Node::Variable(_));
         let grown = inputs::accept(node, input, value, frame)?;
         self.grow(id, grown);
         self.version += u64::from(shown);

@@ -23,7 +23,7 @@ pub use pick::{PickHit, PickRequest, PickedKind, PickedPlace};
 pub use state::State;
 pub use stroke::Stroke;
 pub use update::{Requests, Transformed, Trouble, Update};
-pub use walk::{MAX_DEPTH, MAX_GATHERED, MAX_VECTORS, MAX_VISITS, update};
+pub use walk::{MAX_DEPTH, MAX_GATHERED, MAX_VECTORS, MAX_VISITS, alone, update};
 
 #[cfg(test)]
 mod tests;

@@ -31,18 +31,18 @@ const PIECE: usize = 1 << 14;
 ///
 /// - `frame`: the number of the refresh frame, for SET RATE and blinking.
 pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Update {
-    let mut walk = Walk {
-        structures,
-        frame,
-        requests,
-        update: Update::default(),
-        identifiers: IdentifierChains::default(),
-        entered: vec![0; structures.extent().div_ceil(64)],
-        clip: Vec::new(),
-    };
+    let mut walk = Walk::new(structures, frame, requests);
     for root in structures.displayed() {
-        walk.root(root);
+        walk.root(root, State::default());
     }
+    walk.update
+}
+
+/// Walks one object with a state of its own, as the cursor that the system shows.
+pub fn alone(structures: &Structures, frame: u64, root: ObjectId, state: State) -> Update {
+    let requests = Requests::default();
+    let mut walk = Walk::new(structures, frame, &requests);
+    walk.root(root, state);
     walk.update
 }
 
@@ -110,8 +110,20 @@ impl<'a> Level<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn root(&mut self, root: ObjectId) {
-        let mut levels = vec![Level { items: Items::Object(root), next: 0, state: State::default(), object: None }];
+    fn new(structures: &'a Structures, frame: u64, requests: &'a Requests) -> Walk<'a> {
+        Walk {
+            structures,
+            frame,
+            requests,
+            update: Update::default(),
+            identifiers: IdentifierChains::default(),
+            entered: vec![0; structures.extent().div_ceil(64)],
+            clip: Vec::new(),
+        }
+    }
+
+    fn root(&mut self, root: ObjectId, state: State) {
+        let mut levels = vec![Level { items: Items::Object(root), next: 0, state, object: None }];
         while let Some(level) = levels.last_mut() {
             match level.advance(self.structures) {
                 Some(visit) => {

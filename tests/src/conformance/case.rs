@@ -117,10 +117,12 @@ pub enum Step {
     Reply(String),
     /// `frames N`: time passes.
     Frames(u64),
-    /// `strokes [N]` and `/` lines: what is drawn on the vector screen.
+    /// `strokes [N [over M]]` and `/` lines: what is drawn on the vector screen.
     Strokes {
         /// How many; of any number if none.
         count: Option<usize>,
+        /// In how many frames together.
+        frames: u64,
         /// All of them, in order, or empty if only their number counts.
         lines: Vec<StrokeLine>,
     },

@@ -1,9 +1,9 @@
 //! The ways in which commands travel: as text or binary, in packets or not, whole or cut.
 
 use protocol::{
-    command::{CommandError, CommandReader, binary},
+    command::{CommandError, CommandReader},
     record::EncodeError,
-    wire::{self, MAX_COUNT_DATA, Route},
+    wire::{DataForm, MAX_COUNT_DATA, PacketForm, Route, Sending, write_commands_as, write_packet_as},
 };
 use rand_pcg::{
     Pcg64Mcg,
@@ -18,6 +18,8 @@ pub enum Form {
     Text,
     /// Binary records of whole bytes.
     Binary8,
+    /// Binary records in printable characters.
+    Binary6,
 }
 
 /// What carries them.
@@ -28,8 +30,22 @@ pub enum Packets {
     None,
     /// Count packets.
     Count,
+    /// Escape packets.
+    Escape,
     /// Long packets, with checks.
     Long,
+}
+
+impl Packets {
+    /// The form of packets; none for bare text.
+    pub fn form(self) -> Option<PacketForm> {
+        match self {
+            Packets::None => None,
+            Packets::Count => Some(PacketForm::Count),
+            Packets::Escape => Some(PacketForm::Escape),
+            Packets::Long => Some(PacketForm::Long),
+        }
+    }
 }
 
 /// A form and a carrier.
@@ -53,9 +69,6 @@ pub enum WayError {
     /// The binary form lacks this command.
     #[error("the command has no binary record: {0}")]
     Record(EncodeError),
-    /// A record that does not fit a packet.
-    #[error("a record of {0} bytes fits no count packet")]
-    LongRecord(usize),
 }
 
 impl Way {
@@ -108,26 +121,13 @@ impl Sender {
             return Ok(());
         }
         self.reader.push(text);
-        while let Some(read) = self.reader.next() {
-            let command = read.map_err(WayError::Text)?.command;
-            let mut packets: Vec<Vec<u8>> = Vec::new();
-            let mut each = |record: &[u8]| packets.push(record.to_vec());
-            binary::records(&command, &mut Vec::new(), &mut each).map_err(WayError::Record)?;
-            for record in packets {
-                match self.way.packets {
-                    Packets::Count if record.len() > MAX_COUNT_DATA => {
-                        return Err(WayError::LongRecord(record.len()));
-                    }
-                    Packets::Count => {
-                        wire::write_count_packet(Route::Binary, &record, out).map_err(WayError::Record)?;
-                    }
-                    Packets::Long | Packets::None => {
-                        wire::write_packet(Route::Binary, &record, out).map_err(WayError::Record)?;
-                    }
-                }
-            }
+        let mut commands = Vec::new();
+        for read in self.reader.by_ref() {
+            commands.push(read.map_err(WayError::Text)?.command);
         }
-        Ok(())
+        let data = if self.way.form == Form::Binary6 { DataForm::SixBit } else { DataForm::EightBit };
+        let packets = self.way.packets.form().ok_or(WayError::NoPackets)?;
+        write_commands_as(Sending { packets, data }, &commands, out).map_err(WayError::Record)
     }
 
     fn write_text(&mut self, text: &[u8], out: &mut Vec<u8>) {
@@ -136,15 +136,10 @@ impl Sender {
             let most = if self.way.packets == Packets::None { usize::MAX } else { MAX_COUNT_DATA };
             let most = self.cut.as_mut().map_or(most, |random| 1 + random.next_u32() as usize % 200);
             let (now, later) = rest.split_at(rest.len().min(most));
-            let written = match self.way.packets {
-                Packets::None => {
-                    out.extend_from_slice(now);
-                    Ok(())
-                }
-                Packets::Count => wire::write_count_packet(Route::Text, now, out),
-                Packets::Long => wire::write_packet(Route::Text, now, out),
-            };
-            written.expect("a piece fits every packet");
+            match self.way.packets.form() {
+                None => out.extend_from_slice(now),
+                Some(form) => write_packet_as(form, Route::Text, now, out).expect("a piece fits every packet"),
+            }
             rest = later;
         }
     }
@@ -171,7 +166,7 @@ mod tests {
     use super::*;
     use protocol::{
         command::{BinaryDecoder, Command},
-        wire::{Frame, FrameDecoder},
+        wire::{Frame, FrameDecoder, read_six_bit},
     };
 
     /// The commands that a machine would hear.
@@ -185,6 +180,11 @@ mod tests {
                 all.extend(text.by_ref().map(|read| read.unwrap().command));
             }
             Frame::Packet { route: Route::Binary, payload, .. } => all.extend(binary.push(payload).map(Result::unwrap)),
+            Frame::Packet { route: Route::SixBitBinary, payload, .. } => {
+                let mut bytes = Vec::new();
+                read_six_bit(payload, &mut bytes).unwrap();
+                all.extend(binary.push(&bytes).map(Result::unwrap));
+            }
             other => panic!("{other:?}"),
         });
         all

@@ -180,7 +180,8 @@ fn expectation(word: &str, rest: &str) -> Result<Expected, Problem> {
     Ok(match word {
         "<" => Expected::Exact(unescape(rest)?),
         "<=" => Expected::Numbers(required(rest, "words and numbers")?.into()),
-        "<~" => Expected::Glob(required(rest, "a pattern")?.into()),
+        // Leading blanks belong to the message.
+        "<~" => Expected::Glob(required(rest, "a pattern").map(|_| rest.into())?),
         "<!" | "<?" => {
             let class = if word == "<!" { 'E' } else { 'W' };
             let (first, text) = rest.trim().split_once(' ').unwrap_or((rest.trim(), ""));
@@ -205,17 +206,23 @@ fn step(word: &str, rest: &str) -> Result<Step, Problem> {
         "@" => Step::Order(required(rest, "an order of the operator")?.into()),
         "@~" => Step::Reply(required(rest, "a pattern")?.into()),
         "frames" => Step::Frames(rest.trim().parse().map_err(|_| Problem::Expected("a number of frames"))?),
-        "strokes" => {
-            let count = match rest.trim() {
-                "" => None,
-                count => Some(count.parse().map_err(|_| Problem::Expected("a number of strokes"))?),
-            };
-            Step::Strokes { count, lines: Vec::new() }
-        }
+        "strokes" => strokes(rest.trim())?,
         "drop" => Step::Drop,
         "quiet" => Step::Quiet,
         other => return Err(Problem::Unknown(other.into())),
     })
+}
+
+/// `[N [over M]]`
+fn strokes(rest: &str) -> Result<Step, Problem> {
+    let (count, frames) = rest.split_once(" over ").unwrap_or((rest, "1"));
+    let frames = frames.trim().parse().ok().filter(|frames| (1..10_000).contains(frames));
+    let count = match count.trim() {
+        "" => None,
+        count => Some(count.parse().map_err(|_| Problem::Expected("a number of strokes"))?),
+    };
+    let frames = frames.ok_or(Problem::Expected("a number of frames behind 'over'"))?;
+    Ok(Step::Strokes { count, frames, lines: Vec::new() })
 }
 
 /// `NAME<output> [as WORD]`
@@ -345,7 +352,7 @@ mod tests {
         assert_eq!(steps[1], fault('W', Some(3), None));
         assert_eq!(steps[2], fault('E', None, None));
         assert_eq!(steps[3], Step::Expect(Expected::Exact(Vec::new())));
-        let Step::Strokes { count: Some(2), lines } = &steps[4] else { panic!("{:?}", steps[4]) };
+        let Step::Strokes { count: Some(2), frames: 1, lines } = &steps[4] else { panic!("{:?}", steps[4]) };
         assert_eq!((lines[0].start, lines[0].end), ([0.5, 0.0], [0.5, 0.0]));
         assert_eq!((lines[1].intensity, lines[1].color), (Some([1.0, 0.5]), Some([1.0, 0.0, 0.0])));
         let both = [Expected::Exact(b"a".to_vec()), Expected::Exact(b"b".to_vec())];

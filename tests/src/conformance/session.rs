@@ -162,6 +162,7 @@ impl<'s> Session<'s> {
             Step::Raw(bytes) => {
                 self.note(format!("> {}", bytes.escape_ascii()));
                 self.waiting.extend_from_slice(bytes);
+                self.flush()?;
             }
             Step::Watch { name, output, word } => self.watch(name, *output, word.as_deref())?,
             Step::Expect(expected) => self.expect(expected)?,
@@ -178,7 +179,7 @@ impl<'s> Session<'s> {
                 self.reply = reply;
             }
             Step::Frames(count) => self.frames(*count)?,
-            Step::Strokes { count, lines } => self.strokes(*count, lines)?,
+            Step::Strokes { count, frames, lines } => self.strokes(*count, *frames, lines)?,
             Step::Drop => {
                 self.synchronize()?;
                 self.messages.clear();
@@ -348,11 +349,16 @@ impl<'s> Session<'s> {
         Ok(())
     }
 
-    fn strokes(&mut self, count: Option<usize>, lines: &[StrokeLine]) -> Result<(), Stop> {
-        self.frames(1)?;
-        let reply = self.order("strokes")?;
-        let found = read_strokes(&reply)
-            .ok_or_else(|| Stop::Failed { expected: "strokes, one a line".into(), found: reply.clone() })?;
+    fn strokes(&mut self, count: Option<usize>, frames: u64, lines: &[StrokeLine]) -> Result<(), Stop> {
+        let mut found = Vec::new();
+        for _ in 0..frames {
+            self.frames(1)?;
+            let reply = self.order("strokes")?;
+            let Some(drawn) = read_strokes(&reply) else {
+                return Err(Stop::Failed { expected: "strokes, one a line".into(), found: reply });
+            };
+            found.extend(drawn);
+        }
         match strokes_differ(count, lines, &found, self.case.tolerance) {
             None => Ok(()),
             Some(expected) => {

@@ -119,29 +119,8 @@ impl BinaryDecoder {
                 }
                 Ok(Some(Command::Define { name: open.name, object: Object::VectorList(open.list) }))
             }
-            Opcode::Text if !matches!(self.open, Some(Open::List(_))) => {
-                let before = match self.open.take() {
-                    Some(Open::Text(text)) => text,
-                    _ => Vec::new(),
-                };
-                let (text, more) = text_part(before, &mut reader)?;
-                let length = text.bytes.len();
-                *at = reader.at();
-                if more {
-                    self.open = Some(Open::Text(text.bytes));
-                    return Ok(None);
-                }
-                match parse(&text.bytes) {
-                    Ok(command) => Ok(Some(command)),
-                    Err(error) => {
-                        let inside = error.span.start.saturating_sub(text.before);
-                        let offset = reader.at() - (length - text.before) + inside;
-                        let problem = BinaryProblem::Text(error.to_string());
-                        Err(BinaryError { offset, field: "text", problem })
-                    }
-                }
-            }
-            // A list that is still open is given up; the record itself is good and is read again.
+            Opcode::Text if !matches!(self.open, Some(Open::List(_))) => self.text(&mut reader, at),
+            // What is still open is given up; the record itself is good and is read again.
             _ if self.open.take().is_some() => {
                 *at = reader.at() - 1;
                 Err(reader.error(1, "opcode", BinaryProblem::StillOpen))
@@ -153,28 +132,35 @@ impl BinaryDecoder {
             }
         }
     }
-}
 
-/// The text of a command so far.
-struct TextSoFar {
-    bytes: Vec<u8>,
-    /// How many of them came in earlier records.
-    before: usize,
-}
-
-/// Reads a part of a command as text behind what came `before`; and whether more follows.
-fn text_part<W: Witness>(
-    mut before: Vec<u8>,
-    reader: &mut Reader<'_, '_, W>,
-) -> Result<(TextSoFar, bool), BinaryError> {
-    let more = reader.boolean("more follows")?;
-    let part = reader.string("text")?;
-    let (earlier, found) = (before.len(), before.len() + part.len());
-    if found > MAX_STATEMENT {
-        return Err(reader.error(part.len(), "text", BinaryProblem::TooMany { found, limit: MAX_STATEMENT }));
+    /// Reads a part of a command as text, and parses the text if it is the last.
+    fn text<W: Witness>(
+        &mut self,
+        reader: &mut Reader<'_, '_, W>,
+        at: &mut usize,
+    ) -> Result<Option<Command>, BinaryError> {
+        let mut text = match self.open.take() {
+            Some(Open::Text(text)) => text,
+            _ => Vec::new(),
+        };
+        let more = reader.boolean("more follows")?;
+        let part = reader.string("text")?;
+        let (before, found) = (text.len(), text.len() + part.len());
+        if found > MAX_STATEMENT {
+            return Err(reader.error(part.len(), "text", BinaryProblem::TooMany { found, limit: MAX_STATEMENT }));
+        }
+        text.extend_from_slice(part);
+        *at = reader.at();
+        if more {
+            self.open = Some(Open::Text(text));
+            return Ok(None);
+        }
+        parse(&text).map(Some).map_err(|error| {
+            // The place in this packet, if it is in the last part.
+            let offset = *at - part.len() + error.span.start.saturating_sub(before);
+            BinaryError { offset, field: "text", problem: BinaryProblem::Text(error.to_string()) }
+        })
     }
-    before.extend_from_slice(part);
-    Ok((TextSoFar { bytes: before, before: earlier }, more))
 }
 
 /// The commands in the body of one packet.
@@ -383,6 +369,10 @@ fn value<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Value, BinaryErro
         Kind::Matrix4x3 => Value::Matrix4x3(Box::new(matrix4x3(reader)?)),
         Kind::Matrix4 => Value::Matrix4(Box::new(DMat4::from_cols_array(&reader.reals("row by row")?))),
         Kind::Transform => Value::Transform(Box::new(DMat4::from_cols_array(&reader.reals("row by row")?))),
+        // Only functions make these.
+        Kind::Pick | Kind::Label | Kind::Vectors => {
+            return Err(reader.error(1, "kind", BinaryProblem::Unknown(code.into())));
+        }
     })
 }
 

@@ -212,6 +212,9 @@ fn send_value(value: &Value, writer: &mut Writer<'_>) -> Result<(), EncodeError>
         Value::Matrix3(m) => writer.reals(&m.to_cols_array()),
         Value::Matrix4x3(m) => writer.reals(&four_by_three(m)),
         Value::Matrix4(m) | Value::Transform(m) => writer.reals(&m.to_cols_array()),
+        Value::Pick(_) => return within("pick lists, which no command sends", 1, 0),
+        Value::Label(_) => return within("labels, which no command sends", 1, 0),
+        Value::Vectors(_) => return within("transformed vectors, which no command sends", 1, 0),
     }
     Ok(())
 }

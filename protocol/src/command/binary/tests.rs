@@ -4,7 +4,7 @@ use super::*;
 use crate::{
     Name,
     command::{
-        MAX_POINTS,
+        MAX_POINTS, parse,
         strategy::commands,
         syntax::{Command, Object, VectorClass, VectorList},
     },
@@ -132,6 +132,65 @@ fn every_opcode_is_found_by_its_code() {
         assert_eq!(Opcode::from_code(opcode.code()), Some(opcode));
     }
     assert_eq!(Opcode::from_code(0), None);
+}
+
+fn text_record(more: bool, text: &str) -> Vec<u8> {
+    let mut record = vec![Opcode::Text.code(), more.into()];
+    record.extend((text.len() as u16).to_le_bytes());
+    record.extend(text.as_bytes());
+    record
+}
+
+#[test]
+fn a_long_command_travels_as_text_in_parts_over_several_packets() {
+    let vertex = "0.125,0.25,0.5 ".repeat(4);
+    let command = parse(format!("P := {};", format!("POLYGON {vertex}").repeat(2_000)).as_bytes()).unwrap();
+    let mut decoder = BinaryDecoder::default();
+    let (mut received, mut packets) = (Vec::new(), 0);
+    records(&command, &mut Vec::new(), &mut |record| {
+        packets += 1;
+        assert!(record.len() <= PART_TEXT + 4);
+        received.extend(decoder.push(record).map(Result::unwrap));
+    })
+    .unwrap();
+    assert!(packets > 3 && received == [command]);
+}
+
+#[test]
+fn an_error_in_a_text_has_its_place_and_ends_no_packet() {
+    let mut body = text_record(false, "SET COLOUR 1,1;");
+    encode(&Command::EndStructure, &mut body).unwrap();
+    let items = decode(&body);
+    let error = items[0].as_ref().unwrap_err();
+    // Behind opcode, flag and length, and `SET `.
+    assert_eq!((error.offset, error.field), (4 + 4, "text"));
+    assert!(error.to_string().contains("1:5: expected a setting") && error.to_string().contains("COLOR?"));
+    assert_eq!(items[1], Ok(Command::EndStructure));
+    let parts = [text_record(true, "SET PICKING "), text_record(false, "ON 7")].concat();
+    let error = decode(&parts).remove(0).unwrap_err();
+    assert_eq!(error.offset, parts.len() - 1);
+}
+
+#[test]
+fn another_record_gives_up_an_open_text_and_is_obeyed() {
+    let mut body = text_record(true, "SET PICKING ");
+    encode(&Command::Display(name("A")), &mut body).unwrap();
+    body.extend(text_record(false, "SET CSM ON"));
+    let items = decode(&body);
+    assert_eq!(items[0].as_ref().unwrap_err().problem, BinaryProblem::StillOpen);
+    assert_eq!(items[1], Ok(Command::Display(name("A"))));
+    assert_eq!(items[2], Ok(parse(b"SET CSM ON").unwrap()));
+    let mut vectors = text_record(true, "SET ");
+    vectors.push(Opcode::VectorsEnd.code());
+    assert_eq!(decode(&vectors)[0].as_ref().unwrap_err().problem, BinaryProblem::NotOpen);
+}
+
+#[test]
+fn what_no_text_can_say_is_not_encoded() {
+    let label = crate::command::Label { position: Default::default(), text: vec![b'a'; 241].into() };
+    let labels = crate::command::Labels { labels: vec![label] };
+    let command = Command::Define { name: None, object: Object::Labels(labels) };
+    assert_eq!(encode(&command, &mut Vec::new()).unwrap_err().what, "the text of a label");
 }
 
 /// Checks that the fields follow each other without gap.

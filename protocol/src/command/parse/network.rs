@@ -73,27 +73,27 @@ impl Parser<'_> {
     /// `value TO <j>name`, `VALUE(name) TO ...`, `VL(name) TO ...` or `number*P TO ...`
     pub(super) fn send(&mut self) -> Result<Command, Fault> {
         if let Some(variable) = self.call(Word::VariableValue)? {
-            return Ok(Command::SendVariable { variable, destination: self.to_destination()? });
+            return Ok(Command::SendVariable { variable, destination: self.destination_after_to()? });
         }
         if let Some(list) = self.call(Word::ListValue)? {
-            return Ok(Command::SendVectors { list, destination: self.to_destination()? });
+            return Ok(Command::SendVectors { list, destination: self.destination_after_to()? });
         }
         if self.is_number() && self.ahead().kind == TokenKind::Star {
             let count = self.count()?;
             self.advance();
             let mark = self.expect_one_of(&[Word::PositionMark, Word::LineMark], &["P", "L"])?;
             let lines = mark == Word::LineMark;
-            return Ok(Command::SendMarks { count, lines, destination: self.to_destination()? });
+            return Ok(Command::SendMarks { count, lines, destination: self.destination_after_to()? });
         }
-        Ok(Command::Send { value: self.value()?, destination: self.to_destination()? })
+        Ok(Command::Send { value: self.value()?, destination: self.destination_after_to()? })
     }
 
     /// `value IN name`: SEND to input 1.
     pub(super) fn store(&mut self) -> Result<Command, Fault> {
         if let Some(variable) = self.call(Word::VariableValue)? {
-            return Ok(Command::SendVariable { variable, destination: self.in_name()? });
+            return Ok(Command::SendVariable { variable, destination: self.destination_after_in()? });
         }
-        Ok(Command::Send { value: self.value()?, destination: self.in_name()? })
+        Ok(Command::Send { value: self.value()?, destination: self.destination_after_in()? })
     }
 
     /// `word(name)`, if it stands here.
@@ -108,7 +108,7 @@ impl Parser<'_> {
     }
 
     /// `[TO] <j>name`
-    fn to_destination(&mut self) -> Result<Destination, Fault> {
+    fn destination_after_to(&mut self) -> Result<Destination, Fault> {
         self.accept_word(Word::To);
         if self.token.kind != TokenKind::Less {
             return Err(self.fail(&["TO", "`<`"]));
@@ -117,7 +117,7 @@ impl Parser<'_> {
     }
 
     /// `[IN] name`
-    fn in_name(&mut self) -> Result<Destination, Fault> {
+    fn destination_after_in(&mut self) -> Result<Destination, Fault> {
         self.skip_before_name(Word::In);
         Ok(Destination { input: Input::Number(1), name: self.name()? })
     }

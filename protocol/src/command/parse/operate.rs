@@ -38,14 +38,10 @@ impl Parser<'_> {
             }
             Word::FieldOfView => Operate::FieldOfView { angle: self.real()?, boundaries: self.boundaries()? },
             Word::Eye => self.eye()?,
-            Word::Viewport => {
-                let (horizontal, vertical, intensity) = self.viewport()?;
-                Operate::Viewport { horizontal, vertical, intensity }
-            }
+            Word::Viewport => self.viewport(false)?,
             Word::Load => {
                 self.expect_word(Word::Viewport, &["VIEWPORT"])?;
-                let (horizontal, vertical, intensity) = self.viewport()?;
-                Operate::LoadViewport { horizontal, vertical, intensity }
+                self.viewport(true)?
             }
             Word::Font => Operate::CharacterFont(self.name()?),
             Word::Standard => {
@@ -131,12 +127,16 @@ impl Parser<'_> {
     }
 
     /// `HORIZONTAL [=] a:b VERTICAL [=] c:d [INTENSITY [=] e:f]`
-    fn viewport(&mut self) -> Result<([f64; 2], [f64; 2], Option<[f64; 2]>), Fault> {
+    fn viewport(&mut self, load: bool) -> Result<Operate, Fault> {
         let horizontal = self.limits(Word::Horizontal, &["HORIZONTAL"])?;
         let vertical = self.limits(Word::Vertical, &["VERTICAL"])?;
         let intensity =
             if self.is(Word::Intensity) { Some(self.limits(Word::Intensity, &["INTENSITY"])?) } else { None };
-        Ok((horizontal, vertical, intensity))
+        Ok(if load {
+            Operate::LoadViewport { horizontal, vertical, intensity }
+        } else {
+            Operate::Viewport { horizontal, vertical, intensity }
+        })
     }
 
     /// `BACK z [LEFT|RIGHT x] [UP|DOWN y] [FROM SCREEN AREA] w [WIDE] [FRONT = f BACK = b]`

@@ -281,6 +281,10 @@ impl Printer<'_> {
             Value::Matrix4x3(m) => self.call(Word::Matrix4x3Value, &four_by_three(m)),
             Value::Matrix4(m) => self.call(Word::Matrix4Value, &m.to_cols_array()),
             Value::Transform(m) => self.call(Word::TransformValue, &m.to_cols_array()),
+            // No command sends these: the text is for people only.
+            Value::Pick(pick) => self.quoted(pick.to_string().as_bytes()),
+            Value::Label(label) => self.quoted(&label.text),
+            Value::Vectors(vectors) => self.put(format_args!("VECTORS({})", vectors.ends.len())),
         }
     }
 

@@ -36,10 +36,11 @@ pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<
         }
         Input::Append => {
             let label = match value {
-                Value::String(text) => Label { position: DVec3::ZERO, text: text.clone() },
-                _ => Label { position: place(value, input)?, text: Box::default() },
+                Value::Label(label) => (Label { position: label.position, text: label.text.clone() }, label.on),
+                Value::String(text) => (Label { position: DVec3::ZERO, text: text.clone() }, true),
+                _ => (Label { position: place(value, input)?, text: Box::default() }, true),
             };
-            block.labels.push((label, true));
+            block.labels.push(label);
             return Ok(bytes(&block.labels[block.labels.len() - 1..]));
         }
         Input::Position | Input::Substitute => return Err(NodeFault::NoSuchInput { input }),
@@ -48,6 +49,11 @@ pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<
             let (label, shown) = &mut block.labels[index];
             match value {
                 Value::Boolean(on) => *shown = *on,
+                Value::Label(new) => {
+                    (label.position, *shown) = (new.position, new.on);
+                    let before = std::mem::replace(&mut label.text, new.text.clone());
+                    return Ok(new.text.len() as isize - before.len() as isize);
+                }
                 Value::String(text) => {
                     let before = std::mem::replace(&mut label.text, text.clone());
                     return Ok(text.len() as isize - before.len() as isize);

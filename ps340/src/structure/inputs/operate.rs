@@ -32,7 +32,11 @@ pub(super) fn accept(operation: &mut Operation, input: Input, value: &Value, fra
             *intensity = limits.2.or(*intensity);
         }
         Operation::TextSize(size) => *size = text_size(first(input)?, value)?,
-        Operation::Color { hue, .. } if input == FIRST => *hue = number(value, input)?,
+        // A colour as F:COLOR makes it is both.
+        Operation::Color { hue, saturation } if input == FIRST => match value {
+            Value::Vector2(color) => (*hue, *saturation) = (color.x, color.y.clamp(0.0, 1.0)),
+            value => *hue = number(value, input)?,
+        },
         Operation::Color { saturation, .. } if input == SECOND => *saturation = unit(value, input)?,
         Operation::ColorBlending(saturation) => *saturation = unit(value, first(input)?)?,
         Operation::Contrast(contrast) => *contrast = unit(value, first(input)?)?,

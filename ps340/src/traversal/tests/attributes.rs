@@ -31,7 +31,7 @@ fn count(structures: &Structures) -> usize {
 fn a_condition_without_a_target_guards_everything_after_it() {
     let bit = |on| Operation::ConditionalBit { bit: 14, on };
     let guard = Operation::IfBit { bit: 14, on: true };
-    assert_eq!(draw(&[guard.clone()], point()).len(), 0, "bits are off at first");
+    assert_eq!(draw(std::slice::from_ref(&guard), point()).len(), 0, "bits are off at first");
     assert_eq!(draw(&[bit(true), guard.clone()], point()).len(), 1);
     assert_eq!(draw(&[bit(true), bit(false), guard.clone()], point()).len(), 0);
     let members = vec![Member::Unnamed(point()), operate(guard), Member::Unnamed(point()), operate(bit(true))];

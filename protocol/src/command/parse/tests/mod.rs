@@ -1,5 +1,8 @@
 //! Facts about the parser.
 
+mod data;
+mod language;
+
 use super::*;
 use crate::{
     Name, Value,
@@ -227,7 +230,7 @@ fn names_that_are_too_long_are_errors_with_their_place() {
 
 #[test]
 fn the_dial_example_of_the_reference_is_read() {
-    let text = include_bytes!("dials.ps300");
+    let text = include_bytes!("../dials.ps300");
     let mut reader = CommandReader::default();
     reader.push(text);
     let commands: Vec<Command> = reader.by_ref().map(|item| item.unwrap().command).collect();

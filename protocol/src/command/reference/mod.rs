@@ -1,0 +1,103 @@
+//! The command table: one row for each command, from which help and checks are derived.
+//!
+//! Tests hold the table to the parser: each example is read and gives the command of its row, each command and each
+//! keyword has a row, and each keyword in a row is one of the parser.
+
+mod attribute;
+mod condition;
+mod curve;
+mod data;
+mod name_of;
+mod network;
+mod rendering;
+mod row;
+mod structure;
+mod system;
+mod text;
+mod transformation;
+mod viewing;
+
+pub use name_of::name_of;
+pub use row::{CommandRow, Confidence, InputRow, OptionRow};
+
+use super::{spelling::nearest, words::Word};
+use std::fmt::Write;
+
+/// The rows of each group, with its title.
+pub const GROUPS: &[(&str, &[CommandRow])] = &[
+    ("Structures", structure::ROWS),
+    ("Data", data::ROWS),
+    ("Curves", curve::ROWS),
+    ("Text", text::ROWS),
+    ("Transformations", transformation::ROWS),
+    ("Viewing", viewing::ROWS),
+    ("Attributes", attribute::ROWS),
+    ("Conditions", condition::ROWS),
+    ("Rendering and reading back", rendering::ROWS),
+    ("Function networks", network::ROWS),
+    ("System", system::ROWS),
+];
+
+/// All rows, group by group.
+pub fn rows() -> impl Iterator<Item = &'static CommandRow> {
+    GROUPS.iter().flat_map(|group| group.1)
+}
+
+/// A name that no row has, with the nearest name if one is near.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no command {asked}{}", .nearest.map(|name| format!("; did you mean {name}?")).unwrap_or_default())]
+pub struct UnknownCommand {
+    /// What was asked for.
+    pub asked: String,
+    /// The nearest name of a row.
+    pub nearest: Option<&'static str>,
+}
+
+/// The rows that `name` may mean: the row of that name; else those whose words begin with the words of `name`, which
+/// may be abbreviated; else those that contain a keyword of that name.
+///
+/// # Errors
+/// [`UnknownCommand`] if there are none.
+pub fn find(name: &str) -> Result<Vec<&'static CommandRow>, UnknownCommand> {
+    let asked: Vec<String> = name.split_whitespace().map(str::to_ascii_uppercase).collect();
+    let whole = asked.join(" ");
+    let same: Vec<_> = rows().filter(|row| row.name == whole).collect();
+    let begins = |row: &&CommandRow| {
+        let words: Vec<&str> = row.name.split(' ').collect();
+        !asked.is_empty()
+            && words.len() >= asked.len()
+            && words.iter().zip(&asked).all(|(word, asked)| word.starts_with(asked.as_str()))
+    };
+    let beginning: Vec<_> = rows().filter(begins).collect();
+    let mentioning: Vec<_> = rows().filter(|row| row.words().any(|word| word.accepts(whole.as_bytes()))).collect();
+    for found in [same, beginning, mentioning] {
+        if !found.is_empty() {
+            return Ok(found);
+        }
+    }
+    let words = Word::ALL.iter().map(|word| (word.upper(), *word));
+    let word = nearest(&whole, rows().map(|row| row.name)).or_else(|| {
+        let upper: Vec<(String, Word)> = words.collect();
+        let near = nearest(&whole, upper.iter().map(|pair| pair.0.as_str()))?;
+        let word = upper.iter().find(|pair| pair.0 == near)?.1;
+        rows().find(|row| row.words().any(|w| w == word)).map(|row| row.name)
+    });
+    Err(UnknownCommand { asked: name.to_owned(), nearest: word })
+}
+
+/// The list of all commands: name and summary, group by group.
+pub fn list() -> String {
+    let width = rows().map(|row| row.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (index, (title, rows)) in GROUPS.iter().enumerate() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}{title}", if index > 0 { "\n" } else { "" });
+        for row in *rows {
+            let _ = writeln!(text, "  {:width$}  {}", row.name, row.summary);
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests;

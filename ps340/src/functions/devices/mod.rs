@@ -1,0 +1,61 @@
+//! The initial instances: devices, labels, lights, the screen's text and the host, as functions that exist at start.
+//!
+//! Sources have outputs only; the machine sends from them what a person does. Sinks ask the machine for an effect.
+
+pub mod control;
+pub mod display;
+pub mod line;
+pub mod shading;
+pub mod status;
+
+use super::{Family, FunctionRow};
+use crate::port::{Effect, Firing, KindSet, PortSpec, Problem};
+
+/// The initial instances by what they belong to.
+pub static FAMILIES: [(&str, &[FunctionRow]); 5] = [
+    ("control devices", control::ROWS),
+    ("labels, lights and screen", display::ROWS),
+    ("host line", line::ROWS),
+    ("status", status::ROWS),
+    ("shading", shading::ROWS),
+];
+
+const TEXT: &[PortSpec] = &[PortSpec::active(KindSet::STRING, "text")];
+const TRIGGER: &[PortSpec] = &[PortSpec::active(KindSet::ANY, "trigger")];
+
+/// A function that exists at start under a name of its own.
+#[derive(Clone, Debug)]
+pub struct Initial {
+    /// The name of the instance, such as `DLABEL3`.
+    pub name: String,
+    /// What it is.
+    pub function: &'static FunctionRow,
+    /// Which of several equal devices: 1..=8 for a dial label; none for a single one.
+    pub device: Option<u16>,
+}
+
+/// The rows of all initial instances.
+pub fn rows() -> impl Iterator<Item = &'static FunctionRow> {
+    FAMILIES.iter().flat_map(|(_, rows)| rows.iter())
+}
+
+/// The initial instances: each row once, or once a device.
+pub fn initial() -> impl Iterator<Item = Initial> {
+    // PICK is an instance of a function that a user can make too.
+    let pick = super::picking::ROWS.iter().filter(|row| row.name == "PICK");
+    rows().chain(pick).flat_map(|function| {
+        let devices = match (function.family, function.name) {
+            (Family::Device, "FLABEL") => 0..=12,
+            (Family::Device, "CHANNEL") => 3..=7,
+            (Family::Device, _) => 1..=8,
+            _ => return vec![Initial { name: function.name.into(), function, device: None }],
+        };
+        let several = devices.map(|n| Initial { name: format!("{}{n}", function.name), function, device: Some(n) });
+        several.collect()
+    })
+}
+
+fn ask(f: &mut Firing, effect: Effect) -> Result<(), Problem> {
+    f.effect(effect);
+    Ok(())
+}

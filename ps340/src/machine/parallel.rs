@@ -1,0 +1,419 @@
+//! The machine's side of the parallel interface: command words, look-up, logical and physical reads and writes.
+
+use super::{Machine, PlainText, host_line::HostLine};
+use crate::{interpreter::Message, line::LineId, memory::MassMemory, structure::PhysicalFault};
+use protocol::{
+    Name,
+    parallel::{
+        AddressList, Code, Command, DONE, ERROR, Frame, FrameReader, INFORMATION, MAX_BLOCK_BYTES, MAX_LOOKUP, Trouble,
+        swap, write_block, write_word,
+    },
+};
+use std::collections::{BTreeMap, VecDeque};
+
+/// Frames that the words and blocks of a command may take: half a minute. Ours; the driver of the time gave up after half
+/// a second, but there was no network between.
+const TRANSFER_FRAMES: u64 = 1800;
+/// Messages that wait for RDNET; later ones are dropped. Ours.
+const MAX_MESSAGES: usize = 1000;
+/// Bytes of messages that wait for RDNET. Ours.
+const MAX_MESSAGE_BYTES: usize = 16 << 20;
+/// Where the memory of objects begins, and the step between their addresses. Ours.
+const FIRST_ADDRESS: u32 = 0x0001_0000;
+const ADDRESS_STEP: u32 = 0x100;
+/// Objects that a host may look up before it resets the interface. Ours.
+const MAX_ADDRESSES: usize = 65_536;
+
+/// What the machine keeps for a host on the parallel interface.
+#[derive(Debug)]
+pub(super) struct ParallelLine {
+    line: LineId,
+    plain_text: PlainText,
+    frames: FrameReader,
+    /// Reads what WRNET writes.
+    host: HostLine,
+    attached: Option<Attached>,
+    state: State,
+    addresses: Addresses,
+    /// The frame of the machine at which the current command is given up.
+    deadline: u64,
+    /// Bytes that began no frame, since the latest frame that one began.
+    noise: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Attached {
+    ForAll,
+    ForMemory,
+}
+
+/// What the host is to say next.
+#[derive(Debug)]
+enum State {
+    /// A command.
+    Idle,
+    /// Nothing: RDNET waits for a message.
+    Mail(Command),
+    /// The byte count.
+    Count(Command),
+    /// The swap flag.
+    Flag(Command, u16),
+    /// The block.
+    Block(Command, u16, bool),
+    /// Nothing: WRPHY_SYNC waits for the refresh.
+    Refresh(Command, Vec<u8>),
+}
+
+/// Messages of the function network that wait for a host on the parallel interface.
+#[derive(Debug, Default)]
+pub(super) struct Mailbox {
+    open: bool,
+    messages: VecDeque<Vec<u8>>,
+    bytes: usize,
+    lost: u64,
+}
+
+impl Mailbox {
+    /// A message for the host; dropped and counted when too many wait, and nothing if the host is not attached.
+    pub(super) fn push(&mut self, message: &[u8]) {
+        if !self.open {
+            return;
+        }
+        if self.messages.len() >= MAX_MESSAGES || self.bytes + message.len() > MAX_MESSAGE_BYTES {
+            self.lost += 1;
+            return;
+        }
+        self.bytes += message.len();
+        self.messages.push_back(message.to_vec());
+    }
+
+    fn pop(&mut self) -> Option<Vec<u8>> {
+        let message = self.messages.pop_front()?;
+        self.bytes -= message.len();
+        Some(message)
+    }
+}
+
+/// The addresses that were given out: handles that stand for names, not places in any memory.
+#[derive(Debug)]
+struct Addresses {
+    /// By first address: whose, and how many words long.
+    ranges: BTreeMap<u32, (Name, u32)>,
+    /// The latest address of each name.
+    latest: BTreeMap<Name, u32>,
+    next: u32,
+}
+
+impl Default for Addresses {
+    fn default() -> Addresses {
+        Addresses { ranges: BTreeMap::new(), latest: BTreeMap::new(), next: FIRST_ADDRESS }
+    }
+}
+
+impl Addresses {
+    /// The address of a named object with so many words.
+    fn give(&mut self, name: &Name, words: u32) -> Result<u32, Trouble> {
+        let latest = self.latest.get(name).copied();
+        if let Some(address) = latest.filter(|address| self.ranges.get(address).is_some_and(|range| range.1 == words)) {
+            return Ok(address);
+        }
+        let bytes = words.checked_mul(2).and_then(|bytes| bytes.checked_next_multiple_of(ADDRESS_STEP));
+        let next = bytes.and_then(|bytes| self.next.checked_add(bytes.max(ADDRESS_STEP))).ok_or(Trouble::Address)?;
+        if self.ranges.len() >= MAX_ADDRESSES {
+            return Err(Trouble::Address);
+        }
+        let address = std::mem::replace(&mut self.next, next);
+        self.ranges.insert(address, (name.clone(), words));
+        self.latest.insert(name.clone(), address);
+        Ok(address)
+    }
+
+    /// Whose memory an address is, and which word of it.
+    fn find(&self, address: u32) -> Result<(&Name, usize), Trouble> {
+        let (begin, (name, words)) = self.ranges.range(..=address).next_back().ok_or(Trouble::Address)?;
+        let offset = address - begin;
+        if !offset.is_multiple_of(2) || offset / 2 > *words {
+            return Err(Trouble::Address);
+        }
+        Ok((name, (offset / 2) as usize))
+    }
+}
+
+impl ParallelLine {
+    /// A line on which nothing has been said; the machine tells that it is there.
+    pub(super) fn new(line: LineId, plain_text: PlainText, out: &mut Vec<u8>) -> ParallelLine {
+        write_word(Code::Reset as u16, out);
+        ParallelLine {
+            line,
+            plain_text,
+            frames: FrameReader::default(),
+            host: HostLine::new(line, plain_text),
+            attached: None,
+            state: State::Idle,
+            addresses: Addresses::default(),
+            deadline: 0,
+            noise: 0,
+        }
+    }
+
+    /// Takes bytes from the host and does what they say; the answers are appended to `out`.
+    pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine, out: &mut Vec<u8>) {
+        self.frames.push(bytes);
+        while let Some(frame) = self.frames.next() {
+            let before = std::mem::take(&mut self.noise);
+            match frame {
+                Frame::Word(word) => self.word(word, machine, out),
+                Frame::Block(block) => self.block(block, machine, out),
+                Frame::Reset => self.reset(0, machine, out),
+                Frame::Noise(_) => {
+                    self.noise = before + 1;
+                    machine.counters.noise += 1;
+                    if before == 0 {
+                        let text = "bytes on the parallel interface begin no frame and are dropped";
+                        machine.report(Message::Line(text.into()));
+                        fail(0, Trouble::Command, out);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Gives up what is open. Returns the name of the structure that was.
+    pub(super) fn abandon(&mut self, memory: &mut MassMemory) -> Option<String> {
+        self.host.abandon(memory)
+    }
+
+    fn word(&mut self, word: u16, machine: &mut Machine, out: &mut Vec<u8>) {
+        match std::mem::replace(&mut self.state, State::Idle) {
+            State::Count(command) => match check_count(command.code, word) {
+                Ok(()) => self.state = State::Flag(command, word),
+                Err(trouble) => fail(command.word(), trouble, out),
+            },
+            State::Flag(command, count) if command.code == Code::ReadNet => {
+                self.read_net(command, count, word != 0, machine, out);
+            }
+            State::Flag(command, count) => self.state = State::Block(command, count, word != 0),
+            State::Block(command, _, _) => fail(command.word(), Trouble::Command, out),
+            // While it waits, a command may be aborted, and any other gives it up too.
+            State::Idle | State::Mail(_) | State::Refresh(_, _) => match Command::from_word(word) {
+                Some(command) => self.command(command, machine, out),
+                None => fail(word & 0xf00f, Trouble::Command, out),
+            },
+        }
+    }
+
+    fn command(&mut self, command: Command, machine: &mut Machine, out: &mut Vec<u8>) {
+        let allowed = match command.code {
+            Code::ReadNet | Code::WriteNet => self.attached == Some(Attached::ForAll),
+            code => !code.has_transfer() || self.attached.is_some(),
+        };
+        if !allowed {
+            return fail(command.word(), Trouble::Command, out);
+        }
+        match command.code {
+            Code::Reset => return self.reset(command.unit, machine, out),
+            Code::Attach | Code::DiagnosticAttach => {
+                let for_all = command.code == Code::Attach;
+                self.attached = Some(if for_all { Attached::ForAll } else { Attached::ForMemory });
+                machine.mailbox(self.line).open = for_all;
+            }
+            Code::Detach => self.let_go(machine),
+            Code::ReadNet => {
+                self.state = State::Mail(command);
+                return self.serve_mail(machine, out);
+            }
+            _ => {}
+        }
+        write_word(command.word(), out);
+        if command.code.has_transfer() {
+            self.deadline = machine.frame + TRANSFER_FRAMES;
+            self.state = State::Count(command);
+        }
+    }
+
+    fn reset(&mut self, unit: u8, machine: &mut Machine, out: &mut Vec<u8>) {
+        self.let_go(machine);
+        self.state = State::Idle;
+        write_word(Command { code: Code::Reset, unit }.word(), out);
+    }
+
+    /// The host is no longer attached; what it began is given up.
+    fn let_go(&mut self, machine: &mut Machine) {
+        self.attached = None;
+        self.addresses = Addresses::default();
+        *machine.mailbox(self.line) = Mailbox::default();
+        if let Some(open) = self.host.abandon(&mut machine.memory) {
+            machine.report(Message::Structure(format!("the host left while {open} was open")));
+        }
+        self.host = HostLine::new(self.line, self.plain_text);
+    }
+
+    /// Answers RDNET if a message is there.
+    pub(super) fn serve_mail(&mut self, machine: &mut Machine, out: &mut Vec<u8>) {
+        let State::Mail(command) = self.state else { return };
+        let mailbox = machine.mailbox(self.line);
+        let lost = std::mem::take(&mut mailbox.lost);
+        if !mailbox.messages.is_empty() {
+            write_word(command.word(), out);
+            self.deadline = machine.frame + TRANSFER_FRAMES;
+            self.state = State::Count(command);
+        }
+        if lost > 0 {
+            let text = format!("{lost} messages to a host on the parallel interface were lost: it does not read them");
+            machine.report(Message::Line(text));
+        }
+    }
+
+    fn read_net(&mut self, command: Command, count: u16, swapped: bool, machine: &mut Machine, out: &mut Vec<u8>) {
+        let mut message = machine.mailbox(self.line).pop().unwrap_or_default();
+        // A buffer that is too small gets the beginning, as in the library of the time.
+        message.truncate(usize::from(count));
+        give(command, message, swapped, out);
+    }
+
+    fn block(&mut self, mut block: Vec<u8>, machine: &mut Machine, out: &mut Vec<u8>) {
+        let (command, count, swapped) = match std::mem::replace(&mut self.state, State::Idle) {
+            State::Block(command, count, swapped) => (command, usize::from(count), swapped),
+            state => {
+                let word = match state {
+                    State::Count(command) | State::Flag(command, _) => command.word(),
+                    _ => 0,
+                };
+                return fail(word, Trouble::Command, out);
+            }
+        };
+        if block.len() != count.next_multiple_of(2) {
+            return fail(command.word(), Trouble::ByteCount, out);
+        }
+        if swapped {
+            swap(&mut block);
+        }
+        block.truncate(count);
+        let result = match command.code {
+            Code::WriteNet => {
+                self.host.receive(&block, machine);
+                done(command, out);
+                Ok(())
+            }
+            Code::Lookup => self.look_up(&block, machine).map(|address| {
+                done(command, out);
+                write_word(command.word() | INFORMATION, out);
+                write_word((address >> 16) as u16, out);
+                write_word(address as u16, out);
+            }),
+            Code::ReadPhysical => self.read_memory(&block, machine).map(|bytes| give(command, bytes, swapped, out)),
+            Code::WritePhysical => self.write_memory(&block, machine).map(|()| done(command, out)),
+            Code::WritePhysicalSync => {
+                self.state = State::Refresh(command, block);
+                Ok(())
+            }
+            _ => Err(Trouble::Command),
+        };
+        if let Err(trouble) = result {
+            fail(command.word(), trouble, out);
+        }
+    }
+
+    /// A refresh begins: what waited for it is written. A command that takes too long is given up.
+    pub(super) fn frame(&mut self, machine: &mut Machine, out: &mut Vec<u8>) {
+        match &self.state {
+            State::Refresh(command, block) => {
+                match self.write_memory(block, machine) {
+                    Ok(()) => done(*command, out),
+                    Err(trouble) => fail(command.word(), trouble, out),
+                }
+                self.state = State::Idle;
+            }
+            State::Count(command) | State::Flag(command, _) | State::Block(command, _, _)
+                if machine.frame >= self.deadline =>
+            {
+                fail(command.word(), Trouble::Timeout, out);
+                self.state = State::Idle;
+            }
+            _ => {}
+        }
+    }
+
+    fn look_up(&mut self, name: &[u8], machine: &Machine) -> Result<u32, Trouble> {
+        let text = std::str::from_utf8(name).map_err(|_| Trouble::Name)?;
+        let name = Name::new(text.trim_end_matches(['\0', ' '])).map_err(|_| Trouble::Name)?;
+        let id = machine.memory.objects.find(name.as_str()).filter(|id| machine.memory.is_defined(*id));
+        let words = machine.memory.physical_words(id.ok_or(Trouble::Name)?);
+        self.addresses.give(&name, u32::try_from(words).map_err(|_| Trouble::Address)?)
+    }
+
+    fn read_memory(&self, block: &[u8], machine: &Machine) -> Result<Vec<u8>, Trouble> {
+        let (list, _) = AddressList::read(block)?;
+        if 2 * list.words() > MAX_BLOCK_BYTES {
+            return Err(Trouble::ByteCount);
+        }
+        let mut bytes = Vec::with_capacity(2 * list.words());
+        for piece in &list.0 {
+            let (name, offset) = self.addresses.find(piece.address)?;
+            let id = machine.memory.objects.find(name.as_str()).ok_or(Trouble::Address)?;
+            let words = machine.memory.physical_read(id, offset, piece.words.into()).map_err(trouble)?;
+            bytes.extend(words.into_iter().flat_map(u16::to_be_bytes));
+        }
+        Ok(bytes)
+    }
+
+    fn write_memory(&self, block: &[u8], machine: &mut Machine) -> Result<(), Trouble> {
+        let (list, data) = AddressList::read(block)?;
+        if data.len() != 2 * list.words() {
+            return Err(Trouble::ByteCount);
+        }
+        let words: Vec<u16> = data.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect();
+        let mut rest = words.as_slice();
+        for piece in &list.0 {
+            let (now, later) = rest.split_at(piece.words.into());
+            let (name, offset) = self.addresses.find(piece.address)?;
+            let id = machine.memory.objects.find(name.as_str()).ok_or(Trouble::Address)?;
+            machine.memory.physical_write(id, offset, now).map_err(trouble)?;
+            rest = later;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a command may have a byte count.
+fn check_count(code: Code, count: u16) -> Result<(), Trouble> {
+    let allowed = match code {
+        Code::Lookup => (1..=MAX_LOOKUP).contains(&count.into()),
+        Code::ReadNet | Code::WriteNet => (1..=MAX_BLOCK_BYTES).contains(&count.into()),
+        _ => count > 0 && count.is_multiple_of(2),
+    };
+    if allowed { Ok(()) } else { Err(Trouble::ByteCount) }
+}
+
+fn trouble(fault: PhysicalFault) -> Trouble {
+    match fault {
+        PhysicalFault::Outside(..) => Trouble::Address,
+        PhysicalFault::NotFinite(_) | PhysicalFault::Mark(_) => Trouble::Data,
+    }
+}
+
+/// Gives the host a block, with its byte count before it.
+fn give(command: Command, mut bytes: Vec<u8>, swapped: bool, out: &mut Vec<u8>) {
+    write_word(command.word() | INFORMATION, out);
+    write_word(bytes.len() as u16, out);
+    if bytes.len() % 2 == 1 {
+        bytes.push(0);
+    }
+    if swapped {
+        swap(&mut bytes);
+    }
+    write_block(&bytes, out);
+    done(command, out);
+}
+
+fn done(command: Command, out: &mut Vec<u8>) {
+    write_word(command.word() | DONE, out);
+}
+
+fn fail(word: u16, trouble: Trouble, out: &mut Vec<u8>) {
+    write_word(word | ERROR, out);
+    write_word(trouble as u16, out);
+}
+
+#[cfg(test)]
+mod tests;

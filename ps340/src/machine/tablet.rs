@@ -1,0 +1,209 @@
+//! The data tablet with its stylus or puck.
+//!
+//! # Source
+//! A press sends `<6>` exactly once and `<3>` with the new code, a release `<3>` = 0 and `<2>` = FALSE, as clients of the
+//! time rely on; `<1>` and `<4>` are the position while in range (remembered) and while pressed (uncertain). The order of
+//! the messages of one event, that `<1>` speaks only when the position changes, and the commands are ours.
+
+use super::devices::Emission;
+use crate::port::TabletCommand;
+use glam::DVec2;
+use protocol::Value;
+
+/// What stylus or puck does. The tip switch of the stylus is button 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TabletEvent {
+    /// Is put or moved to a place, -1..=1.
+    Move([f64; 2]),
+    /// Buttons with this sum of codes (1, 2, 4, 8) are down.
+    Press(u8),
+    /// All buttons are up.
+    Release,
+    /// Is taken off the tablet.
+    Away,
+}
+
+const NAME: &str = "TABLETIN";
+const STREAM: u16 = 1;
+const SWITCH: u16 = 2;
+const BUTTONS: u16 = 3;
+const DRAWING: u16 = 4;
+const PROXIMITY: u16 = 5;
+const PRESS: u16 = 6;
+
+/// The state of the tablet.
+#[derive(Debug, Default)]
+pub(super) struct Tablet {
+    in_range: bool,
+    position: [f64; 2],
+    buttons: u8,
+    /// When `<1>` speaks: never [`TabletCommand::Trigger`].
+    mode: TabletCommand,
+}
+
+impl Tablet {
+    /// Where stylus or puck is, while it is in range.
+    pub(super) fn pointer(&self) -> Option<[f64; 2]> {
+        self.in_range.then_some(self.position)
+    }
+
+    /// A command, and what it makes the tablet send.
+    pub(super) fn command(&mut self, command: TabletCommand) -> Vec<Emission> {
+        match command {
+            TabletCommand::Trigger if self.in_range => vec![self.here(STREAM)],
+            TabletCommand::Trigger => Vec::new(),
+            mode => {
+                self.mode = mode;
+                Vec::new()
+            }
+        }
+    }
+
+    /// What an event makes TABLETIN send.
+    pub(super) fn event(&mut self, event: TabletEvent) -> Vec<Emission> {
+        let mut out = Vec::new();
+        match event {
+            TabletEvent::Move(at) if at.iter().all(|c| c.is_finite()) => {
+                self.position = at.map(|c| c.clamp(-1.0, 1.0));
+                self.enter(&mut out);
+                let streams = match self.mode {
+                    TabletCommand::Stream => true,
+                    TabletCommand::SwitchStream => self.buttons != 0,
+                    _ => false,
+                };
+                if streams {
+                    out.push(self.here(STREAM));
+                }
+                if self.buttons != 0 {
+                    out.push(self.here(DRAWING));
+                }
+            }
+            TabletEvent::Move(_) => {}
+            TabletEvent::Press(0) | TabletEvent::Release => self.release(&mut out),
+            TabletEvent::Press(code) => self.press(code, &mut out),
+            TabletEvent::Away => {
+                self.release(&mut out);
+                if std::mem::take(&mut self.in_range) {
+                    out.push((NAME, PROXIMITY, Value::Boolean(false)));
+                }
+            }
+        }
+        out
+    }
+
+    /// Comes into range, if it was not.
+    fn enter(&mut self, out: &mut Vec<Emission>) {
+        if !std::mem::replace(&mut self.in_range, true) {
+            out.push((NAME, PROXIMITY, Value::Boolean(true)));
+        }
+    }
+
+    /// A press somewhere off the tablet is one at the last place. Ours.
+    fn press(&mut self, code: u8, out: &mut Vec<Emission>) {
+        if !self.in_range {
+            out.extend(self.event(TabletEvent::Move(self.position)));
+        }
+        let before = std::mem::replace(&mut self.buttons, code);
+        if before == code {
+            return;
+        }
+        if before == 0 {
+            out.push((NAME, SWITCH, Value::Boolean(true)));
+            if matches!(self.mode, TabletCommand::Point | TabletCommand::SwitchStream) {
+                out.push(self.here(STREAM));
+            }
+        }
+        out.push((NAME, BUTTONS, Value::Integer(code.into())));
+        if before == 0 {
+            out.push(self.here(DRAWING));
+            out.push(self.here(PRESS));
+        }
+    }
+
+    fn release(&mut self, out: &mut Vec<Emission>) {
+        if std::mem::take(&mut self.buttons) != 0 {
+            out.push((NAME, BUTTONS, Value::Integer(0)));
+            out.push((NAME, SWITCH, Value::Boolean(false)));
+        }
+    }
+
+    fn here(&self, output: u16) -> Emission {
+        (NAME, output, Value::Vector2(DVec2::from_array(self.position)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Outputs and values of the messages of some events, as text.
+    fn sent(tablet: &mut Tablet, events: &[TabletEvent]) -> String {
+        let all = events.iter().flat_map(|event| tablet.event(*event)).map(|(name, output, value)| {
+            assert_eq!(name, NAME);
+            match value {
+                Value::Boolean(b) => format!("<{output}>{b}"),
+                Value::Integer(i) => format!("<{output}>{i}"),
+                Value::Vector2(v) => format!("<{output}>{},{}", v.x, v.y),
+                other => panic!("{other:?}"),
+            }
+        });
+        all.collect::<Vec<_>>().join(" ")
+    }
+
+    use TabletEvent::{Away, Move, Press, Release};
+
+    #[test]
+    fn a_press_sends_place_and_code_once_and_a_release_zero_and_false() {
+        let mut tablet = Tablet::default();
+        assert_eq!(sent(&mut tablet, &[Move([0.25, -0.125])]), "<5>true <1>0.25,-0.125");
+        assert_eq!(sent(&mut tablet, &[Press(4)]), "<2>true <3>4 <4>0.25,-0.125 <6>0.25,-0.125");
+        assert_eq!(sent(&mut tablet, &[Press(4)]), "", "the same buttons are still down");
+        assert_eq!(sent(&mut tablet, &[Move([0.5, 0.0])]), "<1>0.5,0 <4>0.5,0");
+        assert_eq!(sent(&mut tablet, &[Release, Release]), "<3>0 <2>false");
+        assert_eq!(sent(&mut tablet, &[Move([0.0, 0.0])]), "<1>0,0");
+        assert_eq!(sent(&mut tablet, &[Away, Away]), "<5>false");
+    }
+
+    #[test]
+    fn a_second_button_changes_the_code_only() {
+        let mut tablet = Tablet::default();
+        sent(&mut tablet, &[Move([0.0, 0.0]), Press(1)]);
+        assert_eq!(sent(&mut tablet, &[Press(3), Press(2)]), "<3>3 <3>2");
+        assert_eq!(sent(&mut tablet, &[Press(0)]), "<3>0 <2>false", "no button is a release");
+    }
+
+    #[test]
+    fn leaving_the_tablet_releases_the_buttons_and_a_press_brings_it_back() {
+        let mut tablet = Tablet::default();
+        sent(&mut tablet, &[Move([0.5, 0.5]), Press(8)]);
+        assert_eq!(sent(&mut tablet, &[Away]), "<3>0 <2>false <5>false");
+        assert_eq!(tablet.pointer(), None);
+        let back = sent(&mut tablet, &[Press(1)]);
+        assert_eq!(back, "<5>true <1>0.5,0.5 <2>true <3>1 <4>0.5,0.5 <6>0.5,0.5");
+    }
+
+    #[test]
+    fn commands_choose_when_the_position_streams() {
+        let all = [Move([0.5, 0.0]), Press(1), Move([1.0, 0.0]), Release, Move([0.0, 0.0])];
+        let streamed = |command| {
+            let mut tablet = Tablet::default();
+            assert!(tablet.command(command).is_empty());
+            sent(&mut tablet, &all).matches("<1>").count()
+        };
+        assert_eq!(streamed(TabletCommand::Stream), 3);
+        assert_eq!(streamed(TabletCommand::SwitchStream), 2);
+        assert_eq!(streamed(TabletCommand::Point), 1);
+        assert_eq!(streamed(TabletCommand::Remote), 0);
+        let mut tablet = Tablet::default();
+        assert!(tablet.command(TabletCommand::Trigger).is_empty(), "nothing is in range");
+        tablet.event(Move([0.5, 0.0]));
+        assert_eq!(tablet.command(TabletCommand::Trigger), [(NAME, STREAM, Value::Vector2(DVec2::new(0.5, 0.0)))]);
+    }
+
+    #[test]
+    fn places_stay_on_the_tablet() {
+        let mut tablet = Tablet::default();
+        assert_eq!(sent(&mut tablet, &[Move([5.0, -7.0])]), "<5>true <1>1,-1");
+        assert_eq!(sent(&mut tablet, &[Move([f64::NAN, 0.0])]), "");
+    }
+}
