@@ -4,7 +4,10 @@ use super::source::{Place, first_place, last_place};
 use crate::functions::{self, FunctionRow, Shape};
 use protocol::{
     Name, Value,
-    command::{Command, Destination, Input, Object, Operate},
+    command::{
+        Command, Destination, Input, Object, Operate,
+        token::{Lexer, TokenKind},
+    },
 };
 use std::collections::BTreeMap;
 
@@ -35,7 +38,7 @@ pub(super) struct Definition {
 pub(super) enum What {
     /// An instance of a function.
     Function(Function),
-    /// A function that does not exist, or not with that size.
+    /// Something that could not be made: a function that does not exist, a definition that cannot be read.
     NoFunction,
     /// BEGIN_STRUCTURE or INSTANCE OF, which take no messages.
     Structure,
@@ -149,6 +152,16 @@ impl Program {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Takes in a statement that cannot be read: what it would define is not held against those who use it.
+    pub(super) fn fail(&mut self, text: &[u8], place: Place) {
+        let mut lexer = Lexer::new(text, 0);
+        let (first, second) = (lexer.token(), lexer.token());
+        let name = (second.kind == TokenKind::Assign).then(|| Name::new(&text[first.span()]).ok()).flatten();
+        if let Some(full) = name.and_then(|name| self.full(&name)) {
+            self.definitions.entry(full).or_insert(Definition { place, what: What::NoFunction });
         }
     }
 

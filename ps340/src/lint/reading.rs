@@ -82,6 +82,7 @@ impl Reading<'_> {
                     self.command(&spanned.command, text, place);
                 }
                 Err(error) => {
+                    self.program.fail(reader.statement(), Place { file, at: begin });
                     let place = Place { file, at: begin + error.span.start };
                     self.note(place, Level::Error, error.message());
                 }

@@ -25,6 +25,10 @@ fn programs_that_work_are_clean() {
 fn syntax_errors_have_their_place_in_the_file() {
     assert_eq!(one("{ a }\n A := NIL;\n  DISPLAY 7;"), "f:3:11: error: expected a name, found `7`");
     assert!(one("@ dial 1 1\nA := ROATE IN X 3;").starts_with("f:2:6: error: "));
+    assert!(
+        one("A := ROATE IN X 3; DISPLAY A; SEND 1 TO <1>A;").contains("did you mean ROTATE"),
+        "one slip, one finding"
+    );
     assert_eq!(one("A := NIL;\nDISPLAY A"), "f:2:1: error: the last statement has no ;");
     assert_eq!(one("S := BEGIN_STRUCTURE\n A := NIL;"), "f:1:1: error: BEGIN_STRUCTURE of S has no END_STRUCTURE");
 }

@@ -5,10 +5,12 @@ use super::{
     order::{Order, OrderError, OrderRow, Words},
 };
 use crate::{
+    functions::printing::print,
     machine::Machine,
     network::{Activity, Outcome, Trace, Traced},
     port::ObjectId,
 };
+use protocol::{Kind, Value};
 use std::collections::BTreeSet;
 
 /// Functions that `top` lists if the order does not say.
@@ -257,7 +259,7 @@ fn trace_line(machine: &Machine, line: &Trace) -> String {
     let memory = machine.memory();
     let from =
         line.from.map_or_else(|| "SEND".into(), |from| format!("{}<{}>", title(memory, from.object), from.output));
-    let value: String = line.value.to_string().chars().take(SHOWN).collect();
+    let value = brief(&line.value);
     let outcome = match line.outcome {
         Outcome::Arrived { waiting: 1 } => String::new(),
         Outcome::Arrived { waiting } => format!(", {waiting} waiting"),
@@ -266,6 +268,16 @@ fn trace_line(machine: &Machine, line: &Trace) -> String {
         Outcome::Left => String::new(),
     };
     format!("{from} to {}{}: {value}{outcome}", line.to.input, title(memory, line.to.object))
+}
+
+/// A message as SEND has it, or as F:PRINT prints it if it has many numbers; the beginning of a long one.
+fn brief(value: &Value) -> String {
+    let text = match value.kind() {
+        Kind::Boolean | Kind::Integer | Kind::Real | Kind::String => value.to_string(),
+        _ => String::from_utf8_lossy(&print(value, false)).into_owned(),
+    };
+    let short: String = text.chars().take(SHOWN).collect();
+    if short.len() < text.len() { short + "..." } else { short }
 }
 
 fn describe(a: &Activity) -> String {
