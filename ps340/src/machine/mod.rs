@@ -30,8 +30,9 @@ use crate::{
     interpreter::{Class, Message},
     line::LineId,
     memory::MassMemory,
+    network::Network,
     picture::Picture,
-    port::Effect,
+    port::{Effect, ObjectId},
     raster::FrameBuffer,
     terminal::Terminal,
     traversal::Update,
@@ -312,6 +313,31 @@ impl Machine {
     /// The oldest message to the host that was not taken here before.
     pub fn take_message(&mut self) -> Option<Vec<u8>> {
         self.to_host.pop_front()
+    }
+
+    /// Objects, structure and network, to look at.
+    pub fn memory(&self) -> &MassMemory {
+        &self.memory
+    }
+
+    /// The network, to set traces, breaks and counters in it.
+    pub fn instruments(&mut self) -> &mut Network {
+        &mut self.memory.network
+    }
+
+    /// Lets the first function that is ready fire, and stops the network. Returns which it was.
+    pub fn fire_one(&mut self) -> Option<ObjectId> {
+        let fired = self.memory.network.step_one(&mut self.memory.effects);
+        self.counters.firings += u64::from(fired.is_some());
+        self.settle();
+        fired
+    }
+
+    /// Lets a network that stands go on.
+    pub fn resume(&mut self) {
+        self.memory.network.resume();
+        self.work_left = WORK_PER_STEP;
+        self.settle();
     }
 
     /// What an object is, in one line; none if the name is unknown.
