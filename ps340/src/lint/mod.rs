@@ -2,7 +2,7 @@
 //!
 //! The files are read one after the other, as if one host sent them. Every command is also given to a machine of its own,
 //! which says what it says to anybody; INITIALIZE ends a program and begins another. What a function sends for which
-//! kinds of message is not kept in a table, it is tried out ([`trial`]).
+//! kinds of message is not kept in a table, it is tried out (`trial`).
 //!
 //! Found for certain: an error. Likely not meant, but the host could still make it right: a warning.
 
