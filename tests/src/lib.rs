@@ -25,6 +25,8 @@ pub struct Machine {
     replies: mpsc::Receiver<String>,
     /// Where its host line is, as `HOST:PORT`.
     pub line: String,
+    /// Its other host lines, as they were printed: `unix:PATH`, `pty:PATH`.
+    pub more_lines: Vec<String>,
 }
 
 impl Machine {
@@ -53,11 +55,14 @@ impl Machine {
                 }
             }
         });
-        let mut machine = Machine { child, orders, errors, replies, line: String::new() };
+        let mut machine = Machine { child, orders, errors, replies, line: String::new(), more_lines: Vec::new() };
         loop {
             let line = machine.replies.recv_timeout(PATIENCE).expect("the machine gets ready");
-            match line.strip_prefix("ready line tcp:") {
-                Some(address) => machine.line = address.to_string(),
+            match line.strip_prefix("ready line ") {
+                Some(address) => match address.strip_prefix("tcp:") {
+                    Some(address) => machine.line = address.to_string(),
+                    None => machine.more_lines.push(address.to_string()),
+                },
                 None if line == "ready" => return machine,
                 None => {}
             }

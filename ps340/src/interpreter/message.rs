@@ -35,7 +35,7 @@ pub enum Message {
         /// What is wrong.
         fault: Fault,
     },
-    /// E 5 and on: a message that a node does not take.
+    /// E 5 and on, W 9: a message that a node does not take.
     Node {
         /// Which node.
         name: String,
@@ -71,6 +71,7 @@ impl Message {
         match self {
             Message::Redefined(_) | Message::Line(_) => Class::Warning,
             Message::Function { fault, .. } if fault.class() == 'W' => Class::Warning,
+            Message::Node { fault, .. } if fault.is_warning() => Class::Warning,
             Message::Raster(fault) if fault.is_warning() => Class::Warning,
             Message::Diagnostic(_) | Message::Information(_) => Class::Information,
             _ => Class::Error,

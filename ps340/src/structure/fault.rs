@@ -96,6 +96,11 @@ impl NodeFault {
         }
     }
 
+    /// Whether the message is a warning, as that about the same fault of functions is.
+    pub const fn is_warning(&self) -> bool {
+        matches!(self, NodeFault::NoSuchInput { .. })
+    }
+
     /// The text after the number.
     ///
     /// - `name`: the name of the node.

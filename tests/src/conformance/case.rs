@@ -96,7 +96,7 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-6;
 /// Something to do, or to expect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// `> text`: commands, with the line end.
+    /// `> text`, `each 1 9 text`: commands, with the line ends.
     Send(String),
     /// `raw "..."`: bytes on the line as they are.
     Raw(Vec<u8>),

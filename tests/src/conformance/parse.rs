@@ -3,6 +3,9 @@
 use super::case::{Case, Expected, Step, StrokeLine, Tag};
 use std::fmt;
 
+/// Largest number of an `each` step.
+const MAX_EACH: usize = 100_000;
+
 /// Why a file of cases cannot be read, with its place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {problem}")]
@@ -202,6 +205,7 @@ fn step(word: &str, rest: &str) -> Result<Step, Problem> {
             let quoted = rest.trim().strip_prefix('"').and_then(|text| text.strip_suffix('"'));
             Step::Raw(unescape(quoted.ok_or(Problem::Expected("bytes in double quotes"))?)?)
         }
+        "each" => each(rest)?,
         "watch" => watch(rest)?,
         "@" => Step::Order(required(rest, "an order of the operator")?.into()),
         "@~" => Step::Reply(required(rest, "a pattern")?.into()),
@@ -211,6 +215,17 @@ fn step(word: &str, rest: &str) -> Result<Step, Problem> {
         "quiet" => Step::Quiet,
         other => return Err(Problem::Unknown(other.into())),
     })
+}
+
+/// `FIRST LAST TEXT`
+fn each(rest: &str) -> Result<Step, Problem> {
+    const FORM: Problem = Problem::Expected("the first and the last number, then commands with #");
+    let mut words = rest.trim_start().splitn(3, ' ');
+    let mut number = || words.next().and_then(|word| word.parse::<usize>().ok());
+    let (first, last) = (number().ok_or(FORM)?, number().ok_or(FORM)?);
+    let text = words.next().filter(|_| first <= last && last <= MAX_EACH).ok_or(FORM)?;
+    let lines = (first..=last).map(|n| text.replace("##", &(n + 1).to_string()).replace('#', &n.to_string()) + "\n");
+    Ok(Step::Send(lines.collect()))
 }
 
 /// `[N [over M]]`
@@ -335,10 +350,20 @@ mod tests {
             ("section B\ncase a M x\n/ 0,0\n", "f:3: expected 'strokes' before the first '/'"),
             ("section B\ncase a M x\n<& 2\n< y\n> z", "f:5: expected another expectation of '<&'"),
             ("section B\ncase a M x\n<& 2\n< y\n", "f:4: expected more expectations of '<&'"),
+            (
+                "section B\ncase a M x\neach 2 1 A#\n",
+                "f:3: expected the first and the last number, then commands with #",
+            ),
             ("section B\ncase a M x\nwatch A\n", "f:3: expected NAME<output>, or NAME<output> as WORD"),
         ] {
             assert_eq!(one(text).unwrap_err(), error, "{text}");
         }
+    }
+
+    #[test]
+    fn each_repeats_commands_with_a_number_and_the_next() {
+        let case = one("section B\ncase a M x\neach 8 10 A# := INSTANCE OF A##;\nquiet\n").unwrap().remove(0);
+        assert_eq!(case.text(), "A8 := INSTANCE OF A9;\nA9 := INSTANCE OF A10;\nA10 := INSTANCE OF A11;\n");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::case::{Case, Expected, Step, Tag};
 use protocol::{
     Name, Value,
-    command::{Command, Destination, Input, print},
+    command::{Command, CommandReader, Destination, Input, print},
 };
 use ps340::functions::{Confidence, Example, FAMILIES, FunctionRow};
 
@@ -13,6 +13,12 @@ const TOLERANCE: f64 = 1e-8;
 const INSTANCE: &str = "TESTED";
 /// Numbers of the machine's messages that are warnings: no such input or output; queue full, clock late.
 const WARNINGS: [u16; 2] = [9, 12];
+
+/// Functions whose messages the rest of the machine carries out or answers: an example says what they do themselves,
+/// and what comes of it the written cases say.
+const ANSWERED: [&str; 7] = ["CI", "FETCH", "LBL_EXTRACT", "RASTERSTREAM", "READDISK", "READSTREAM", "SEND"];
+/// The start characters of packets, which bare text cannot hold.
+const STARTS: [u8; 2] = [0x1c, 0x16];
 
 /// The section of the reference for a family of functions.
 fn section(family: &str) -> &'static str {
@@ -36,7 +42,23 @@ pub fn cases() -> Vec<Case> {
     examples.filter_map(|(section, row, n, example)| case(section, row, n, example)).collect()
 }
 
+/// The command that sends a value; none if the language has no form for it, or bare text cannot carry it.
+fn sending(input: u16, value: Value) -> Option<String> {
+    let destination = Destination { input: Input::Number(input.into()), name: Name::new(INSTANCE).ok()? };
+    let command = Command::Send { value, destination };
+    let mut text = Vec::new();
+    print(&command, &mut text);
+    let mut reader = CommandReader::default();
+    reader.push(&text);
+    let is_read_back = reader.next().is_some_and(|read| read.is_ok_and(|read| read.command == command));
+    let is_bare = !text.iter().any(|byte| STARTS.contains(byte));
+    (is_read_back && is_bare).then(|| String::from_utf8(text).ok())?
+}
+
 fn case(section: &str, row: &FunctionRow, number: usize, example: &Example) -> Option<Case> {
+    if ANSWERED.contains(&row.name) {
+        return None;
+    }
     let tag = match row.source.confidence {
         Confidence::Confirmed => Tag::S,
         Confidence::Manual => Tag::M,
@@ -54,10 +76,7 @@ fn case(section: &str, row: &FunctionRow, number: usize, example: &Example) -> O
         steps.push(Step::Watch { name: INSTANCE.into(), output, word: Some(output.to_string()) });
     }
     for (input, literal) in example.sends {
-        let destination = Destination { input: Input::Number((*input).into()), name: Name::new(INSTANCE).ok()? };
-        let mut text = Vec::new();
-        print(&Command::Send { value: literal.value(), destination }, &mut text);
-        steps.push(Step::Send(format!("{}\n", String::from_utf8(text).ok()?)));
+        steps.push(Step::Send(format!("{}\n", sending(*input, literal.value())?)));
     }
     let mut expected = Vec::new();
     for (output, literal) in example.results {
@@ -78,11 +97,13 @@ fn case(section: &str, row: &FunctionRow, number: usize, example: &Example) -> O
     Some(case)
 }
 
-/// What F:PRINT makes of a value, written independently of the machine's own printing; none if there is no form.
+/// What F:PRINT makes of a value, written independently of the machine's own printing; none if there is no form, or the
+/// text has ends of messages inside.
 fn printed(output: u16, value: &Value) -> Option<Expected> {
     let list = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
     let numbers = |text: String| Some(Expected::Numbers(format!("{output} {text}")));
     match value {
+        Value::String(text) if text.contains(&b'\n') => None,
         Value::String(text) => {
             let mut exact = format!("{output} ").into_bytes();
             exact.extend_from_slice(text);
@@ -119,6 +140,6 @@ mod tests {
             .map(|row| row.name)
             .filter(|name| !cases.iter().any(|case| case.id.starts_with(&format!("table-{name}-"))))
             .collect();
-        assert!(cases.len() > 150 && without.len() < 8, "{} cases, none for {without:?}", cases.len());
+        assert!(cases.len() > 150 && without.len() < 14, "{} cases, none for {without:?}", cases.len());
     }
 }
