@@ -320,6 +320,15 @@ impl Machine {
         Some(describe::describe(&self.memory, id))
     }
 
+    /// Counts anew what network and structure keep books of, for tests.
+    ///
+    /// # Errors
+    /// What does not agree.
+    pub fn audit(&self) -> Result<(), String> {
+        self.memory.network.audit()?;
+        self.memory.structures.audit()
+    }
+
     fn emit(&mut self, emissions: Vec<devices::Emission>) {
         for (instance, output, value) in emissions {
             if let Some(id) = self.memory.objects.find(instance) {
