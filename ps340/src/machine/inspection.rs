@@ -89,4 +89,13 @@ impl Machine {
         let id = self.memory.objects.find(name)?;
         Some(describe::describe(&self.memory, id))
     }
+
+    /// Counts anew what network and structure keep books of, for tests.
+    ///
+    /// # Errors
+    /// What does not agree.
+    pub fn audit(&self) -> Result<(), String> {
+        self.memory.network.audit()?;
+        self.memory.structures.audit()
+    }
 }

@@ -14,6 +14,7 @@
 //! the time that a function took on the machine's own processor.
 
 mod arcs;
+mod audit;
 mod instance;
 mod instruments;
 mod observe;

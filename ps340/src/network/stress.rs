@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     functions::all,
-    port::{Effect, Literal, MAX_QUEUE},
+    port::{Effect, Literal},
 };
 use proptest::prelude::*;
 use protocol::Value;
@@ -75,38 +75,9 @@ fn perform(acts: &[Act], mut network: Network) -> (Network, Vec<Effect>) {
                 network.advance(frame, frame, &mut effects);
             }
         }
-        check_books(&network);
+        assert_eq!(network.audit(), Ok(()), "{act:?}");
     }
     (network, effects)
-}
-
-/// What each instance waits for, who is ready, how many queues are lent and bytes of strings kept, counted anew.
-fn check_books(network: &Network) {
-    let (mut string_bytes, mut queues, mut filled) = (0, 0, 0);
-    let ready: Vec<ObjectId> = network.ready.iter().collect();
-    let distinct: std::collections::BTreeSet<_> = ready.iter().collect();
-    assert_eq!(ready.len(), distinct.len(), "nobody stands twice in the list");
-    for id in network.objects() {
-        let instance = network.instance(id).unwrap();
-        let ports = network.ports.get(instance.ports);
-        let inputs = &ports[..usize::from(instance.inputs)];
-        string_bytes += ports.iter().map(|port| port.string_bytes(&network.backlog)).sum::<usize>();
-        queues += ports.iter().filter(|port| port.len(&network.backlog) > 1).count();
-        filled += inputs.iter().filter(|port| !port.is_empty()).count();
-        let mut fresh = Instance { row: instance.row, ..Instance::VACANT };
-        fresh.count(inputs);
-        let counted = |instance: &Instance| (instance.missing, instance.slack, instance.active, instance.strings);
-        assert_eq!(counted(instance), counted(&fresh), "{id:?} {:?}", instance.row);
-        let active = inputs.iter().filter(|port| port.is_active());
-        let waits = active.clone().any(|port| !port.is_empty());
-        assert!(!instance.is_ready() || waits, "only a message makes a function fire");
-        assert_eq!(instance.queued, ready.contains(&id), "{id:?}");
-        assert!(!instance.is_ready() || instance.queued, "{id:?}");
-        assert!(ports.iter().all(|port| port.len(&network.backlog) <= MAX_QUEUE));
-        assert!(ports.iter().flat_map(|port| port.messages(&network.backlog)).all(Value::is_finite));
-    }
-    assert_eq!(network.string_bytes, string_bytes);
-    assert!((queues..=filled).contains(&network.backlog.lent()), "no empty input keeps a queue");
 }
 
 proptest! {

@@ -368,6 +368,15 @@ impl Structures {
     pub fn bytes(&self) -> usize {
         self.bytes
     }
+
+    /// Counts the memory of the nodes anew.
+    ///
+    /// # Errors
+    /// What does not agree with [`bytes`](Self::bytes).
+    pub fn audit(&self) -> Result<(), String> {
+        let counted: usize = self.nodes.iter().flatten().map(Node::bytes).sum();
+        if counted == self.bytes { Ok(()) } else { Err(format!("the nodes take {counted} bytes, not {}", self.bytes)) }
+    }
 }
 
 #[cfg(test)]
