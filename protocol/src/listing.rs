@@ -18,6 +18,19 @@ const ROWS: usize = 4;
 /// Characters of a command or of a field that are shown.
 const SHOWN: usize = 120;
 
+/// Longest line of a message that is gathered, in bytes; the rest of a longer one is not shown again.
+const MAX_MESSAGE: usize = 4096;
+
+/// Who sent a stream.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sender {
+    /// A host: text is commands.
+    #[default]
+    Host,
+    /// The machine: text is messages, one a line.
+    Machine,
+}
+
 /// Lists a byte stream from either side of a line, with the decoders that the machine and the host use.
 ///
 /// ```
@@ -33,20 +46,31 @@ pub struct Listing {
     frames: FrameDecoder,
     commands: CommandReader,
     binary: BinaryDecoder,
+    sender: Sender,
+    /// The line of a message that has not ended.
+    message: Vec<u8>,
     offset: u64,
 }
 
 impl Listing {
+    /// A listing of what one side sent.
+    pub fn of(sender: Sender) -> Listing {
+        Listing { sender, ..Listing::default() }
+    }
+
     /// Lists more of the stream; a frame is listed when it is complete.
     ///
     /// # Errors
     /// Those of `out`.
     pub fn push(&mut self, bytes: &[u8], out: &mut impl Write) -> fmt::Result {
-        let Listing { frames, commands, binary, offset } = self;
+        let Listing { frames, commands, binary, sender, message, offset } = self;
         let mut result = Ok(());
         frames.feed(bytes, |frame| {
             let mut rows = Rows { offset: *offset, out: &mut *out, result };
-            rows.frame(frame, commands, binary);
+            match (&frame, *sender) {
+                (Frame::Text(text), Sender::Machine) => rows.messages(text, message),
+                _ => rows.frame(frame, commands, binary),
+            }
             result = rows.result;
             *offset += frame.stream_length() as u64;
         });
@@ -190,6 +214,22 @@ impl<W: Write> Rows<'_, W> {
         match body.seen {
             Seen::Nowhere => self.note(format_args!("{meaning}")),
             _ => self.field(body.at(span.start), body.raw(span), format_args!("{meaning}")),
+        }
+    }
+
+    /// Lists text from the machine, and the messages that end in it.
+    fn messages(&mut self, text: &[u8], message: &mut Vec<u8>) {
+        let mut at = 0;
+        for line in text.split_inclusive(|byte| *byte == b'\n') {
+            self.text(at, line);
+            at += line.len();
+            let room = MAX_MESSAGE.saturating_sub(message.len());
+            message.extend_from_slice(&line[..line.len().min(room)]);
+            if line.ends_with(b"\n") {
+                let whole = std::mem::take(message);
+                let shown: String = whole.trim_ascii_end().escape_ascii().map(char::from).collect();
+                self.note(format_args!("message: {}", shorten(&shown)));
+            }
         }
     }
 
@@ -359,6 +399,19 @@ mod tests {
              \x20                                                          command: DISPLAY A;\n\
              \x20                                                          error: 1:9: expected a name, found `1`\n"
         );
+    }
+
+    #[test]
+    fn text_of_the_machine_is_listed_with_its_messages() {
+        let mut listing = Listing::of(Sender::Machine);
+        let mut text = String::new();
+        for piece in [&b"0.1\r\nE 1 **"[..], b"* no\n"] {
+            listing.push(piece, &mut text).unwrap();
+        }
+        listing.finish(&mut text).unwrap();
+        assert_eq!(bytes_of(&text), b"0.1\r\nE 1 *** no\n");
+        let notes: Vec<&str> = text.lines().filter(|row| row.starts_with(' ')).map(str::trim).collect();
+        assert_eq!(notes, ["message: 0.1", "message: E 1 *** no"]);
     }
 
     #[test]

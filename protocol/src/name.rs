@@ -80,44 +80,6 @@ pub const fn is_name_character(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'$' | b'.')
 }
 
-/// The name that was probably meant: the nearest one, if at most a third of the letters are wrong (at least one may be).
-///
-/// ```
-/// use protocol::name::nearest;
-/// assert_eq!(nearest("ROATE", ["NOP", "ROTATE"]), Some("ROTATE"));
-/// assert_eq!(nearest("X", ["NOP", "ROTATE"]), None);
-/// ```
-///
-/// # Source
-/// The edit distance of Damerau 1964 for strings of which each letter is edited once, by the rows of Wagner and Fischer 1974.
-pub fn nearest<'n>(wanted: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
-    if wanted.len() > MAX_NAME {
-        return None;
-    }
-    let near = names.into_iter().map(|name| (edits(wanted.as_bytes(), name.as_bytes()), name));
-    let allowed = (wanted.len() / 3).max(1);
-    near.filter(|(edits, name)| *edits <= allowed && *edits < name.len()).min_by_key(|near| near.0).map(|near| near.1)
-}
-
-/// How many characters must be changed, added or left out, or neighbours swapped, to make one text of the other; case does
-/// not count.
-fn edits(a: &[u8], b: &[u8]) -> usize {
-    let same = |x: u8, y: u8| x.eq_ignore_ascii_case(&y);
-    let mut before_last = vec![0; b.len() + 1];
-    let mut last: Vec<usize> = (0..=b.len()).collect();
-    for (i, &x) in a.iter().enumerate() {
-        let mut row = vec![i + 1; b.len() + 1];
-        for (j, &y) in b.iter().enumerate() {
-            row[j + 1] = (last[j] + usize::from(!same(x, y))).min(last[j + 1] + 1).min(row[j] + 1);
-            if i > 0 && j > 0 && same(x, b[j - 1]) && same(a[i - 1], y) {
-                row[j + 1] = row[j + 1].min(before_last[j - 1] + 1);
-            }
-        }
-        before_last = std::mem::replace(&mut last, row);
-    }
-    last[b.len()]
-}
-
 impl Borrow<str> for Name {
     fn borrow(&self) -> &str {
         &self.0
@@ -144,18 +106,6 @@ mod tests {
     fn names_are_upper_case_and_may_hold_dots_and_dollars() {
         assert_eq!(Name::new("r001.irx").unwrap().as_str(), "R001.IRX");
         assert_eq!(Name::new("K0$1_").unwrap().as_str(), "K0$1_");
-    }
-
-    #[test]
-    fn edits_count_changes_additions_omissions_and_swaps() {
-        for (a, b, distance) in
-            [("", "ABC", 3), ("KITTEN", "SITTING", 3), ("FLAW", "lawn", 2), ("ADD", "add", 0), ("SNED", "SEND", 1)]
-        {
-            assert_eq!(edits(a.as_bytes(), b.as_bytes()), distance);
-            assert_eq!(edits(b.as_bytes(), a.as_bytes()), distance);
-        }
-        assert_eq!(nearest("ADDD", ["ANDC", "ADDC", "SUBC"]), Some("ADDC"));
-        assert_eq!(nearest("QQ", ["A", "BC"]), None);
     }
 
     #[test]

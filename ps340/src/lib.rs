@@ -23,4 +23,7 @@ pub mod line;
 pub mod machine;
 pub mod operator;
 pub mod shell;
+pub mod play;
+pub mod lint;
+pub mod cli;
 pub mod process;

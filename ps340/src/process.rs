@@ -1,13 +1,13 @@
 //! The process `ps340`: arguments, log and exit codes around the shell.
 
 use crate::{
-    functions::page,
+    cli,
     line::LineAddress,
     machine::{KeyboardMode, PlainText, Settings},
     shell::{Clock, End, Operator, Options, run},
 };
-use clap::{Parser, Subcommand};
-use protocol::{address::Place, command::reference};
+use clap::Parser;
+use protocol::address::Place;
 use std::{
     io::{IsTerminal, Write},
     path::PathBuf,
@@ -21,6 +21,7 @@ use std::{
 #[derive(Parser, Debug)]
 #[command(
     version,
+    args_conflicts_with_subcommands = true,
     after_help = "Lines: tcp:HOST:PORT (port 0 takes a free one), unix:PATH, pty: (a pseudo-terminal; its path is printed),\n\
                   serial:DEVICE[,BAUD[,8N1]], stdio:, file:PATH (a plain or captured file that is sent as a host would),\n\
                   parallel:HOST:PORT (the words of the parallel interface, see PARALLEL.md).\n\
@@ -30,10 +31,9 @@ use std::{
                                  The environment variable PS340_LOG sets what is logged on standard error \
                                  (e.g. 'debug', 'warn')."
 )]
-#[command(args_conflicts_with_subcommands = true)]
 struct Arguments {
     #[command(subcommand)]
-    subject: Option<Subject>,
+    tool: Option<cli::Tool>,
     /// Where hosts attach, see below. May be given several times.
     #[arg(long, value_name = "LINE", default_value = "tcp:127.0.0.1:3400")]
     listen: Vec<LineAddress>,
@@ -58,49 +58,11 @@ struct Arguments {
     threads: Option<u16>,
 }
 
-/// What to tell instead of starting the machine.
-#[derive(Subcommand, Debug)]
-enum Subject {
-    /// Tells about the functions of the machine: all in a table, or one in full.
-    Functions {
-        /// Which one, such as ROUTE or F:ROUTE.
-        name: Option<String>,
-    },
-    /// Tells about the commands of the language: all in a table, or one in full.
-    Commands {
-        /// Which one, such as 'vector_list' or 'set picking'; may be abbreviated.
-        name: Vec<String>,
-    },
-}
-
-/// What a person wants to know; a reader that goes away early is no failure.
-fn tell(subject: &Subject) -> ExitCode {
-    let text = match subject {
-        Subject::Functions { name: None } => Ok(page::table()),
-        Subject::Functions { name: Some(name) } => page::page(name).map_err(|error| error.to_string()),
-        Subject::Commands { name } if name.is_empty() => Ok(reference::list()),
-        Subject::Commands { name } => match reference::find(&name.join(" ")) {
-            Ok(rows) => Ok(rows.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
-            Err(error) => Err(error.to_string()),
-        },
-    };
-    match text {
-        Ok(text) => {
-            let _ = std::io::stdout().lock().write_all(text.as_bytes());
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("ps340: {error}");
-            ExitCode::from(2)
-        }
-    }
-}
-
 /// Reads the arguments, runs the machine, and returns the exit code.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if let Some(subject) = &arguments.subject {
-        return tell(subject);
+    if let Some(tool) = &arguments.tool {
+        return cli::run(tool);
     }
     let filter = tracing_subscriber::EnvFilter::try_from_env("PS340_LOG");
     tracing_subscriber::fmt()

@@ -67,6 +67,8 @@ pub struct CommandReader {
     last: Range<usize>,
     /// The byte before the buffer.
     before: u8,
+    /// Bytes of the stream before the buffer.
+    passed: u64,
 }
 
 impl Default for CommandReader {
@@ -80,6 +82,7 @@ impl Default for CommandReader {
             parsed: 0,
             last: 0..0,
             before: b'\n',
+            passed: 0,
         }
     }
 }
@@ -90,6 +93,7 @@ impl CommandReader {
         if self.start == self.buffer.len() || self.start > self.buffer.len() / 2 {
             self.before = self.byte_before(self.start);
             self.buffer.drain(..self.start);
+            self.passed += self.start as u64;
             self.scanned -= self.start;
             self.complete = self.complete.map(|end| end - self.start);
             self.start = 0;
@@ -116,6 +120,16 @@ impl CommandReader {
     /// the next push.
     pub fn statement(&self) -> &[u8] {
         self.buffer.get(self.last.clone()).unwrap_or(&[])
+    }
+
+    /// Where [`statement`](Self::statement) begins in the stream, in bytes; the end of the last one if it is empty.
+    pub fn position(&self) -> u64 {
+        self.passed + self.last.start as u64
+    }
+
+    /// Where in the stream the statement begins that has no `;` yet, or the next one.
+    pub fn unfinished_position(&self) -> u64 {
+        self.passed + self.start as u64
     }
 
     /// Looks for the `;` of the current statement. False if it is not there yet.

@@ -2,7 +2,7 @@
 
 use super::{Confidence, Example, FAMILIES, Family, FunctionRow, Rule, devices};
 use crate::port::{PortSpec, Role};
-use protocol::name::nearest;
+use protocol::command::spelling::nearest;
 use std::fmt::Write;
 
 /// Width of the first column.

@@ -1,7 +1,7 @@
 //! Operator lines: one order a line, one reply a line.
 
 use super::{Events, LineEvent, Listener, listener::Stream};
-use std::io::{BufRead, Write};
+use std::io::{BufRead, IsTerminal, Write};
 use tokio::{
     io::{AsyncBufRead, AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader},
     sync::oneshot,
@@ -83,8 +83,25 @@ async fn skip_line(read: &mut (impl AsyncBufRead + Unpin)) -> std::io::Result<()
     }
 }
 
-/// Takes orders from standard input, and replies on standard output. Blocks until the end of the input.
+/// A reply with its line ends as line ends, for a person who reads it on a terminal.
+fn for_people(reply: &str) -> String {
+    let mut text = String::with_capacity(reply.len());
+    let mut characters = reply.chars();
+    while let Some(c) = characters.next() {
+        match (c, if c == '\\' { characters.next() } else { None }) {
+            ('\\', Some('n')) => text.push('\n'),
+            ('\\', Some('r')) => {}
+            ('\\', Some(other)) => text.push(other),
+            _ => text.push(c),
+        }
+    }
+    text
+}
+
+/// Takes orders from standard input, and replies on standard output; on a terminal, a reply has lines. Blocks until the
+/// end of the input.
 pub fn serve_stdio(events: &Events) {
+    let people = std::io::stdout().is_terminal();
     for line in std::io::stdin().lock().split(b'\n') {
         let Ok(line) = line else { break };
         let text = String::from_utf8_lossy(&line).trim().to_string();
@@ -97,9 +114,21 @@ pub fn serve_stdio(events: &Events) {
         }
         let Ok(answer) = answer.blocking_recv() else { return };
         let mut out = std::io::stdout().lock();
+        let answer = if people { for_people(&answer) } else { answer };
         if writeln!(out, "{answer}").and_then(|()| out.flush()).is_err() {
             break;
         }
     }
     let _ = events.blocking_send(LineEvent::OperatorGone);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::for_people;
+
+    #[test]
+    fn people_read_lines() {
+        assert_eq!(for_people(r"ok a\nb\\n\r"), "ok a\nb\\n");
+        assert_eq!(for_people("ok\\"), "ok\\");
+    }
 }

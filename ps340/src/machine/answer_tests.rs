@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::{functions::find, network::Network, port::ObjectId};
-use protocol::command::{Input as Place, encode};
+use protocol::{
+    Value,
+    command::{Input as Place, encode},
+};
 
 const LINE: LineId = LineId(1);
 

@@ -7,10 +7,12 @@ mod devices;
 mod dials;
 mod host_line;
 mod initial;
+mod inspection;
 mod keyboard;
 mod parallel;
 mod panel;
 mod requests;
+mod speech;
 mod streams;
 mod tablet;
 mod tube;
@@ -21,29 +23,18 @@ pub use devices::Event;
 pub use host_line::PlainText;
 pub use keyboard::{Key, KeyboardMode};
 pub use panel::Panel;
+pub use speech::REPORTS_PER_FRAME;
 pub use tablet::TabletEvent;
 
 use crate::{
-    calligraphic::Beam,
-    disk::Disk,
-    functions::devices::initial,
-    interpreter::{Class, Message},
-    line::LineId,
-    memory::MassMemory,
-    picture::Picture,
-    port::Effect,
-    raster::FrameBuffer,
-    terminal::Terminal,
-    traversal::Update,
+    calligraphic::Beam, disk::Disk, functions::devices::initial, interpreter::Message, line::LineId,
+    memory::MassMemory, picture::Picture, port::Effect, raster::FrameBuffer, terminal::Terminal, traversal::Update,
 };
 use devices::Devices;
 use host_line::HostLine;
 use keyboard::Keyboard;
 use parallel::{Mailbox, ParallelLine};
-use protocol::{
-    Value,
-    wire::{MessageForm, MessageWriter},
-};
+use protocol::wire::MessageWriter;
 use requests::Waiting;
 use std::collections::{BTreeMap, VecDeque};
 use streams::Streams;
@@ -55,15 +46,6 @@ pub const FRAMES_PER_SECOND: u64 = 60;
 /// Messages that functions deliver in one step of the machine: a frame, or some input (at least one a firing). What is
 /// left waits for the next step, so that a network that never rests stops neither the display nor the lines. Ours.
 pub const WORK_PER_STEP: u64 = 200_000;
-/// Messages of the machine that reach ERROR, WARNING, INFORMATION and the terminal between two frames; the rest are logged and
-/// counted only, so that a message that causes messages ends.
-pub const REPORTS_PER_FRAME: u64 = 1000;
-/// Messages of the machine between two frames that are written to the log of the process one by one.
-const LOGGED_PER_FRAME: u64 = 20;
-/// Messages of the machine that [`Machine::log`] keeps.
-const LOG_LINES: usize = 1000;
-/// Messages to the host that wait for the operator.
-const KEPT_MESSAGES: usize = 1000;
 
 /// Microseconds since the machine was made.
 pub type Micros = u64;
@@ -262,64 +244,6 @@ impl Machine {
         beam.picture(&self.visible_strokes())
     }
 
-    /// What the raster screen shows now.
-    pub fn raster_picture(&self) -> Picture {
-        self.frame_buffer.picture()
-    }
-
-    /// The latest update.
-    pub fn latest_update(&self) -> &Update {
-        &self.update
-    }
-
-    /// The terminal emulator: its text, cursor and modes.
-    pub fn terminal(&self) -> &Terminal {
-        &self.terminal
-    }
-
-    /// Labels, lights and texts around the screens.
-    pub fn panel(&self) -> &Panel {
-        &self.panel
-    }
-
-    /// The files that functions read and write.
-    pub fn disk(&self) -> &Disk {
-        &self.disk
-    }
-
-    /// The same, to put files there before the machine starts.
-    pub fn disk_mut(&mut self) -> &mut Disk {
-        &mut self.disk
-    }
-
-    /// The latest messages of the machine, oldest first.
-    pub fn log(&self) -> impl Iterator<Item = &str> {
-        self.log.iter().map(String::as_str)
-    }
-
-    /// What the machine has counted.
-    pub fn counters(&self) -> Counters {
-        Counters {
-            frame: self.frame,
-            objects: self.memory.objects.len() as u64,
-            bytes: self.memory.bytes() as u64,
-            strokes: self.update.strokes.len() as u64,
-            vectors: self.update.vectors,
-            ..self.counters
-        }
-    }
-
-    /// The oldest message to the host that was not taken here before.
-    pub fn take_message(&mut self) -> Option<Vec<u8>> {
-        self.to_host.pop_front()
-    }
-
-    /// What an object is, in one line; none if the name is unknown.
-    pub fn describe(&self, name: &str) -> Option<String> {
-        let id = self.memory.objects.find(name)?;
-        Some(describe::describe(&self.memory, id))
-    }
-
     fn emit(&mut self, emissions: Vec<devices::Emission>) {
         for (instance, output, value) in emissions {
             if let Some(id) = self.memory.objects.find(instance) {
@@ -428,61 +352,6 @@ impl Machine {
         self.watch = Watch::default();
         self.switch_keyboard(self.settings.keyboard);
         self.messages.push(Message::Information("the machine was started again".into()));
-    }
-
-    /// A message to the host goes to every host that is attached; a `binary` one without an end of line.
-    fn send_to_host(&mut self, message: &[u8], binary: bool) {
-        self.counters.messages_out += 1;
-        if self.to_host.len() >= KEPT_MESSAGES {
-            self.to_host.pop_front();
-        }
-        self.to_host.push_back(message.to_vec());
-        self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
-        for (line, writer) in &self.writers {
-            let mut bytes = Vec::new();
-            let written = if binary && writer.form() == MessageForm::Text {
-                bytes.extend_from_slice(message);
-                true
-            } else {
-                writer.write(message, &mut bytes).is_ok()
-            };
-            if written {
-                self.outputs.push(Output { line: *line, bytes });
-            }
-        }
-    }
-
-    /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION.
-    fn report(&mut self, message: Message) {
-        let text = message.to_string();
-        let instance = match message.class() {
-            Class::Error => "ERROR",
-            Class::Warning => "WARNING",
-            Class::Information => "INFORMATION",
-        };
-        self.counters.messages += 1;
-        if self.log.len() >= LOG_LINES {
-            self.log.pop_front();
-        }
-        self.reported += 1;
-        if self.reported <= LOGGED_PER_FRAME {
-            tracing::info!("{text}");
-        }
-        self.log.push_back(text.clone());
-        if self.reported <= REPORTS_PER_FRAME {
-            self.show_message(&text);
-            self.emit(vec![(instance, 1, Value::string(&text))]);
-        }
-    }
-
-    /// Says how many messages were too many for the log and for ERROR and WARNING since the latest frame.
-    fn account_for_reports(&mut self) {
-        let reported = std::mem::take(&mut self.reported);
-        if reported > LOGGED_PER_FRAME {
-            let unheard = reported.saturating_sub(REPORTS_PER_FRAME);
-            let rest = reported - LOGGED_PER_FRAME;
-            tracing::warn!("{rest} more messages in one frame; {unheard} of them did not reach ERROR and WARNING");
-        }
     }
 }
 

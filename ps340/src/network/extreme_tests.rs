@@ -1,9 +1,7 @@
 //! Networks at their limits, each with the outcome that the machine states.
 
-use super::{
-    tests::{Bench, deliver, faults},
-    *,
-};
+use super::*;
+use crate::network::tests::{Bench, deliver, faults};
 use crate::{
     functions::find,
     port::{

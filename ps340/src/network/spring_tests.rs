@@ -22,7 +22,8 @@
 //! Half the step, half the error: both are of first order. Stiff by six orders of magnitude (decay rates of 1 and
 //! 10^6 / s, k = 10^6, c = 10^6 + 1): stable below h = 2.0 us only, whatever is asked of the slow part.
 
-use super::{tests::Bench, *};
+use super::*;
+use crate::network::tests::Bench;
 use crate::port::{
     Effect, Fault,
     Literal::{B, I, R},

@@ -1,6 +1,7 @@
 //! People who look on: counters, traces, breaks, single firings, snapshots.
 
-use super::{tests::Bench, *};
+use super::*;
+use crate::network::tests::Bench;
 use crate::port::Literal::{I, S, V2};
 use protocol::Value;
 use std::collections::BTreeSet;

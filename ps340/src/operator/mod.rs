@@ -2,10 +2,14 @@
 //!
 //! A reply begins with `ok` or `error`. Line ends inside a reply are written `\n`.
 
+mod graph;
+mod inspect;
 mod order;
 mod perform;
 
-pub use order::{ORDERS, Order, OrderError, OrderRow, Screen, parse};
+pub use graph::{Language, Subject};
+pub use inspect::Inspection;
+pub use order::{Order, OrderError, OrderRow, Screen, parse, rows};
 pub use perform::{Outcome, Wait, perform};
 
 /// The reply line for a result: `ok`, `ok TEXT` or `error TEXT`, without the line end.

@@ -1,5 +1,6 @@
 //! The orders of the operator: their table and their text form.
 
+use super::inspect::{self, Inspection};
 use crate::machine::{Key, KeyboardMode};
 use clap::ValueEnum;
 
@@ -12,7 +13,7 @@ pub struct OrderRow {
     pub arguments: &'static str,
     /// What it does.
     pub summary: &'static str,
-    read: fn(&mut Words<'_>) -> Result<Order, OrderError>,
+    pub(super) read: fn(&mut Words<'_>) -> Result<Order, OrderError>,
 }
 
 /// Which of the two screens.
@@ -81,6 +82,8 @@ pub enum Order {
     Panel,
     /// The text on the screen of the terminal emulator.
     Terminal,
+    /// Looks into the network or the structure.
+    Inspect(Inspection),
     /// The latest numbered messages of the machine.
     Log,
     /// Lists the orders.
@@ -93,7 +96,7 @@ pub enum Order {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OrderError {
     /// The first word is unknown.
-    #[error("unknown order '{0}'; 'help' lists them")]
+    #[error("unknown order '{word}'; {hint}'help' lists them", word = .0, hint = meant(.0))]
     Unknown(String),
     /// Something is missing.
     #[error("{0} is missing")]
@@ -111,14 +114,25 @@ pub enum OrderError {
     TooMuch(String),
 }
 
+/// The order that a word is nearly.
+fn meant(word: &str) -> String {
+    let near = protocol::command::spelling::nearest(word, rows().map(|row| row.word));
+    near.map_or(String::new(), |near| format!("did you mean '{near}'? "))
+}
+
 /// Frames that `idle` and `message` wait for if the order does not say: ten seconds.
 const PATIENCE: u64 = 600;
 
 /// Strokes that `strokes` lists if the order does not say.
 const STROKES: usize = 10_000;
 
-/// Every order.
-pub const ORDERS: &[OrderRow] = &[
+/// Every order: what a person does at the machine, and what looks into it.
+pub fn rows() -> impl Iterator<Item = &'static OrderRow> {
+    ORDERS.iter().chain(inspect::ROWS)
+}
+
+/// The orders of a person at the machine.
+const ORDERS: &[OrderRow] = &[
     OrderRow { word: "dial", arguments: "1..8 TURNS", summary: "turn a dial", read: dial },
     OrderRow {
         word: "key",
@@ -189,7 +203,14 @@ pub const ORDERS: &[OrderRow] = &[
         summary: "the same of what is drawn over the picture: terminal, message line, cursor",
         read: |w| Ok(Order::Overlay(w.optional("a number of strokes")?.unwrap_or(STROKES))),
     },
-    OrderRow { word: "counters", arguments: "", summary: "counters of the machine", read: |_| Ok(Order::Counters) },
+    OrderRow {
+        word: "counters",
+        arguments: "[NAME]",
+        summary: "counters of the machine, or of a function after 'count on'",
+        read: |w| {
+            Ok(w.next().map_or(Order::Counters, |n| Order::Inspect(Inspection::Activity(n.to_ascii_uppercase()))))
+        },
+    },
     OrderRow {
         word: "panel",
         arguments: "",
@@ -214,28 +235,28 @@ pub const ORDERS: &[OrderRow] = &[
 pub fn parse(line: &str) -> Result<Order, OrderError> {
     let mut words = Words { rest: line.trim() };
     let word = words.required("an order")?;
-    let row = ORDERS.iter().find(|r| r.word.eq_ignore_ascii_case(word));
+    let row = rows().find(|r| r.word.eq_ignore_ascii_case(word));
     let order = (row.ok_or_else(|| OrderError::Unknown(word.into()))?.read)(&mut words)?;
     if words.rest.is_empty() { Ok(order) } else { Err(OrderError::TooMuch(words.rest.into())) }
 }
 
 /// What is left of the line.
-struct Words<'a> {
-    rest: &'a str,
+pub(super) struct Words<'a> {
+    pub(super) rest: &'a str,
 }
 
 impl<'a> Words<'a> {
-    fn next(&mut self) -> Option<&'a str> {
+    pub(super) fn next(&mut self) -> Option<&'a str> {
         let (word, rest) = self.rest.split_once(char::is_whitespace).unwrap_or((self.rest, ""));
         self.rest = rest.trim_start();
         (!word.is_empty()).then_some(word)
     }
 
-    fn required(&mut self, what: &'static str) -> Result<&'a str, OrderError> {
+    pub(super) fn required(&mut self, what: &'static str) -> Result<&'a str, OrderError> {
         self.next().ok_or(OrderError::Missing(what))
     }
 
-    fn optional<T: std::str::FromStr>(&mut self, expected: &'static str) -> Result<Option<T>, OrderError> {
+    pub(super) fn optional<T: std::str::FromStr>(&mut self, expected: &'static str) -> Result<Option<T>, OrderError> {
         let word = self.next();
         word.map(|w| w.parse().map_err(|_| OrderError::Bad { found: w.into(), expected })).transpose()
     }

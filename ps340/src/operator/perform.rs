@@ -1,6 +1,6 @@
 //! Carrying out an order on a machine.
 
-use super::{ORDERS, Order, Screen};
+use super::{Order, Screen, inspect::inspect, rows};
 use crate::{
     calligraphic::Beam,
     machine::{Event, Key, Machine, TabletEvent},
@@ -70,6 +70,7 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         Order::Strokes(most) => return Outcome::Done(Ok(strokes(&machine.latest_update().strokes, *most))),
         Order::Overlay(most) => return Outcome::Done(Ok(strokes(machine.overlay(), *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
+        Order::Inspect(what) => return Outcome::Done(inspect(what, machine)),
         Order::Panel => {
             return Outcome::Done(Ok(format!("{}\n{}", machine.panel(), machine.switches())));
         }
@@ -83,7 +84,7 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
 }
 
 fn help() -> String {
-    let lines = ORDERS.iter().map(|r| format!("{:<50} {}", format!("{} {}", r.word, r.arguments), r.summary));
+    let lines = rows().map(|r| format!("{:<50} {}", format!("{} {}", r.word, r.arguments), r.summary));
     lines.collect::<Vec<_>>().join("\n")
 }
 

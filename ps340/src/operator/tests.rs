@@ -1,12 +1,15 @@
 //! Tests of the operator's orders.
 
 use super::*;
-use crate::machine::{Key, KeyboardMode, Machine, Settings};
+use crate::{
+    line::LineId,
+    machine::{Input, Key, KeyboardMode, Machine, Settings},
+};
 
 #[test]
 fn every_row_has_its_own_word() {
-    for (i, row) in ORDERS.iter().enumerate() {
-        assert!(ORDERS[..i].iter().all(|r| r.word != row.word), "{}", row.word);
+    for (i, row) in rows().enumerate() {
+        assert!(rows().take(i).all(|r| r.word != row.word), "{}", row.word);
     }
 }
 
@@ -55,6 +58,92 @@ fn a_reply_is_one_line() {
     assert_eq!(reply(&Err("no".into())), "error no");
 }
 
+/// A machine that was told a text, with the replies to orders.
+fn replies(text: &str, orders: &[&str]) -> Vec<String> {
+    let mut machine = Machine::new(Settings::default());
+    let line = LineId(1);
+    machine.step([Input::Attach(line), Input::Bytes(line, text.as_bytes().to_vec())], 0);
+    let one = |order: &&str| match parse(order).map(|order| perform(&order, &mut machine)) {
+        Ok(Outcome::Done(result)) => reply(&result),
+        Ok(Outcome::Waiting(wait)) => loop {
+            if let Some(result) = wait.poll(&mut machine) {
+                break reply(&result);
+            }
+            machine.next_frame();
+        },
+        other => format!("{other:?}"),
+    };
+    orders.iter().map(one).collect()
+}
+
+const CHAIN: &str = "A := F:ADDC; SEND 1 TO <2>A; B := F:PRINT; T := ROTATE IN Z 0;
+    CONNECT DIALS<1>:<1>A; CONNECT A<1>:<1>B; CONNECT B<1>:<1>HOST_MESSAGE;";
+
+#[test]
+fn a_message_is_seen_on_its_way() {
+    let said =
+        replies(CHAIN, &["trace", "trace a", "dial 1 0.5", "frames 1", "trace", "trace", "trace a off", "trace"]);
+    assert_eq!(said[0], "ok nothing is traced; 'trace NAME' or 'trace all' begins");
+    assert_eq!(said[4], "ok DIALS<1> to <1>A: 0.5\\nA<1> to <1>B: 1.5");
+    assert_eq!(said[5], "ok no message has passed");
+    assert!(said[7].starts_with("ok nothing is traced"));
+    assert_eq!(replies(CHAIN, &["trace nobody"]), ["error there is no NOBODY"]);
+}
+
+#[test]
+fn the_network_stops_at_a_break_and_goes_on_step_by_step() {
+    let orders = [
+        "break b",
+        "dial 1 0.5",
+        "frames 1",
+        "break",
+        "step",
+        "message 3",
+        "step",
+        "message 3",
+        "break b off",
+        "continue",
+    ];
+    let said = replies(CHAIN, &orders);
+    assert_eq!(said[0], "ok the network runs");
+    assert_eq!(said[3], "ok breaks: B; the network stands before B");
+    assert_eq!(said[4], "ok B fired; the network stands before HOST_MESSAGE");
+    assert_eq!(said[5], "error no message to the host");
+    assert_eq!(said[6], "ok HOST_MESSAGE fired; the network stands, nothing is ready");
+    assert_eq!((said[7].as_str(), said[9].as_str()), ("ok 1.5", "ok the network runs"));
+    assert_eq!(replies(CHAIN, &["break t"]), ["error T is no function"]);
+}
+
+#[test]
+fn functions_count_what_they_did() {
+    let said = replies(CHAIN, &["counters a", "top", "count on", "dial 1 1", "frames 1", "counters a", "top 2"]);
+    assert_eq!(said[0], "error nothing is counted; 'count on' begins");
+    assert_eq!(said[1], said[0]);
+    assert_eq!(said[5], "ok firings=1 faults=0 received=1 sent=1 lost=0 refused=0 longest_queue=1");
+    assert_eq!(said[6].matches("firings=1").count(), 2, "{}", said[6]);
+}
+
+#[test]
+fn graphs_show_functions_arcs_and_nodes() {
+    let text =
+        format!("{CHAIN} L := INSTANCE OF T; DISPLAY L; CONNECT A<1>:<1>T; FONTS := CHARACTER FONT NONE THEN L;");
+    let said = replies(&text, &["graph network", "graph network json", "graph structure", "graph structure json"]);
+    for (reply, parts) in said.iter().zip([
+        &["digraph network", "\"A\" -> \"B\" [label=\"1 > 1\"]", "\"DIALS\" -> \"A\"", "F:ADDC"][..],
+        &["\"from\": \"DIALS\"", "\"first\": \"1\"", "\"type\": \"PRINT\""],
+        &["digraph structure", "\"the display\" -> \"L\"", "\"L\" -> \"T\""],
+        &["\"displayed\": [", "\"descendants\": ["],
+    ]) {
+        for part in parts {
+            assert!(reply.contains(part), "{part}: {reply}");
+        }
+    }
+    for json in [&said[1], &said[3]] {
+        let text = json.strip_prefix("ok ").unwrap().replace("\\n", "\n").replace("\\\\", "\\");
+        serde_json::from_str::<serde_json::Value>(&text).unwrap();
+    }
+}
+
 fn performed(machine: &mut Machine, order: &str) -> String {
     match perform(&parse(order).unwrap(), machine) {
         Outcome::Done(Ok(text)) => text,
@@ -66,8 +155,8 @@ fn performed(machine: &mut Machine, order: &str) -> String {
 fn help_lists_every_order_and_keys_every_key() {
     let mut machine = Machine::new(Settings::default());
     let help = performed(&mut machine, "help");
-    assert_eq!(help.lines().count(), ORDERS.len());
-    for row in ORDERS {
+    assert_eq!(help.lines().count(), rows().count());
+    for row in rows() {
         assert!(help.lines().any(|line| line.starts_with(row.word) && line.ends_with(row.summary)), "{}", row.word);
     }
     for key in performed(&mut machine, "keys").split(' ') {

@@ -1,4 +1,4 @@
-//! Curves.
+//! Curves: B-splines and polynomials, plain and rational.
 
 use super::Parser;
 use crate::command::{

@@ -31,6 +31,15 @@ impl fmt::Display for Command {
     }
 }
 
+impl fmt::Display for Value {
+    /// The value as SEND has it: `FIX(1)`, `0.5`, `'text'`, `V3D(1,2,3)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut out = Vec::new();
+        Printer { out: &mut out }.value(self);
+        f.write_str(&String::from_utf8_lossy(&out))
+    }
+}
+
 /// A number that is written so that it reads back equal.
 struct Number<T>(T);
 

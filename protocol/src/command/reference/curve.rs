@@ -1,4 +1,4 @@
-//! Curves.
+//! Rows of the curves: B-splines and polynomials.
 
 use super::row::{CommandRow, PLAIN, option};
 

@@ -1,4 +1,4 @@
-//! Views.
+//! Rows of the views: windows, eyes, viewports.
 
 use super::row::{CommandRow, Confidence::*, InputRow, OptionRow, PLAIN, input, option};
 

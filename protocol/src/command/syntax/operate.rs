@@ -25,7 +25,7 @@ pub struct Boundaries {
 
 /// What an operate node does to the state of its descendant.
 ///
-/// Matrices follow [`Value`]: row `i` of the machine is column `i` of the glam matrix.
+/// Matrices follow [`Value`](crate::Value): row `i` of the machine is column `i` of the glam matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operate {
     /// `ROTATE IN X angle`, degrees.

@@ -1,0 +1,232 @@
+//! `ps340 play`: command files on a machine in virtual time, with pictures, a transcript and an exit code.
+
+use super::{Trouble, read, say};
+use crate::{
+    calligraphic::Beam,
+    machine::Settings,
+    play::{EXAMPLES, End, Patience, Player, Script, Watcher, example},
+};
+use std::{
+    fs::File,
+    io::{self, BufWriter, IsTerminal, Write},
+    path::PathBuf,
+    process::ExitCode,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+/// How often the progress on a terminal changes.
+const PROGRESS: Duration = Duration::from_millis(200);
+
+/// Arguments of `play`.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "\
+Lines that begin with '@' are directives, all others go to the machine:
+  @ ORDER                    any order of the operator, such as: dial 1 0.1, key 2, picture vector a.png
+  @ expect 'TEXT'            the next message to the host is TEXT
+  @ expect /PATTERN*/        ... is as the pattern says, in which * is any text
+  @ expect NUMBER [TOL]      ... is a number, TOL away at most
+  @ expect error E 5 ...     the next error of the machine begins so (W and I: warnings, informations)
+  @ expect none [FRAMES]     no message comes
+  @ # ...                    a comment
+'within FRAMES' behind the first three changes how long they wait. Messages to the host go to standard output.
+Exit codes: 0 all came as expected, 1 a step failed or an error came that no step expected, 2 usage, 130 interrupted.")]
+pub struct Arguments {
+    /// Command files, played one after the other on one machine; '-' is the standard input.
+    #[arg(required_unless_present_any = ["example", "list"])]
+    files: Vec<PathBuf>,
+    /// Plays a program that ships with the machine, before the files.
+    #[arg(long, value_name = "NAME")]
+    example: Option<String>,
+    /// Lists the programs that ship with the machine.
+    #[arg(long)]
+    list: bool,
+    /// Prints the program of --example instead of playing it.
+    #[arg(long, requires = "example")]
+    print: bool,
+    /// Lets frames pass behind the last line (60 are a second).
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    frames: u64,
+    /// Writes the vector screen as it is at the end, PNG or EXR.
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+    /// Writes what was sent and said: > text, @ directive, = reply, < message to the host, ! message of the machine.
+    #[arg(long, value_name = "FILE")]
+    transcript: Option<PathBuf>,
+    /// Frames that an expectation waits, if it does not say.
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    patience: u64,
+    /// Goes on after a failed step, and forgives errors of the machine that no step expected.
+    #[arg(long)]
+    keep_going: bool,
+    /// Says nothing but failures.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Plays the files.
+pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
+    if arguments.list {
+        let lines = EXAMPLES.iter().map(|e| format!("{:<8} {}\n", e.name, e.summary()));
+        return say(&lines.collect::<String>()).map(|()| ExitCode::SUCCESS);
+    }
+    let chosen = arguments.example.as_deref().map(example).transpose().map_err(Trouble::Usage)?;
+    if let Some(chosen) = chosen.filter(|_| arguments.print) {
+        return say(chosen.text).map(|()| ExitCode::SUCCESS);
+    }
+    let mut scripts = Vec::new();
+    let mut readable = true;
+    let mut add = |file: &str, bytes: &[u8]| match Script::read(file, bytes) {
+        Ok(script) => scripts.push(script),
+        Err(errors) => {
+            readable = false;
+            errors.iter().for_each(|error| eprintln!("{error}"));
+        }
+    };
+    if let Some(chosen) = chosen {
+        add(chosen.name, chosen.text.as_bytes());
+    }
+    for file in &arguments.files {
+        add(&file.display().to_string(), &read(file)?);
+    }
+    if !readable {
+        return Ok(ExitCode::from(2));
+    }
+    let patience = Patience { frames: arguments.patience, keep_going: arguments.keep_going };
+    let mut player = Player::new(Settings::default(), patience);
+    let mut screen = Screen::new(arguments, &scripts)?;
+    let end = play(&mut player, &scripts, arguments.frames, &mut screen);
+    screen.clear();
+    finish(&mut player, end, arguments, screen)
+}
+
+fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Screen) -> End {
+    for script in scripts {
+        match player.play(script, screen) {
+            End::Played => {}
+            end => return end,
+        }
+    }
+    player.wait(frames, screen)
+}
+
+/// Writes what is to be left at the end, and judges.
+fn finish(player: &mut Player, end: End, arguments: &Arguments, screen: Screen) -> Result<ExitCode, Trouble> {
+    if let Some(file) = &arguments.picture {
+        player.machine().vector_picture(&Beam::default()).write(file)?;
+    }
+    screen.close()?;
+    let failures = player.take_failures();
+    for failure in &failures {
+        eprintln!("{failure}");
+    }
+    if !arguments.quiet {
+        let counters = player.machine().counters();
+        let (errors, steps, frame) = (failures.len(), player.steps(), player.machine().frame());
+        eprintln!(
+            "{} commands, {frame} frames, {} messages to the host, {steps} expectations, {errors} failures",
+            counters.commands, counters.messages_out
+        );
+    }
+    Ok(match end {
+        End::Stopped => ExitCode::from(130),
+        _ if failures.is_empty() => ExitCode::SUCCESS,
+        _ => ExitCode::from(1),
+    })
+}
+
+/// Where what is heard goes: standard output, the transcript, progress on a terminal.
+struct Screen {
+    transcript: Option<(String, BufWriter<File>)>,
+    /// The first error of the transcript; it is reported at the end.
+    broken: Option<io::Error>,
+    quiet: bool,
+    /// Lines of all files, for the progress; none if there is no terminal.
+    progress: Option<usize>,
+    shown: Instant,
+    interrupted: Arc<AtomicBool>,
+}
+
+impl Screen {
+    fn new(arguments: &Arguments, scripts: &[Script]) -> Result<Screen, Trouble> {
+        let transcript = arguments.transcript.as_ref().map(|path| {
+            let file = path.display().to_string();
+            match File::create(path) {
+                Ok(opened) => Ok((file, BufWriter::new(opened))),
+                Err(error) => Err(Trouble::File { file, error }),
+            }
+        });
+        let lines = scripts.iter().map(|script| script.lines.len()).sum();
+        let interrupted = Arc::new(AtomicBool::new(false));
+        watch_interrupt(interrupted.clone());
+        Ok(Screen {
+            transcript: transcript.transpose()?,
+            broken: None,
+            quiet: arguments.quiet,
+            progress: (!arguments.quiet && io::stderr().is_terminal()).then_some(lines),
+            shown: Instant::now(),
+            interrupted,
+        })
+    }
+
+    /// Takes the progress off the terminal.
+    fn clear(&self) {
+        if self.progress.is_some() {
+            eprint!("\r\x1b[K");
+        }
+    }
+
+    fn close(mut self) -> Result<(), Trouble> {
+        let Some((file, mut transcript)) = self.transcript.take() else { return Ok(()) };
+        match self.broken.map_or_else(|| transcript.flush(), Err) {
+            Ok(()) => Ok(()),
+            Err(error) => Err(Trouble::File { file, error }),
+        }
+    }
+}
+
+impl Watcher for Screen {
+    fn heard(&mut self, sign: char, text: &[u8]) {
+        if let Some((_, transcript)) = &mut self.transcript
+            && self.broken.is_none()
+        {
+            let written = write!(transcript, "{sign} ").and_then(|()| transcript.write_all(text));
+            self.broken = written.and_then(|()| writeln!(transcript)).err();
+        }
+        let shown = sign == '<' || (sign == '=' && text != b"ok");
+        if !self.quiet && (shown || sign == '!') {
+            self.clear();
+            // A reader that has gone is no reason to end the run.
+            let text = String::from_utf8_lossy(text);
+            let _ = match sign {
+                '!' => writeln!(io::stderr().lock(), "{text}"),
+                _ => writeln!(io::stdout().lock(), "{text}"),
+            };
+        }
+    }
+
+    fn stops(&mut self, file: &str, line: usize, frame: u64) -> bool {
+        if let Some(lines) = self.progress.filter(|_| self.shown.elapsed() >= PROGRESS) {
+            self.shown = Instant::now();
+            eprint!("\r\x1b[K{file}:{line} of {lines} lines, frame {frame}");
+        }
+        self.interrupted.load(Ordering::Relaxed)
+    }
+}
+
+/// Sets a flag at Ctrl-C; a second Ctrl-C ends the process at once.
+fn watch_interrupt(flag: Arc<AtomicBool>) {
+    let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
+    std::thread::spawn(move || {
+        runtime.block_on(async {
+            while tokio::signal::ctrl_c().await.is_ok() {
+                if flag.swap(true, Ordering::Relaxed) {
+                    std::process::exit(130);
+                }
+            }
+        });
+    });
+}

@@ -1,0 +1,142 @@
+//! Inputs and outputs that do not exist.
+
+use super::{
+    Level, Note,
+    program::{Arc, Program, What},
+    trial,
+};
+use crate::{functions::FunctionRow, machine::Machine, port::KindSet, structure::Node};
+use protocol::{Name, command::Input};
+
+/// Characters of the description of a node that a message shows.
+const SHOWN: usize = 80;
+/// Nodes of a structure that a message names.
+const NAMED: usize = 3;
+
+/// Looks at both ends of every arc.
+pub(super) fn check(program: &Program, machine: &Machine) -> Vec<Note> {
+    program
+        .arcs
+        .iter()
+        .flat_map(|arc| [source(arc, program, machine), destination(arc, program, machine)])
+        .flatten()
+        .collect()
+}
+
+fn source(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> {
+    let name = program.target(&arc.source);
+    let (row, outputs) = match program.definitions.get(name).map(|d| &d.what) {
+        Some(What::Function(function)) => (function.row, function.shape.outputs),
+        Some(What::Structure) => {
+            let text = format!("{name} is a structure; it sends no messages");
+            return Some(Note { place: arc.place, level: Level::Error, text });
+        }
+        Some(_) => return None,
+        None => system(name, machine).map(|row| (row, row.outputs.len() as u16))?,
+    };
+    if (1..=outputs).contains(&arc.output) {
+        return None;
+    }
+    let text = format!(
+        "{name} ({}) has no output <{}>; {}",
+        word(row, program, name),
+        arc.output,
+        numbered("output", outputs)
+    );
+    Some(Note { place: arc.place, level: Level::Error, text })
+}
+
+fn destination(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> {
+    let name = program.target(&arc.to);
+    let error = |text| Some(Note { place: arc.to_place, level: Level::Error, text });
+    let no_input = |row: &FunctionRow, inputs: u16| {
+        let exists = matches!(arc.input, Input::Number(n) if (1..=u32::from(inputs)).contains(&n));
+        if exists {
+            return None;
+        }
+        error(format!(
+            "{name} ({}) has no input {}; {}",
+            word(row, program, name),
+            arc.input,
+            numbered("input", inputs)
+        ))
+    };
+    match program.definitions.get(name).map(|d| &d.what) {
+        Some(What::Function(function)) => no_input(function.row, function.shape.inputs),
+        Some(What::Structure) => error(format!("{name} takes no messages{}", inside(program, name))),
+        Some(What::Node) => match accepted(arc, program, machine)? {
+            KindSet::NONE => error(format!("{name} has no input {}{}", arc.input, what_node(name, machine))),
+            _ => None,
+        },
+        Some(_) => None,
+        None => {
+            let row = system(name, machine)?;
+            no_input(row, row.inputs.len() as u16)
+        }
+    }
+}
+
+/// The kinds that the input at the end of an arc takes; none if that is not known.
+pub(super) fn accepted(arc: &Arc, program: &Program, machine: &Machine) -> Option<KindSet> {
+    let name = program.target(&arc.to);
+    let input = match arc.input {
+        Input::Number(n) => u16::try_from(n).ok(),
+        _ => None,
+    };
+    match program.definitions.get(name).map(|d| &d.what) {
+        Some(What::Function(function)) => function.row.input(function.shape, input?).map(|spec| spec.kinds),
+        Some(What::Node) => {
+            let memory = machine.memory();
+            trial::accepted(memory.structures.node(memory.target(name)?)?, arc.input)
+        }
+        Some(_) => None,
+        None => system(name, machine)?.inputs.get(usize::from(input?).checked_sub(1)?).map(|spec| spec.kinds),
+    }
+}
+
+/// The row of a function of the system.
+pub(super) fn system(name: &Name, machine: &Machine) -> Option<&'static FunctionRow> {
+    let memory = machine.memory();
+    let id = memory.objects.find(name.as_str()).filter(|id| memory.objects.is_system(*id))?;
+    memory.network.function(id)
+}
+
+/// `F:ADD`, or what an initial instance is.
+fn word(row: &FunctionRow, program: &Program, name: &Name) -> String {
+    if program.definitions.contains_key(name) { format!("F:{}", row.name) } else { row.summary.into() }
+}
+
+fn numbered(what: &str, count: u16) -> String {
+    match count {
+        0 => format!("it has no {what}s"),
+        1 => format!("its only {what} is <1>"),
+        n => format!("its {what}s are <1> to <{n}>"),
+    }
+}
+
+/// A hint which nodes of a structure may be meant.
+fn inside(program: &Program, name: &Name) -> String {
+    let prefix = format!("{name}.");
+    let nodes = program.definitions.iter().filter(|(n, d)| n.as_str().starts_with(&prefix) && d.what == What::Node);
+    let nodes: Vec<String> = nodes.take(NAMED).map(|(n, _)| n.to_string()).collect();
+    if nodes.is_empty() {
+        "; name a node inside it".into()
+    } else {
+        format!("; nodes inside it do: {}", nodes.join(", "))
+    }
+}
+
+/// What a node is, for the text about an input that it does not have.
+fn what_node(name: &Name, machine: &Machine) -> String {
+    let memory = machine.memory();
+    let node = memory.target(name).and_then(|id| memory.structures.node(id));
+    match node {
+        Some(Node::Vectors(_)) => " (a vector list: <1> and up, <last>, <append>, <delete>, <clear>)".into(),
+        Some(_) => {
+            let text = machine.describe(name.as_str()).unwrap_or_default();
+            let short: String = text.chars().take(SHOWN).collect();
+            format!(" ({short})")
+        }
+        None => String::new(),
+    }
+}

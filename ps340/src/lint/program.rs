@@ -1,0 +1,313 @@
+//! One program: what its commands define, use, connect and send.
+
+use super::source::{Place, first_place, last_place};
+use crate::functions::{self, FunctionRow, Shape};
+use protocol::{
+    Name, Value,
+    command::{
+        Command, Destination, Input, Object, Operate,
+        token::{Lexer, TokenKind},
+    },
+};
+use std::collections::BTreeMap;
+
+/// Everything between two INITIALIZE.
+#[derive(Debug, Default)]
+pub(super) struct Program {
+    pub(super) definitions: BTreeMap<Name, Definition>,
+    pub(super) uses: Vec<Use>,
+    pub(super) arcs: Vec<Arc>,
+    pub(super) sends: Vec<Sent>,
+    /// Names that were defined again, and where.
+    pub(super) again: Vec<(Name, Place, Place)>,
+    /// Functions of a type that does not exist, and the place of the type.
+    pub(super) no_functions: Vec<(Name, Place)>,
+    /// Structures that are open: full name and place of the BEGIN.
+    open: Vec<(Name, Place)>,
+}
+
+/// What a name stands for.
+#[derive(Clone, Debug)]
+pub(super) struct Definition {
+    pub(super) place: Place,
+    pub(super) what: What,
+}
+
+/// Kinds of definition.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum What {
+    /// An instance of a function.
+    Function(Function),
+    /// Something that could not be made: a function that does not exist, a definition that cannot be read.
+    NoFunction,
+    /// BEGIN_STRUCTURE or INSTANCE OF, which take no messages.
+    Structure,
+    /// Any other node.
+    Node,
+    /// Another name.
+    Alias(Name),
+}
+
+/// An instance of a function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Function {
+    pub(super) row: &'static FunctionRow,
+    pub(super) size: Option<u16>,
+    pub(super) shape: Shape,
+}
+
+impl PartialEq for Function {
+    fn eq(&self, other: &Function) -> bool {
+        self.row.name == other.row.name && self.size == other.size
+    }
+}
+
+/// A name that is used.
+#[derive(Clone, Debug)]
+pub(super) struct Use {
+    pub(super) name: Name,
+    /// The full name of the structure in which it is used.
+    pub(super) scope: Option<Name>,
+    /// By what: `INSTANCE OF`.
+    pub(super) by: &'static str,
+    pub(super) place: Place,
+}
+
+/// A connection.
+#[derive(Clone, Debug)]
+pub(super) struct Arc {
+    pub(super) source: Name,
+    pub(super) output: u16,
+    pub(super) to: Name,
+    pub(super) input: Input,
+    pub(super) place: Place,
+    /// Of the destination.
+    pub(super) to_place: Place,
+}
+
+/// A message that a command sends.
+#[derive(Clone, Debug)]
+pub(super) struct Sent {
+    pub(super) to: Name,
+    pub(super) input: Input,
+    /// The message; none if it is not known, as that of a variable.
+    pub(super) value: Option<Value>,
+}
+
+impl Program {
+    /// Takes a command in.
+    ///
+    /// - `text`: the command as it stands in the file, and where that begins.
+    pub(super) fn add(&mut self, command: &Command, text: &[u8], place: Place) {
+        let at = |offset: usize| Place { at: place.at + offset, ..place };
+        let first = |name: &Name| at(first_place(text, name.as_str()));
+        let last = |name: &Name| at(last_place(text, name.as_str()));
+        match command {
+            Command::Define { name, object } => self.define(name.as_ref(), object, text, place),
+            Command::EndStructure => {
+                self.open.pop();
+            }
+            Command::Display(name) => self.used(name, "DISPLAY", last(name)),
+            Command::Include { name, into } => {
+                self.used(name, "INCLUDE", first(name));
+                let what = What::Structure;
+                self.definitions.entry(into.clone()).or_insert(Definition { place: last(into), what });
+            }
+            Command::Prefix { name, operate } => {
+                self.used(name, "PREFIX", first(name));
+                self.operate(operate, text, place);
+            }
+            Command::Follow { name, operate } => {
+                self.used(name, "FOLLOW", first(name));
+                self.operate(operate, text, place);
+            }
+            Command::PatternWith { name, pattern } => {
+                self.used(name, "PATTERN", first(name));
+                self.used(pattern, "PATTERN WITH", last(pattern));
+            }
+            Command::Connect(arc) => self.connect(&arc.source, arc.output, &arc.destination, text, place),
+            Command::ConnectSeveral { source, output, destinations } => {
+                for destination in destinations {
+                    self.connect(source, *output, destination, text, place);
+                }
+            }
+            Command::Send { value, destination } => {
+                self.sent(destination, Some(value.clone()), last(&destination.name))
+            }
+            Command::SendVectors { list, destination } => {
+                self.used(list, "SEND VL", first(list));
+                self.sent(destination, None, last(&destination.name));
+            }
+            Command::SendMarks { destination, .. } => self.sent(destination, None, last(&destination.name)),
+            Command::SendVariable { variable, destination } => {
+                self.used(variable, "SEND VALUE", first(variable));
+                self.sent(destination, None, last(&destination.name));
+            }
+            Command::SetupCness { destination, .. } => {
+                self.used(&destination.name, "SETUP CNESS", last(&destination.name))
+            }
+            Command::Variable(names) => {
+                for name in names {
+                    self.set(name.clone(), Definition { place: first(name), what: What::Node });
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Takes in a statement that cannot be read: what it would define is not held against those who use it.
+    pub(super) fn fail(&mut self, text: &[u8], place: Place) {
+        let mut lexer = Lexer::new(text, 0);
+        let (first, second) = (lexer.token(), lexer.token());
+        let name = (second.kind == TokenKind::Assign).then(|| Name::new(&text[first.span()]).ok()).flatten();
+        if let Some(full) = name.and_then(|name| self.full(&name)) {
+            self.definitions.entry(full).or_insert(Definition { place, what: What::NoFunction });
+        }
+    }
+
+    /// The innermost structure that is open, and where it was begun.
+    pub(super) fn open(&self) -> Option<&(Name, Place)> {
+        self.open.last()
+    }
+
+    /// Gives up what is open.
+    pub(super) fn close(&mut self) {
+        self.open.clear();
+    }
+
+    /// What a name stands for in the end, by whatever name.
+    pub(super) fn target<'p>(&'p self, name: &'p Name) -> &'p Name {
+        let mut name = name;
+        // A circle of names has no end.
+        for _ in 0..self.definitions.len() {
+            match self.definitions.get(name).map(|d| &d.what) {
+                Some(What::Alias(next)) => name = next,
+                _ => break,
+            }
+        }
+        name
+    }
+
+    /// The function of a name, if the files define one.
+    pub(super) fn function(&self, name: &Name) -> Option<&Function> {
+        match self.definitions.get(name).map(|d| &d.what) {
+            Some(What::Function(function)) => Some(function),
+            _ => None,
+        }
+    }
+
+    /// Whether a name is that of a function that could not be made.
+    pub(super) fn is_unmade(&self, name: &str) -> bool {
+        self.definitions.get(name).is_some_and(|definition| definition.what == What::NoFunction)
+    }
+
+    fn define(&mut self, name: Option<&Name>, object: &Object, text: &[u8], place: Place) {
+        let at = |offset: usize| Place { at: place.at + offset, ..place };
+        let last = |name: &Name| at(last_place(text, name.as_str()));
+        let what = match object {
+            Object::BeginStructure => {
+                let outer = self.open.last().map(|(path, _)| path.clone());
+                let path = name.and_then(|n| self.full(n)).or(outer);
+                self.open.extend(path.map(|path| (path, place)));
+                if let (Some(_), Some((path, _))) = (name, self.open.last().cloned()) {
+                    self.set(path, Definition { place, what: What::Structure });
+                }
+                return;
+            }
+            Object::Instance(members) => {
+                members.iter().for_each(|member| self.used(member, "INSTANCE OF", last(member)));
+                What::Structure
+            }
+            Object::Operate { operate, applied_to } => {
+                self.operate(operate, text, place);
+                if let Some(below) = applied_to {
+                    self.used(below, "APPLIED TO", last(below));
+                }
+                What::Node
+            }
+            Object::Polygons(polygons) => {
+                for attributes in polygons.iter().filter_map(|polygon| polygon.attributes.as_ref()) {
+                    self.used(attributes, "WITH ATTRIBUTES", at(first_place(text, attributes.as_str())));
+                }
+                What::Node
+            }
+            Object::Copy { source, .. } => {
+                self.used(source, "COPY", last(source));
+                What::Node
+            }
+            Object::Alias(of) => {
+                self.used(of, ":=", last(of));
+                What::Alias(of.clone())
+            }
+            Object::Function { function, size } => {
+                let Some(name) = name else { return };
+                let what = self.function_of(function, *size, last(function));
+                // A new instance has no connections of its own, and nothing was sent to it.
+                self.arcs.retain(|arc| arc.source != *name);
+                self.sends.retain(|sent| sent.to != *name);
+                return self.set(name.clone(), Definition { place, what });
+            }
+            _ => What::Node,
+        };
+        if let Some(full) = name.and_then(|n| self.full(n)) {
+            self.set(full, Definition { place, what });
+        }
+    }
+
+    fn function_of(&mut self, function: &Name, size: Option<u16>, place: Place) -> What {
+        let Some(row) = functions::find(function.as_str()) else {
+            self.no_functions.push((function.clone(), place));
+            return What::NoFunction;
+        };
+        // A wrong size is what the machine says itself.
+        row.shape(size).map_or(What::NoFunction, |shape| What::Function(Function { row, size, shape }))
+    }
+
+    fn operate(&mut self, operate: &Operate, text: &[u8], place: Place) {
+        if let Operate::CharacterFont(font) = operate {
+            self.used(font, "CHARACTER FONT", Place { at: place.at + last_place(text, font.as_str()), ..place });
+        }
+    }
+
+    fn connect(&mut self, source: &Name, output: u16, destination: &Destination, text: &[u8], place: Place) {
+        let at = |offset: usize| Place { at: place.at + offset, ..place };
+        let to_place = at(last_place(text, destination.name.as_str()));
+        let from_place = at(first_place(text, source.as_str()));
+        self.used(source, "CONNECT", from_place);
+        self.used(&destination.name, "CONNECT", to_place);
+        self.arcs.push(Arc {
+            source: source.clone(),
+            output,
+            to: destination.name.clone(),
+            input: destination.input,
+            place: from_place,
+            to_place,
+        });
+    }
+
+    fn sent(&mut self, destination: &Destination, value: Option<Value>, place: Place) {
+        self.used(&destination.name, "SEND", place);
+        self.sends.push(Sent { to: destination.name.clone(), input: destination.input, value });
+    }
+
+    fn used(&mut self, name: &Name, by: &'static str, place: Place) {
+        // Commands about messages use full names also while a structure is open.
+        let messages = matches!(by, "SEND" | "CONNECT" | "SEND VALUE" | "SEND VL" | "SETUP CNESS");
+        let scope = self.open.last().filter(|_| !messages).map(|(path, _)| path.clone());
+        self.uses.push(Use { name: name.clone(), scope, by, place });
+    }
+
+    fn full(&self, name: &Name) -> Option<Name> {
+        match self.open.last() {
+            Some((outer, _)) => outer.join(name).ok(),
+            None => Some(name.clone()),
+        }
+    }
+
+    fn set(&mut self, name: Name, definition: Definition) {
+        let place = definition.place;
+        if let Some(before) = self.definitions.insert(name.clone(), definition) {
+            self.again.push((name, place, before.place));
+        }
+    }
+}

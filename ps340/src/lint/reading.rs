@@ -1,0 +1,185 @@
+//! Reading the files: commands, what the machine says to each, and where one program ends and the next begins.
+
+use super::{
+    Finding, Level, Note, flow, names, ports,
+    program::Program,
+    source::{Place, Source},
+};
+use crate::{
+    line::LineId,
+    machine::{Input, Machine, Settings},
+};
+use protocol::command::{Command, CommandReader, Initialize, Object, print};
+
+const LINE: LineId = LineId(1);
+
+/// Finds what is wrong in files, which are read one after the other as if one host sent them.
+///
+/// - `files`: name and content of each. Lines that begin with `@` are directives for the player; they are passed over.
+/// - Returns the findings by file and place.
+pub fn lint(files: &[(String, Vec<u8>)]) -> Vec<Finding> {
+    let sources: Vec<Source> = files.iter().map(|(name, text)| Source::new(name, text)).collect();
+    let mut reading = Reading {
+        sources: &sources,
+        machine: machine(),
+        said: 0,
+        program: Program::default(),
+        said_by: Vec::new(),
+        notes: Vec::new(),
+    };
+    for file in 0..sources.len() {
+        reading.file(file);
+    }
+    reading.end_of_program();
+    let mut notes = reading.notes;
+    notes.sort_by_key(|note| (note.place, note.level));
+    notes.dedup_by(|a, b| a.place == b.place && a.text == b.text);
+    let finding = |note: Note| {
+        let source = &sources[note.place.file];
+        let (line, column) = source.line_and_column(note.place.at);
+        Finding { file: source.name.clone(), line, column, level: note.level, text: note.text }
+    };
+    notes.into_iter().map(finding).collect()
+}
+
+fn machine() -> Machine {
+    let mut machine = Machine::new(Settings::default());
+    machine.step([Input::Attach(LINE)], 0);
+    machine
+}
+
+struct Reading<'s> {
+    sources: &'s [Source],
+    /// Carries every command out.
+    machine: Machine,
+    /// Messages that it has said.
+    said: u64,
+    program: Program,
+    /// What the machine said to the commands of this program.
+    said_by: Vec<Said>,
+    notes: Vec<Note>,
+}
+
+/// A message of the machine.
+struct Said {
+    place: Place,
+    text: String,
+    /// Whether the command is a CONNECT or a definition, about which more is known at the end.
+    known: bool,
+}
+
+impl Reading<'_> {
+    fn file(&mut self, file: usize) {
+        let source = &self.sources[file];
+        let mut reader = CommandReader::default();
+        reader.push(&source.text);
+        while let Some(item) = reader.next() {
+            let begin = reader.position() as usize;
+            match item {
+                Ok(spanned) => {
+                    let place = Place { file, at: begin + spanned.span.start };
+                    let text = &source.text[place.at..(begin + spanned.span.end).min(source.text.len())];
+                    self.command(&spanned.command, text, place);
+                }
+                Err(error) => {
+                    self.program.fail(reader.statement(), Place { file, at: begin });
+                    let place = Place { file, at: begin + error.span.start };
+                    self.note(place, Level::Error, error.message());
+                }
+            }
+        }
+        if reader.is_unfinished() {
+            let at = reader.unfinished_position() as usize;
+            self.note(Place { file, at }, Level::Error, "the last statement has no ;".into());
+        }
+        while let Some((name, place)) = self.program.open().cloned() {
+            self.note(place, Level::Error, format!("BEGIN_STRUCTURE of {name} has no END_STRUCTURE"));
+            self.program.close();
+            self.tell(b"!RESET;".to_vec());
+        }
+    }
+
+    fn command(&mut self, command: &Command, text: &[u8], place: Place) {
+        if matches!(command, Command::Initialize(Initialize::All | Initialize::Names)) {
+            self.end_of_program();
+        }
+        self.program.add(command, text, place);
+        let known = match command {
+            Command::Connect(_) | Command::ConnectSeveral { .. } => true,
+            Command::Define { object: Object::Function { function, .. }, .. } => {
+                crate::functions::find(function.as_str()).is_none()
+            }
+            _ => false,
+        };
+        for text in self.tell_command(command) {
+            self.said_by.push(Said { place, text, known });
+        }
+    }
+
+    /// Gives the machine a command and returns what it says.
+    fn tell_command(&mut self, command: &Command) -> Vec<String> {
+        let mut text = Vec::new();
+        print(command, &mut text);
+        text.push(b'\n');
+        self.tell(text)
+    }
+
+    /// Gives the machine a text and returns what it says.
+    fn tell(&mut self, text: Vec<u8>) -> Vec<String> {
+        self.machine.step([Input::Bytes(LINE, text)], 0);
+        let said = self.machine.counters().messages;
+        let new = usize::try_from(said - self.said).unwrap_or(usize::MAX);
+        self.said = said;
+        let kept = self.machine.log().count();
+        self.machine.log().skip(kept.saturating_sub(new)).map(str::to_owned).collect()
+    }
+
+    /// Looks at the program that was read, and begins a new one.
+    fn end_of_program(&mut self) {
+        let program = std::mem::take(&mut self.program);
+        let sources = self.sources;
+        let line_of = |place: Place| {
+            let source = &sources[place.file];
+            format!("at {}:{}", source.name, source.line_and_column(place.at).0)
+        };
+        let mut notes = names::check(&program, &self.machine, line_of);
+        notes.extend(ports::check(&program, &self.machine));
+        let flow = flow::check(&program, &self.machine);
+        for said in std::mem::take(&mut self.said_by) {
+            let undefined =
+                notes.iter().any(|note| note.text.contains("never defined") && said.text.ends_with(note_name(note)));
+            // What is said to a function that could not be made follows from that.
+            let unmade = said.text.starts_with("E 2 ") && program.is_unmade(said.text.rsplit(' ').next().unwrap_or(""));
+            let clashes = flow.clashes.iter().any(|input| said.text.contains(input.as_str()));
+            if said.known || undefined || unmade || clashes {
+                continue;
+            }
+            let level = match said.text.as_bytes() {
+                // Redefinitions are told with the place of the first definition.
+                [b'I', ..] | [b'W', b' ', b'3', b' ', ..] => continue,
+                [b'W', b' ', b'9', b' ', ..] | [b'E', ..] => Level::Error,
+                _ => Level::Warning,
+            };
+            notes.push(Note { place: said.place, level, text: readable(&said.text) });
+        }
+        notes.extend(flow.notes);
+        self.notes.extend(notes);
+    }
+
+    fn note(&mut self, place: Place, level: Level, text: String) {
+        self.notes.push(Note { place, level, text });
+    }
+}
+
+/// The name at the beginning of a note about one.
+fn note_name(note: &Note) -> &str {
+    note.text.split(' ').next().unwrap_or_default()
+}
+
+/// `E 5 *** Text` as `Text (E 5)`.
+fn readable(message: &str) -> String {
+    match message.split_once(" *** ") {
+        Some((number, text)) => format!("{text} ({number})"),
+        None => message.into(),
+    }
+}

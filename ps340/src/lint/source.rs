@@ -1,0 +1,84 @@
+//! The files that are read, and places in them.
+
+use protocol::command::token::{Lexer, TokenKind};
+use std::ops::Range;
+
+/// A place in the files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct Place {
+    /// Which file.
+    pub(super) file: usize,
+    /// Offset in it, in bytes.
+    pub(super) at: usize,
+}
+
+/// A file.
+#[derive(Clone, Debug)]
+pub(super) struct Source {
+    pub(super) name: String,
+    /// The text; lines of directives for the player are blank.
+    pub(super) text: Vec<u8>,
+    /// Where each line begins.
+    lines: Vec<usize>,
+}
+
+impl Source {
+    /// A file as it was read.
+    pub(super) fn new(name: &str, text: &[u8]) -> Source {
+        let mut text = text.to_vec();
+        let mut lines = vec![0];
+        for line in text.split_inclusive_mut(|byte| *byte == b'\n') {
+            lines.push(lines.last().unwrap_or(&0) + line.len());
+            if line.first() == Some(&b'@') {
+                let end = line.iter().rposition(|byte| *byte != b'\n').map_or(0, |last| last + 1);
+                line[..end].fill(b' ');
+            }
+        }
+        Source { name: name.into(), text, lines }
+    }
+
+    /// Line and column of an offset, from 1.
+    pub(super) fn line_and_column(&self, at: usize) -> (usize, usize) {
+        let line = self.lines.partition_point(|start| *start <= at).max(1);
+        (line, at - self.lines[line - 1] + 1)
+    }
+}
+
+/// The place of a name in a command, from its beginning; the beginning if it does not stand there.
+pub(super) fn first_place(command: &[u8], name: &str) -> usize {
+    places(command, name).next().map_or(0, |span| span.start)
+}
+
+/// The last place of a name in a command.
+pub(super) fn last_place(command: &[u8], name: &str) -> usize {
+    places(command, name).last().map_or(0, |span| span.start)
+}
+
+fn places<'t>(command: &'t [u8], name: &str) -> impl Iterator<Item = Range<usize>> + use<'t> {
+    let name = name.to_owned();
+    let mut lexer = Lexer::new(command, 0);
+    let tokens = std::iter::from_fn(move || Some(lexer.token()).filter(|token| token.kind != TokenKind::End));
+    let names = tokens.filter(|token| token.kind == TokenKind::Name).map(|token| token.span());
+    names.filter(move |span| command[span.clone()].eq_ignore_ascii_case(name.as_bytes()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offsets_become_lines_and_columns_and_directives_are_blank() {
+        let source = Source::new("f", b"A;\n@ dial 1 1\n B;");
+        assert_eq!(source.text, b"A;\n          \n B;");
+        assert_eq!(source.line_and_column(0), (1, 1));
+        assert_eq!(source.line_and_column(2), (1, 3));
+        assert_eq!(source.line_and_column(15), (3, 2));
+    }
+
+    #[test]
+    fn names_are_found_outside_of_texts_and_comments() {
+        let command = b"CONNECT { a } A<1>:<1>AB, <2>'a' a";
+        assert_eq!((first_place(command, "A"), last_place(command, "A")), (14, 33));
+        assert_eq!(first_place(command, "NONE"), 0);
+    }
+}

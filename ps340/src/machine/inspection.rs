@@ -1,0 +1,92 @@
+//! Looking into the machine: pictures, texts, counters, objects; and single steps of its network.
+
+use super::{Counters, Machine, Panel, WORK_PER_STEP, describe};
+use crate::{
+    disk::Disk, memory::MassMemory, network::Network, picture::Picture, port::ObjectId, terminal::Terminal,
+    traversal::Update,
+};
+
+impl Machine {
+    /// What the raster screen shows now.
+    pub fn raster_picture(&self) -> Picture {
+        self.frame_buffer.picture()
+    }
+
+    /// The latest update.
+    pub fn latest_update(&self) -> &Update {
+        &self.update
+    }
+
+    /// The terminal emulator: its text, cursor and modes.
+    pub fn terminal(&self) -> &Terminal {
+        &self.terminal
+    }
+
+    /// Labels, lights and texts around the screens.
+    pub fn panel(&self) -> &Panel {
+        &self.panel
+    }
+
+    /// The files that functions read and write.
+    pub fn disk(&self) -> &Disk {
+        &self.disk
+    }
+
+    /// The same, to put files there before the machine starts.
+    pub fn disk_mut(&mut self) -> &mut Disk {
+        &mut self.disk
+    }
+
+    /// The latest messages of the machine, oldest first.
+    pub fn log(&self) -> impl Iterator<Item = &str> {
+        self.log.iter().map(String::as_str)
+    }
+
+    /// What the machine has counted.
+    pub fn counters(&self) -> Counters {
+        Counters {
+            frame: self.frame,
+            objects: self.memory.objects.len() as u64,
+            bytes: self.memory.bytes() as u64,
+            strokes: self.update.strokes.len() as u64,
+            vectors: self.update.vectors,
+            ..self.counters
+        }
+    }
+
+    /// The oldest message to the host that was not taken here before.
+    pub fn take_message(&mut self) -> Option<Vec<u8>> {
+        self.to_host.pop_front()
+    }
+
+    /// Objects, structure and network, to look at.
+    pub fn memory(&self) -> &MassMemory {
+        &self.memory
+    }
+
+    /// The network, to set traces, breaks and counters in it.
+    pub fn instruments(&mut self) -> &mut Network {
+        &mut self.memory.network
+    }
+
+    /// Lets the first function that is ready fire, and stops the network. Returns which it was.
+    pub fn fire_one(&mut self) -> Option<ObjectId> {
+        let fired = self.memory.network.step_one(&mut self.memory.effects);
+        self.counters.firings += u64::from(fired.is_some());
+        self.settle();
+        fired
+    }
+
+    /// Lets a network that stands go on.
+    pub fn resume(&mut self) {
+        self.memory.network.resume();
+        self.work_left = WORK_PER_STEP;
+        self.settle();
+    }
+
+    /// What an object is, in one line; none if the name is unknown.
+    pub fn describe(&self, name: &str) -> Option<String> {
+        let id = self.memory.objects.find(name)?;
+        Some(describe::describe(&self.memory, id))
+    }
+}

@@ -1,0 +1,72 @@
+//! What the machine says: messages to its hosts, and its own numbered messages.
+
+use super::{Machine, Output};
+use crate::interpreter::{Class, Message};
+use protocol::{Value, wire::MessageForm};
+
+/// Messages of the machine that reach ERROR, WARNING, INFORMATION and the terminal between two frames; the rest are logged and
+/// counted only, so that a message that causes messages ends.
+pub const REPORTS_PER_FRAME: u64 = 1000;
+/// Messages of the machine between two frames that are written to the log of the process one by one.
+const LOGGED_PER_FRAME: u64 = 20;
+/// Messages of the machine that [`Machine::log`] keeps.
+const LOG_LINES: usize = 1000;
+/// Messages to the host that wait for the operator.
+const KEPT_MESSAGES: usize = 1000;
+
+impl Machine {
+    /// A message to the host goes to every host that is attached; a `binary` one without an end of line.
+    pub(super) fn send_to_host(&mut self, message: &[u8], binary: bool) {
+        self.counters.messages_out += 1;
+        if self.to_host.len() >= KEPT_MESSAGES {
+            self.to_host.pop_front();
+        }
+        self.to_host.push_back(message.to_vec());
+        self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
+        for (line, writer) in &self.writers {
+            let mut bytes = Vec::new();
+            let written = if binary && writer.form() == MessageForm::Text {
+                bytes.extend_from_slice(message);
+                true
+            } else {
+                writer.write(message, &mut bytes).is_ok()
+            };
+            if written {
+                self.outputs.push(Output { line: *line, bytes });
+            }
+        }
+    }
+
+    /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION.
+    pub(super) fn report(&mut self, message: Message) {
+        let text = message.to_string();
+        let instance = match message.class() {
+            Class::Error => "ERROR",
+            Class::Warning => "WARNING",
+            Class::Information => "INFORMATION",
+        };
+        self.counters.messages += 1;
+        if self.log.len() >= LOG_LINES {
+            self.log.pop_front();
+        }
+        self.reported += 1;
+        if self.reported <= LOGGED_PER_FRAME {
+            tracing::info!("{text}");
+        }
+        self.log.push_back(text.clone());
+        if self.reported <= REPORTS_PER_FRAME {
+            self.show_message(&text);
+            self.emit(vec![(instance, 1, Value::string(&text))]);
+        }
+    }
+
+    /// Says how many messages were too many for the log and for ERROR and WARNING since the latest frame.
+    pub(super) fn account_for_reports(&mut self) {
+        let reported = std::mem::take(&mut self.reported);
+        if reported > LOGGED_PER_FRAME {
+            let unheard = reported.saturating_sub(REPORTS_PER_FRAME);
+            let rest = reported - LOGGED_PER_FRAME;
+            tracing::warn!("{rest} more messages in one frame; {unheard} of them did not reach ERROR and WARNING");
+        }
+    }
+}
