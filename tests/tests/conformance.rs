@@ -14,7 +14,7 @@ use std::{cell::RefCell, collections::BTreeSet, time::Duration};
 use tests::{
     Machine,
     conformance::{
-        self, Case, Operator, Report, Target, Verdict, Way, case::Step, line::Place, person, person::OrderFault,
+        self, Case, Operator, Report, Target, Way, case::Step, line::Place, person, person::OrderFault,
         report::failure_text, walk,
     },
 };

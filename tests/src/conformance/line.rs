@@ -1,6 +1,10 @@
 //! A host line from the host's side: bytes out, bytes in with a time limit, whatever carries them.
 
 use protocol::address::Address;
+use rustix::{
+    event::{PollFd, PollFlags},
+    time::Timespec,
+};
 use std::{
     fs::{File, OpenOptions},
     io::{self, Read, Write},
@@ -8,7 +12,11 @@ use std::{
     os::unix::net::UnixStream,
     path::PathBuf,
     str::FromStr,
-    sync::mpsc,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
     time::{Duration, Instant},
 };
 
@@ -16,6 +24,9 @@ use std::{
 const GOODBYE: Duration = Duration::from_secs(3);
 /// How long a machine may refuse to take bytes.
 const WRITE_LIMIT: Duration = Duration::from_secs(30);
+
+/// How soon the reader of a terminal sees that it is to end: 2 ms.
+const TERMINAL_TURN: Timespec = Timespec { tv_sec: 0, tv_nsec: 2_000_000 };
 
 /// Where a line is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,7 +60,26 @@ pub struct Line {
 enum Stream {
     Tcp(TcpStream),
     Unix(UnixStream),
-    Terminal(File),
+    /// A terminal, and whether its reader is to end: nothing else ends a read of a terminal.
+    Terminal(File, Arc<AtomicBool>),
+}
+
+/// Reads a terminal until it is told to end, so that no reader takes what is meant for the next host.
+struct TerminalReader {
+    file: File,
+    has_left: Arc<AtomicBool>,
+}
+
+impl Read for TerminalReader {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        while !self.has_left.load(Ordering::Acquire) {
+            let mut waited = [PollFd::new(&self.file, PollFlags::IN)];
+            if rustix::event::poll(&mut waited, Some(&TERMINAL_TURN))? > 0 {
+                return self.file.read(buffer);
+            }
+        }
+        Ok(0)
+    }
 }
 
 impl std::fmt::Debug for Line {
@@ -81,8 +111,9 @@ impl Line {
             Place::Terminal(path) => {
                 let file = OpenOptions::new().read(true).write(true).open(path)?;
                 make_raw(&file)?;
-                let reader = file.try_clone()?;
-                (Stream::Terminal(file), Box::new(reader))
+                let has_left = Arc::new(AtomicBool::new(false));
+                let reader = TerminalReader { file: file.try_clone()?, has_left: has_left.clone() };
+                (Stream::Terminal(file, has_left), Box::new(reader))
             }
         };
         let (sender, inbox) = mpsc::channel();
@@ -98,7 +129,7 @@ impl Line {
         match &mut self.stream {
             Stream::Tcp(stream) => stream.write_all(bytes),
             Stream::Unix(stream) => stream.write_all(bytes),
-            Stream::Terminal(file) => file.write_all(bytes),
+            Stream::Terminal(file, _) => file.write_all(bytes),
         }
     }
 
@@ -120,8 +151,10 @@ impl Line {
         let closed = match &self.stream {
             Stream::Tcp(stream) => stream.shutdown(Shutdown::Write),
             Stream::Unix(stream) => stream.shutdown(Shutdown::Write),
-            // A terminal is not let go.
-            Stream::Terminal(_) => return,
+            Stream::Terminal(_, has_left) => {
+                has_left.store(true, Ordering::Release);
+                Ok(())
+            }
         };
         let deadline = Instant::now() + GOODBYE;
         if closed.is_ok() {
@@ -136,7 +169,10 @@ impl Drop for Line {
         let _ = match &self.stream {
             Stream::Tcp(stream) => stream.shutdown(Shutdown::Both),
             Stream::Unix(stream) => stream.shutdown(Shutdown::Both),
-            Stream::Terminal(_) => Ok(()),
+            Stream::Terminal(_, has_left) => {
+                has_left.store(true, Ordering::Release);
+                Ok(())
+            }
         };
     }
 }
