@@ -207,8 +207,11 @@ fn observe(session: &Session, input: &[u8], features: &mut Features) {
     amounts.iter().for_each(|(of, amount)| features.saw_amount(of, *amount));
     let mut reader = CommandReader::default();
     reader.push(input);
+    let mut before = "";
     for item in reader.flatten() {
-        features.saw(("command", name_of(&item.command)));
-        pairs(&item.command, |before, word| features.saw((before, word)));
+        let name = name_of(&item.command);
+        features.saw((before, name));
+        before = name;
+        pairs(&item.command, |_, word| features.saw((name, word)));
     }
 }
