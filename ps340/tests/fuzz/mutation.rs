@@ -8,7 +8,7 @@ use crate::{
 use protocol::wire::{LONG_HEADER, LONG_START, LONG_TRAILER, Route, write_packet};
 
 /// Longest input, in bytes.
-pub const LONGEST: usize = 8_192;
+pub const LONGEST: usize = 3_072;
 
 /// Numbers as text that are hard to take.
 pub const NUMBERS: &[&str] = &[
