@@ -50,6 +50,7 @@ fn send(network: &mut Network, input: u16, value: Literal) -> Vec<Effect> {
     let mut effects = Vec::new();
     network.send(FUNCTION, Input::Number(u32::from(input)), value.value(), &mut effects);
     assert!(network.run(1_000, &mut effects).idle);
+    assert_eq!(network.audit(), Ok(()), "{value:?} at <{input}>");
     effects
 }
 

@@ -189,6 +189,8 @@ impl Network {
             }
             Err(problem) => {
                 outbox.clear();
+                // What it took out before it failed is gone; the rest is counted as it is removed.
+                self.string_bytes -= leaving - leaving_bytes(inputs);
                 self.fail(object, problem, effects, observer);
             }
         }

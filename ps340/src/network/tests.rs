@@ -11,7 +11,7 @@ use crate::{
     },
 };
 use glam::{DMat3, DMat4, DVec3};
-use protocol::{Kind, Value, command::Axis};
+use protocol::{Kind, Name, Value, command::Axis, value::PickList};
 use std::collections::HashMap;
 
 /// A network whose objects have names; unknown names are objects without a function.
@@ -373,6 +373,19 @@ fn a_flood_is_counted_and_reported_and_the_rest_works_on() {
     }
     let sums = bench.arrived("X");
     assert_eq!((sums.len(), sums.last()), (MAX_QUEUE, Some(&Value::Integer(MAX_QUEUE as i32 - 1))));
+}
+
+#[test]
+fn what_a_function_takes_out_before_it_fails_is_counted_no_more() {
+    let mut bench = Bench::default();
+    bench.define("P:=F:PICKINFO").send(I(-1), 2, "P");
+    let pick = PickList { index: 1, identifiers: vec![], node: Name::new("LINES").ok(), type_code: 1, place: None };
+    let p = bench.id("P");
+    bench.network.send(p, Input::Number(1), Value::Pick(Box::new(pick)), &mut bench.effects);
+    assert!(bench.network.string_bytes > 0);
+    assert_eq!(faults(&bench.run()), [Cause::Range { input: 2 }]);
+    assert_eq!(bench.network.audit(), Ok(()));
+    assert_eq!(bench.network.string_bytes, 0);
 }
 
 #[test]

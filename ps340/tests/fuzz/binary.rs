@@ -45,7 +45,7 @@ fn bodies(input: &[u8]) -> impl Iterator<Item = &[u8]> {
 fn check(command: &Command) {
     let mut body = Vec::new();
     encode(command, &mut body).unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    assert_eq!(decoded(&body), [command.clone()]);
+    assert_eq!(decoded(&body), std::slice::from_ref(command));
     let mut text = Vec::new();
     print(command, &mut text);
     let packets = PacketForm::ALL[body.len() % PacketForm::ALL.len()].0;
@@ -53,7 +53,7 @@ fn check(command: &Command) {
         let mut stream = Vec::new();
         // A record may be too long for a short packet.
         if write_commands_as(Sending { packets, data }, [command], &mut stream).is_ok() {
-            assert_eq!(received(&stream), [command.clone()], "{packets:?} {data:?}");
+            assert_eq!(received(&stream), std::slice::from_ref(command), "{packets:?} {data:?}");
         }
     }
 }

@@ -11,6 +11,7 @@
 mod binary;
 mod campaign;
 mod chance;
+mod growth;
 mod long;
 mod mutation;
 mod packets;

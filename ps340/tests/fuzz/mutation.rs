@@ -1,13 +1,17 @@
 //! Changes of an input: bits, runs, splices, words, numbers, checks.
 
-use crate::{chance::Chance, vocabulary::vocabulary};
+use crate::{
+    chance::Chance,
+    growth::{bytes, statement},
+    vocabulary::vocabulary,
+};
 use protocol::wire::{LONG_HEADER, LONG_START, LONG_TRAILER, Route, write_packet};
 
 /// Longest input, in bytes.
-pub const LONGEST: usize = 8_192;
+pub const LONGEST: usize = 3_072;
 
 /// Numbers as text that are hard to take.
-const NUMBERS: &[&str] = &[
+pub const NUMBERS: &[&str] = &[
     "0",
     "-0",
     "1",
@@ -89,7 +93,7 @@ pub fn mutate(chance: &mut Chance, parent: &[u8], other: &[u8]) -> Vec<u8> {
 
 fn edit(chance: &mut Chance, input: &mut Vec<u8>, other: &[u8]) {
     let at = chance.below(input.len() + 1);
-    match chance.below(15) {
+    match chance.below(20) {
         0 => {
             if let Some(byte) = input.get_mut(at) {
                 *byte ^= 1 << chance.below(8);
@@ -136,9 +140,17 @@ fn edit(chance: &mut Chance, input: &mut Vec<u8>, other: &[u8]) {
             let text = input[b].to_vec();
             input.splice(a, text);
         }
-        _ => {
+        14 => {
             let statement = statement_of(chance, other);
             insert(input, at, &statement);
+        }
+        15 => input.extend_from_slice(other),
+        16 => insert(input, 0, other),
+        _ => {
+            let at = input.iter().skip(at).position(|byte| *byte == b';').map_or(at, |behind| at + behind + 1);
+            let count = 1 + chance.below(8);
+            let statements: Vec<String> = (0..count).map(|_| statement(chance)).collect();
+            insert(input, at, &bytes(&statements.concat()));
         }
     }
 }

@@ -25,8 +25,9 @@ impl Features {
     /// A message without the names, numbers and quotations in it, which are without end.
     pub fn saw_message(&mut self, message: &str) {
         let mut plain = String::with_capacity(message.len());
-        for word in message.split_ascii_whitespace().take(20) {
-            let ordinary = word.bytes().any(|byte| byte.is_ascii_lowercase()) && !word.contains(['\'', '`', '<']);
+        for word in message.split_ascii_whitespace().take(12) {
+            let word = word.trim_end_matches([',', ';', ':', '.']);
+            let ordinary = word.bytes().all(|byte| byte.is_ascii_lowercase());
             plain.push_str(if ordinary { word } else { "*" });
         }
         self.saw(("message", message.get(..4), plain));

@@ -47,6 +47,9 @@ const REST: u64 = 30;
 /// More memory than this is a leak: the mass memory, and one value that may pass its end.
 const MEMORY: u64 = MASS_MEMORY as u64 + (1 << 20);
 
+/// The initial instance through which hosts are answered.
+const ANSWERS: &str = "HOST_MESSAGE";
+
 struct Session {
     machine: Machine,
     line: LineId,
@@ -176,6 +179,9 @@ impl Session {
         });
         assert!(quiet, "the machine rests after INITIALIZE: {:?}", self.machine.log().last());
         self.machine.audit().unwrap_or_else(|error| panic!("after INITIALIZE: {error}"));
+        if self.machine.describe(ANSWERS) != Machine::new(Settings::default()).describe(ANSWERS) {
+            return; // A host in configure mode took it away; the machine is to be started again.
+        }
         self.outputs.clear();
         let question = b"P := F:PRINT; CONNECT P<1>:<1>HOST_MESSAGE; SEND V2D(0.5,1) TO <1>P;\n";
         self.step([Input::Bytes(LAST_LINE, question.to_vec())]);
@@ -207,8 +213,11 @@ fn observe(session: &Session, input: &[u8], features: &mut Features) {
     amounts.iter().for_each(|(of, amount)| features.saw_amount(of, *amount));
     let mut reader = CommandReader::default();
     reader.push(input);
+    let mut before = "";
     for item in reader.flatten() {
-        features.saw(("command", name_of(&item.command)));
-        pairs(&item.command, |before, word| features.saw((before, word)));
+        let name = name_of(&item.command);
+        features.saw((before, name));
+        before = name;
+        pairs(&item.command, |_, word| features.saw((name, word)));
     }
 }

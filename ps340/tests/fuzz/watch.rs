@@ -71,5 +71,5 @@ impl Drop for Slot {
 pub fn resident() -> u64 {
     let pages =
         fs::read_to_string("/proc/self/statm").ok().and_then(|text| text.split(' ').nth(1)?.parse::<u64>().ok());
-    pages.unwrap_or(0) * 4096 >> 20
+    pages.unwrap_or(0) / 256
 }
