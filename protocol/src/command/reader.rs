@@ -111,6 +111,11 @@ impl CommandReader {
         self.place != Place::Code || blanks(rest, 0).map_or(true, |at| at < rest.len())
     }
 
+    /// What has come of a statement whose `;` is still to come.
+    pub fn unfinished(&self) -> &[u8] {
+        &self.buffer[self.start..]
+    }
+
     /// Forgets an unfinished statement and all that was not taken out.
     pub fn reset(&mut self) {
         *self = CommandReader::default();

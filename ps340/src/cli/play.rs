@@ -110,7 +110,9 @@ fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Scree
             end => return end,
         }
     }
-    player.wait(frames, screen)
+    let end = player.wait(frames, screen);
+    player.hang_up(screen);
+    end
 }
 
 /// Writes what is to be left at the end, and judges.

@@ -6,7 +6,7 @@ use protocol::command::spelling::nearest;
 use std::fmt::Write;
 
 /// Width of the first column.
-const COLUMN: usize = 18;
+const COLUMN: usize = 19;
 
 /// No function has a name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -26,7 +26,7 @@ pub fn table() -> String {
     for (family, rows) in user.chain(system) {
         let _ = writeln!(text, "{family}");
         for row in rows {
-            let _ = writeln!(text, "  {:COLUMN$}{}", title(row), row.summary);
+            let _ = writeln!(text, "  {:COLUMN$} {}", title(row), row.summary);
         }
         text.push('\n');
     }

@@ -25,6 +25,7 @@ pub fn lint(files: &[(String, Vec<u8>)]) -> Vec<Finding> {
         said: 0,
         program: Program::default(),
         said_by: Vec::new(),
+        latest: None,
         notes: Vec::new(),
     };
     for file in 0..sources.len() {
@@ -57,6 +58,8 @@ struct Reading<'s> {
     program: Program,
     /// What the machine said to the commands of this program.
     said_by: Vec<Said>,
+    /// The command that was read last.
+    latest: Option<Place>,
     notes: Vec<Note>,
 }
 
@@ -103,6 +106,7 @@ impl Reading<'_> {
         if matches!(command, Command::Initialize(Initialize::All | Initialize::Names)) {
             self.end_of_program();
         }
+        self.latest = Some(place);
         self.program.add(command, text, place);
         let known = match command {
             Command::Connect(_) | Command::ConnectSeveral { .. } => true,
@@ -136,6 +140,14 @@ impl Reading<'_> {
 
     /// Looks at the program that was read, and begins a new one.
     fn end_of_program(&mut self) {
+        // What the picture shows only, such as a structure that contains itself.
+        self.machine.renew_picture();
+        let shown = self.tell(Vec::new());
+        for text in shown.into_iter().filter(|text| text.starts_with('E')) {
+            if let Some(place) = self.latest {
+                self.note(place, Level::Error, format!("up to here, when it is displayed: {text}"));
+            }
+        }
         let program = std::mem::take(&mut self.program);
         let sources = self.sources;
         let line_of = |place: Place| {

@@ -132,3 +132,9 @@ fn a_program_ends_at_initialize_and_goes_on_from_file_to_file() {
     assert_eq!(two("L := NIL;", "INITIALIZE; DISPLAY L;"), 1);
     assert_eq!(one("L := NIL;\nL := NIL;"), "f:2:1: warning: L is defined again, it was defined at f:1");
 }
+
+#[test]
+fn a_structure_that_contains_itself_is_found() {
+    let finding = one("A := INSTANCE OF B;\nB := INSTANCE OF A;\nDISPLAY A;");
+    assert!(finding.starts_with("f:3:1: error: ") && finding.contains("A contains itself"), "{finding}");
+}

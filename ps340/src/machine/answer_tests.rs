@@ -256,3 +256,14 @@ fn what_is_packed_is_unpacked_wherever_the_stream_is_cut() {
         assert!(back == data && text == b"before", "in pieces of {piece}");
     }
 }
+
+#[test]
+fn a_command_that_never_ends_is_told_when_the_line_closes() {
+    let mut machine = told("A := NIL; SEND 'it''s TO <1>MESSAGE_DISPLAY;\n");
+    machine.step([Input::Detach(LINE)], 0);
+    let expected = "E 4 *** the line closed while the command 'SEND \\'it\\'\\'s TO <1>MESSAGE_DISPLAY;' was open";
+    assert_eq!(errors(&machine), [expected]);
+    machine.step([Input::Attach(LineId(2)), Input::Bytes(LineId(2), b"DISPLAY A; \n { done }".to_vec())], 0);
+    machine.step([Input::Detach(LineId(2))], 0);
+    assert_eq!(errors(&machine).len(), 1, "blanks and comments begin nothing");
+}

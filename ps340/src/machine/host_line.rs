@@ -14,6 +14,9 @@ use protocol::{
 /// Characters of a diagnostic packet that are shown.
 const DIAGNOSTIC_CHARACTERS: usize = 240;
 
+/// Characters of a command that never ended that are shown.
+const SHOWN_CHARACTERS: usize = 40;
+
 /// Who gets text that arrives outside packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum PlainText {
@@ -72,7 +75,14 @@ impl HostLine {
 
     /// Gives up what is open. Returns what that was.
     pub(super) fn abandon(&mut self, memory: &mut MassMemory) -> Option<String> {
-        self.decoders.interpreter.abandon(memory)
+        let Decoders { text, interpreter, .. } = &mut self.decoders;
+        let open = interpreter.abandon(memory);
+        let unfinished = text.is_unfinished().then(|| {
+            let begin = text.unfinished().trim_ascii().escape_ascii().map(char::from).take(SHOWN_CHARACTERS);
+            format!("the command '{}'", begin.collect::<String>())
+        });
+        text.reset();
+        open.or(unfinished)
     }
 }
 

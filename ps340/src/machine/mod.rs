@@ -238,10 +238,15 @@ impl Machine {
 
     /// What the vector screen shows now.
     pub fn vector_picture(&mut self, beam: &Beam) -> Picture {
+        self.renew_picture();
+        beam.picture(&self.visible_strokes())
+    }
+
+    /// Makes the picture of now, as the next frame would.
+    pub fn renew_picture(&mut self) {
         self.update_picture();
         self.settle();
         self.update_overlay();
-        beam.picture(&self.visible_strokes())
     }
 
     fn emit(&mut self, emissions: Vec<devices::Emission>) {

@@ -133,7 +133,12 @@ pub fn rows() -> impl Iterator<Item = &'static OrderRow> {
 
 /// The orders of a person at the machine.
 const ORDERS: &[OrderRow] = &[
-    OrderRow { word: "dial", arguments: "1..8 TURNS", summary: "turn a dial", read: dial },
+    OrderRow {
+        word: "dial",
+        arguments: "1..8 TURNS",
+        summary: "turn a dial; the machine sees it at the next frame",
+        read: dial,
+    },
     OrderRow {
         word: "key",
         arguments: "1..12 [shift|control] | NAME",

@@ -67,7 +67,10 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         Order::Message(n) => return Outcome::Waiting(Wait::Message(frame.saturating_add(*n))),
         Order::Picture { screen, file, size } => return Outcome::Done(picture(machine, *screen, file, *size)),
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
-        Order::Strokes(most) => return Outcome::Done(Ok(strokes(&machine.latest_update().strokes, *most))),
+        Order::Strokes(most) => {
+            machine.renew_picture();
+            return Outcome::Done(Ok(strokes(&machine.latest_update().strokes, *most)));
+        }
         Order::Overlay(most) => return Outcome::Done(Ok(strokes(machine.overlay(), *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
         Order::Inspect(what) => return Outcome::Done(inspect(what, machine)),

@@ -153,6 +153,11 @@ impl Player {
         End::Played
     }
 
+    /// Ends the line of the host: what it began and did not end is given up, and said.
+    pub fn hang_up(&mut self, watcher: &mut dyn Watcher) {
+        self.step([Input::Detach(LINE)], 0, watcher);
+    }
+
     /// The failures of the run in the order of their lines: steps that failed and, unless they are forgiven, errors of
     /// the machine that no step expected. Those are given once.
     pub fn take_failures(&mut self) -> Vec<Failure> {

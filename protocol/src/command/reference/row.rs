@@ -1,6 +1,6 @@
 //! One row of the command table, and how it is printed.
 
-use crate::command::words::Word;
+use crate::command::{parse, syntax::Command, words::Word};
 use std::fmt;
 
 /// How well a command is known.
@@ -151,6 +151,9 @@ impl fmt::Display for CommandRow {
         writeln!(f, "\nExample:")?;
         for line in self.example.lines() {
             writeln!(f, "    {line}")?;
+        }
+        if let Ok(Command::Define { name: None, .. }) = parse(self.example.as_bytes()) {
+            writeln!(f, "inside a structure; outside of one, an object needs a name: NAME := ...")?;
         }
         Ok(())
     }
