@@ -138,6 +138,10 @@ pub(super) fn setup_cness(
     memory: &mut MassMemory,
 ) -> Result<(), Message> {
     let to = receiver(&destination.name, memory)?;
+    // A host must not silence the system for all others.
+    if memory.objects.is_system(to) && !memory.privileged {
+        return Err(Refusal::System(destination.name.clone()).into());
+    }
     let done = memory.network.setup_cness(to, destination.input, constant);
     done.map_err(|fault| Message::Function { name: destination.name.to_string(), fault })
 }

@@ -267,3 +267,22 @@ fn a_command_that_never_ends_is_told_when_the_line_closes() {
     machine.step([Input::Detach(LineId(2))], 0);
     assert_eq!(errors(&machine).len(), 1, "blanks and comments begin nothing");
 }
+
+#[test]
+fn initialize_forgets_what_waits_for_an_update() {
+    let mut machine = told("SEND FIX(1000000) TO <3>PICK; SEND V2D(0.9,0.9) TO <1>PICK;");
+    machine.next_frame();
+    assert!(!machine.is_idle());
+    tell(&mut machine, "INITIALIZE;");
+    machine.next_frame();
+    assert!(machine.is_idle());
+}
+
+#[test]
+fn a_host_does_not_silence_the_system() {
+    let mut machine = told("SETUP CNESS TRUE <1>HOST_MESSAGE; SEND 'HERE' TO <1>HOST_MESSAGE;");
+    assert_eq!(said(&mut machine), ["HERE"]);
+    assert_eq!(errors(&machine), ["E 9 *** HOST_MESSAGE belongs to the system"]);
+    tell(&mut machine, "P := F:ADD; SETUP CNESS TRUE <2>P; CONNECT P<1>:<1>DLABEL1; SEND 2 TO <2>P; SEND 1 TO <1>P;");
+    assert_eq!(machine.panel().label(crate::port::Label::Dial(1)), b"3");
+}

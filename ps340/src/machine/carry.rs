@@ -2,7 +2,7 @@
 
 use super::{
     Machine, Output,
-    requests::{Pick, TransformRequest},
+    requests::{Pick, TransformRequest, Waiting},
 };
 use crate::{
     interpreter::Message,
@@ -31,6 +31,7 @@ impl Machine {
                 let room = self.waiting.add_pick(Pick { function, at, coordinates, frames });
                 self.lose_without(room, function, "PICK");
             }
+            Effect::ForgetRequests => self.waiting = Waiting::default(),
             Effect::RequestWriteBack { node } => self.waiting.add_write_back(node),
             Effect::Fetch { function, name } => self.fetch(function, &name),
             Effect::ExtractLabel { function, name, index } => self.extract_label(function, name, index),

@@ -272,6 +272,7 @@ impl MassMemory {
             self.structures.undefine(id);
         }
         self.insertions.clear();
+        self.effects.push(Effect::ForgetRequests);
         self.objects.clear_user();
         self.system.working_storage = 0;
         self.structures.clear_displayed();

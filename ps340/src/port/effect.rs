@@ -164,6 +164,8 @@ pub enum Effect {
         /// Whether these are the first since the function was instanced: what was unfinished before is forgotten.
         fresh: bool,
     },
+    /// Nobody waits for the next update any more: INITIALIZE.
+    ForgetRequests,
     /// The machine starts again: REBOOT.
     Restart,
     /// A line about the use of memory is wanted, as a string from output 1 of the function.
