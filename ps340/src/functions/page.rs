@@ -6,7 +6,7 @@ use protocol::command::spelling::nearest;
 use std::fmt::Write;
 
 /// Width of the first column.
-const COLUMN: usize = 19;
+const COLUMN: usize = 17;
 
 /// No function has a name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
