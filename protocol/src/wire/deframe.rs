@@ -9,6 +9,9 @@ use std::ops::Range;
 /// Bytes that the buffer makes room for at least, and that [`FrameDecoder::feed`] takes at a time.
 const ROOM: usize = 256 << 10;
 
+/// Bytes of an escape packet that [`FrameDecoder::feed`] takes at a time, since its length is not known before its end.
+const ESCAPE_PIECE: usize = 4096;
+
 /// A piece of the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame<'a> {
@@ -177,67 +180,56 @@ impl FrameDecoder {
         if self.start == self.end {
             return None;
         }
-        let step = look(&self.buffer[self.start..self.end], self.historical, &mut self.scan);
-        self.take(step)
+        let bytes = &self.buffer[self.start..self.end];
+        let step = look(bytes, self.historical, &mut self.scan);
+        self.needed = if let Step::Wait(needed) = step { needed } else { 0 };
+        let (frame, length) = take(step, bytes, &mut self.scan, &mut self.unescaped, &mut self.counters)?;
+        self.start += length;
+        Some(frame)
     }
 
-    /// Removes what a step found and makes the frame of it.
-    fn take(&mut self, step: Step) -> Option<Frame<'_>> {
-        let at = self.start;
-        self.needed = 0;
-        Some(match step {
-            Step::Wait(needed) => {
-                self.needed = needed;
-                return None;
-            }
-            Step::Escaped(length) => {
-                self.start += length;
-                self.scan = Scan::default();
-                self.counters.packets += 1;
-                self.counters.packet_bytes += length as u64;
-                let raw = &self.buffer[at..at + length];
-                self.unescaped.clear();
-                unescape(&raw[1..], &mut self.unescaped);
-                let (route, payload) = self.unescaped.split_first()?;
-                Frame::Packet { form: PacketForm::Escape, route: Route::from(*route), payload, raw }
-            }
-            Step::Empty => {
-                self.start += 2;
-                self.counters.packet_bytes += 2;
-                Frame::Empty(&self.buffer[at..at + 2])
-            }
-            Step::Text(length) => {
-                self.start += length;
-                self.counters.text_bytes += length as u64;
-                Frame::Text(&self.buffer[at..at + length])
-            }
-            Step::Noise(length, reason) => {
-                self.start += length;
-                self.scan = Scan::default();
-                self.counters.noise_bytes += length as u64;
-                self.counters.dropped_packets += u64::from(reason == NoiseReason::BadPayload);
-                Frame::Noise { bytes: &self.buffer[at..at + length], reason }
-            }
-            Step::Packet(form, route, payload, length) => {
-                self.start += length;
-                self.counters.packets += 1;
-                self.counters.packet_bytes += length as u64;
-                let raw = &self.buffer[at..at + length];
-                Frame::Packet { form, route, payload: &raw[payload], raw }
-            }
-        })
-    }
-
-    /// Takes bytes that lie elsewhere and gives all frames that they complete to `each`.
+    /// Takes bytes that lie elsewhere and gives all frames that they complete to `each`. Only what is not complete yet is
+    /// copied.
     pub fn feed(&mut self, mut bytes: &[u8], mut each: impl FnMut(Frame<'_>)) {
+        while self.is_unfinished() && !bytes.is_empty() {
+            bytes = self.complete(bytes, &mut each);
+        }
+        while !bytes.is_empty() {
+            let step = look(bytes, self.historical, &mut self.scan);
+            if let Step::Wait(needed) = step {
+                self.needed = needed;
+                return self.keep(bytes);
+            }
+            let taken = take(step, bytes, &mut self.scan, &mut self.unescaped, &mut self.counters);
+            let Some((frame, length)) = taken else { return };
+            each(frame);
+            bytes = &bytes[length..];
+        }
+    }
+
+    /// Takes so many bytes as the packet that has begun is known to need; returns the others.
+    fn complete<'b>(&mut self, bytes: &'b [u8], each: &mut impl FnMut(Frame<'_>)) -> &'b [u8] {
+        let waiting = self.end - self.start;
+        let wanted = match self.buffer[self.start] {
+            _ if self.needed > waiting => self.needed - waiting,
+            ESCAPE_START if self.historical => ESCAPE_PIECE,
+            _ => LONG_HEADER,
+        };
+        let (now, later) = bytes.split_at(wanted.min(bytes.len()));
+        self.keep(now);
+        while let Some(frame) = self.next_frame() {
+            each(frame);
+        }
+        later
+    }
+
+    /// Puts bytes into the buffer.
+    fn keep(&mut self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
             let space = self.space();
             let (now, later) = bytes.split_at(bytes.len().min(space.len()));
             space[..now.len()].copy_from_slice(now);
             self.advance(now.len());
-            while let Some(frame) = self.next_frame() {
-                each(frame);
-            }
             bytes = later;
         }
     }
@@ -253,13 +245,60 @@ impl FrameDecoder {
         if left == 0 {
             return None;
         }
-        self.take(Step::Noise(left, NoiseReason::Truncated))
+        let bytes = &self.buffer[self.start..self.end];
+        self.start = self.end;
+        self.needed = 0;
+        let step = Step::Noise(left, NoiseReason::Truncated);
+        take(step, bytes, &mut self.scan, &mut self.unescaped, &mut self.counters).map(|taken| taken.0)
     }
 
     /// What was received so far.
     pub fn counters(&self) -> Counters {
         self.counters
     }
+}
+
+/// The frame of what stands at the start of `bytes`, and its length; none if bytes of it are missing.
+fn take<'a>(
+    step: Step,
+    bytes: &'a [u8],
+    scan: &mut Scan,
+    unescaped: &'a mut Vec<u8>,
+    counters: &mut Counters,
+) -> Option<(Frame<'a>, usize)> {
+    Some(match step {
+        Step::Wait(_) => return None,
+        Step::Escaped(length) => {
+            *scan = Scan::default();
+            counters.packets += 1;
+            counters.packet_bytes += length as u64;
+            let raw = &bytes[..length];
+            unescaped.clear();
+            unescape(&raw[1..], unescaped);
+            let (route, payload) = unescaped.split_first()?;
+            (Frame::Packet { form: PacketForm::Escape, route: Route::from(*route), payload, raw }, length)
+        }
+        Step::Empty => {
+            counters.packet_bytes += 2;
+            (Frame::Empty(&bytes[..2]), 2)
+        }
+        Step::Text(length) => {
+            counters.text_bytes += length as u64;
+            (Frame::Text(&bytes[..length]), length)
+        }
+        Step::Noise(length, reason) => {
+            *scan = Scan::default();
+            counters.noise_bytes += length as u64;
+            counters.dropped_packets += u64::from(reason == NoiseReason::BadPayload);
+            (Frame::Noise { bytes: &bytes[..length], reason }, length)
+        }
+        Step::Packet(form, route, payload, length) => {
+            counters.packets += 1;
+            counters.packet_bytes += length as u64;
+            let raw = &bytes[..length];
+            (Frame::Packet { form, route, payload: &raw[payload], raw }, length)
+        }
+    })
 }
 
 /// What stands at the start of `bytes`, which are not empty.
