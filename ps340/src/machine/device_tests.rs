@@ -425,3 +425,11 @@ proptest! {
         prop_assert!(said.any(|message| message == b"STILL HERE"));
     }
 }
+
+#[test]
+fn initialize_does_without_arcs_whose_ends_were_made_something_else() {
+    let mut machine = told("CONFIGURE ANY; TABLETIN := F:SEND; FINISH CONFIGURATION; INITIALIZE;");
+    assert!(machine.describe("TABLETIN").is_some_and(|text| text.contains("F:SEND")));
+    tell(&mut machine, "SEND 'HERE' TO <1>HOST_MESSAGE;");
+    assert_eq!(machine.take_message().as_deref(), Some(b"HERE".as_slice()));
+}
