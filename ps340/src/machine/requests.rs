@@ -15,7 +15,7 @@ use glam::{DMat4, DVec2};
 use protocol::{
     Name, Value,
     command::{Fourth, VectorClass, VectorList},
-    value::{PickList, PickedPlace, TransformedVectors, VectorEnd},
+    value::{PickList, TransformedVectors, VectorEnd},
 };
 use std::sync::Arc;
 
@@ -217,13 +217,12 @@ impl Machine {
             }
             return;
         };
-        let place = hit.place.map(|p| PickedPlace { point: p.point, dimension: p.dimension, parameter: p.parameter });
         let list = PickList {
             index: hit.index,
             identifiers: hit.identifiers.clone(),
             node: hit.node.and_then(|id| Name::new(self.memory.objects.name(id)).ok()),
             type_code: hit.kind.code(),
-            place,
+            place: hit.place,
         };
         self.memory.network.emit(pick.function, 1, Value::Pick(Box::new(list)), &mut self.memory.effects);
     }

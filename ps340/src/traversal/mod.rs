@@ -19,7 +19,7 @@ mod walk;
 pub mod write_back;
 
 pub use clip::{Clipper, ScreenMap};
-pub use pick::{PickHit, PickRequest, PickedKind, PickedPlace};
+pub use pick::{PickHit, PickRequest, PickedKind};
 pub use state::State;
 pub use stroke::Stroke;
 pub use update::{Requests, Transformed, Trouble, Update};

@@ -7,7 +7,7 @@
 use super::{State, outline::Piece};
 use crate::port::ObjectId;
 use glam::{DVec2, DVec3, DVec4};
-use protocol::Name;
+use protocol::{Name, value::PickedPlace};
 
 /// What is to be picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,19 +31,8 @@ pub struct PickHit {
     pub node: Option<ObjectId>,
     /// What kind of data.
     pub kind: PickedKind,
-    /// Where it was picked, if that was wanted.
+    /// Where it was picked, if that was wanted: the point of the vector that is nearest to the centre of the box.
     pub place: Option<PickedPlace>,
-}
-
-/// Where a vector was picked.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PickedPlace {
-    /// The point of the vector that is nearest to the centre of the box, in the coordinates of the data node.
-    pub point: DVec3,
-    /// 2 or 3: components that the data has.
-    pub dimension: u8,
-    /// The parameter of a curve there.
-    pub parameter: Option<f64>,
 }
 
 /// The kind of data that was picked.

@@ -1,7 +1,7 @@
 //! The walk over the display structure.
 
 use super::{
-    Clipper, PickHit, PickedKind, PickedPlace, Requests, State, Stroke, Trouble, Update,
+    Clipper, PickHit, PickedKind, Requests, State, Stroke, Trouble, Update,
     outline::{self, Piece},
     phase,
     pick::{IdentifierChains, Identifiers, PickBox},
@@ -11,7 +11,10 @@ use crate::{
     structure::{Member, Node, Operation, Structures},
 };
 use glam::{DMat4, DVec3, DVec4};
-use protocol::command::{CharacterOrientation, Fourth, VectorClass, VectorList};
+use protocol::{
+    command::{CharacterOrientation, Fourth, VectorClass, VectorList},
+    value::PickedPlace,
+};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
