@@ -1,4 +1,5 @@
-//! The format of captured lines: what passed on every host line, in both directions, with its time.
+//! The format of captured sessions: what passed on every host line, in both directions, and what the operator did, with
+//! its time.
 //!
 //! A capture is text. Its first line is [`HEADER`]; each other line is a record of four fields with one blank between them:
 //!
@@ -7,13 +8,14 @@
 //! 0.000000 1 + tcp:127.0.0.1:40000
 //! 0.001250 1 > DISPLAY A;\r\n
 //! 0.018102 1 < 1V 0.25,-0.125\r\n
+//! 1.200000 0 ! dial 1 0.25
 //! 2.500000 1 -
 //! ```
 //!
 //! - the time in seconds since the capture began, with six decimals;
-//! - the number of the line;
-//! - `+` the line opened, `>` bytes from the host, `<` bytes to the host, `-` the line closed;
-//! - who attached for `+`; the bytes for `>` and `<`: printable characters as they are, but `\\` for the backslash,
+//! - the number of the line; 0 for an order;
+//! - `+` the line opened, `>` bytes from the host, `<` bytes to the host, `-` the line closed, `!` an order of the operator;
+//! - who attached for `+`; the order for `!`; the bytes for `>` and `<`: printable characters as they are, but `\\` for the backslash,
 //!   `\r`, `\n`, `\t`, and `\xNN` for all other bytes.
 
 use std::fmt::Write;
@@ -24,8 +26,11 @@ pub const HEADER: &str = "ps340 capture 1";
 /// Bytes of a line in one record; more are several records.
 pub const PIECE: usize = 4096;
 
-/// Longest line of a capture in bytes: every byte of a piece escaped, and the fields before it.
-const MAX_LINE: usize = 4 * PIECE + 128;
+/// Longest order of an operator, in bytes.
+pub const MAX_ORDER: usize = 64 << 10;
+
+/// Longest line of a capture in bytes: every byte of an order escaped, and the fields before it.
+const MAX_LINE: usize = 4 * MAX_ORDER + 128;
 
 /// Longest name of who attached.
 const MAX_PEER: usize = 1024;
@@ -52,6 +57,8 @@ pub enum Event {
     ToHost(Vec<u8>),
     /// The line closed.
     Close,
+    /// The operator did something; the order.
+    Order(String),
 }
 
 /// A line that is no record of a capture.
@@ -76,8 +83,8 @@ pub enum CaptureProblem {
     /// No number of a line.
     #[error("it has no number of a line")]
     Line,
-    /// None of the four signs.
-    #[error("its third field is none of + > < -")]
+    /// None of the five signs.
+    #[error("its third field is none of + > < - !")]
     Sign,
     /// A backslash that is followed by nothing known.
     #[error("a backslash is followed by none of \\ r n t xNN")]
@@ -106,6 +113,7 @@ impl Record {
         };
         match &self.event {
             Event::Open(peer) => line('+', &peer.as_bytes()[..peer.len().min(MAX_PEER)]),
+            Event::Order(order) => line('!', &order.as_bytes()[..order.len().min(MAX_ORDER)]),
             Event::FromHost(bytes) => bytes.chunks(PIECE).for_each(|piece| line('>', piece)),
             Event::ToHost(bytes) => bytes.chunks(PIECE).for_each(|piece| line('<', piece)),
             Event::Close => line('-', &[]),
@@ -125,6 +133,7 @@ impl Record {
             ">" => Event::FromHost(bytes),
             "<" => Event::ToHost(bytes),
             "-" => Event::Close,
+            "!" => Event::Order(String::from_utf8_lossy(&bytes).into_owned()),
             _ => return Err(CaptureProblem::Sign),
         };
         Ok(Record { micros, line: number, event })
@@ -266,7 +275,7 @@ mod tests {
     fn the_example_of_the_document_is_read() {
         let text = format!(
             "{HEADER}\n0.000000 1 + tcp:127.0.0.1:40000\n0.001250 1 > DISPLAY A;\\r\\n\n\n\
-             12.5 1 < \\x1d\\\\ \\t\\x20\r\n2.500000 2 -"
+             12.5 1 < \\x1d\\\\ \\t\\x20\r\n2.500000 2 -\n3.0 0 ! type a\\\\r"
         );
         assert!(is_capture(text.as_bytes()) && !is_capture(b"ps340 capture 10"));
         let records: Vec<Record> = read(text.as_bytes(), 7).into_iter().map(Result::unwrap).collect();
@@ -278,6 +287,7 @@ mod tests {
                 record(1_250, 1, Event::FromHost(b"DISPLAY A;\r\n".into())),
                 record(12_500_000, 1, Event::ToHost(b"\x1d\\ \t ".into())),
                 record(2_500_000, 2, Event::Close),
+                record(3_000_000, 0, Event::Order("type a\\r".into())),
             ]
         );
     }

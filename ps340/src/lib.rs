@@ -23,6 +23,8 @@ pub mod line;
 pub mod machine;
 pub mod operator;
 pub mod shell;
+#[cfg(feature = "window")]
+pub mod console;
 pub mod play;
 pub mod lint;
 pub mod cli;

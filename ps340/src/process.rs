@@ -1,5 +1,7 @@
 //! The process `ps340`: arguments, log and exit codes around the shell.
 
+#[cfg(feature = "window")]
+use crate::console;
 use crate::{
     cli,
     line::LineAddress,
@@ -37,7 +39,8 @@ struct Arguments {
     /// Where hosts attach, see below. May be given several times.
     #[arg(long, value_name = "LINE", default_value = "tcp:127.0.0.1:3400")]
     listen: Vec<LineAddress>,
-    /// Writes what passes on all host lines to a file; 'file:FILE' plays it again.
+    /// Writes what passes on all host lines, and what the operator does, to a file; 'file:FILE,pace=captured' plays it
+    /// again.
     #[arg(long, value_name = "FILE")]
     capture: Option<PathBuf>,
     /// Who gives orders: stdio, none, or an address to listen on. By default stdio if that is a terminal, else none.
@@ -53,6 +56,18 @@ struct Arguments {
     /// function network. By default to the network; with '--plain-text terminal' to the host.
     #[arg(long, value_enum)]
     keyboard: Option<KeyboardMode>,
+    /// Opens a window with both screens and all devices.
+    #[cfg(feature = "window")]
+    #[arg(long)]
+    window: bool,
+    /// Changes what keys of the window do; 'ps340 mapping' prints the table that is in force without a file.
+    #[cfg(feature = "window")]
+    #[arg(long, value_name = "FILE", requires = "window")]
+    mapping: Option<PathBuf>,
+    /// Pixels per unit of the window, instead of what the display says.
+    #[cfg(feature = "window")]
+    #[arg(long, value_name = "N", requires = "window", value_parser = scale)]
+    scale: Option<f32>,
     /// Threads that draw; all cores by default.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -110,7 +125,21 @@ pub fn main() -> ExitCode {
         }
         _ => eprintln!("{line}"),
     };
-    match run(&options, say) {
+    #[cfg(feature = "window")]
+    let ended = if arguments.window {
+        match appearance(arguments.mapping.as_deref(), arguments.scale) {
+            Ok(appearance) => console::open(&options, appearance, say).map_err(|error| error.to_string()),
+            Err(error) => {
+                eprintln!("ps340: {error}");
+                return ExitCode::from(2);
+            }
+        }
+    } else {
+        run(&options, None, say).map_err(|error| error.to_string())
+    };
+    #[cfg(not(feature = "window"))]
+    let ended = run(&options, None, say).map_err(|error| error.to_string());
+    match ended {
         Ok(End::Quit) => ExitCode::SUCCESS,
         Ok(End::Interrupted) => ExitCode::from(130),
         Err(error) => {
@@ -118,4 +147,25 @@ pub fn main() -> ExitCode {
             ExitCode::from(1)
         }
     }
+}
+
+/// How the window begins.
+///
+/// # Errors
+/// Which file cannot be read, or which of its lines is wrong.
+#[cfg(feature = "window")]
+fn appearance(mapping: Option<&std::path::Path>, scale: Option<f32>) -> Result<console::Appearance, String> {
+    let mut appearance = console::Appearance { scale, ..Default::default() };
+    if let Some(file) = mapping {
+        let text = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
+        appearance.mapping.read(&text).map_err(|error| format!("{}: {error}", file.display()))?;
+    }
+    Ok(appearance)
+}
+
+/// Reads the argument of `--scale`.
+#[cfg(feature = "window")]
+fn scale(text: &str) -> Result<f32, String> {
+    let scale = text.parse().ok().filter(|scale| (0.25..=8.0).contains(scale));
+    scale.ok_or_else(|| "not a number from 0.25 to 8".into())
 }

@@ -136,6 +136,10 @@ fn list_record(record: &Record, from: From, listings: &mut BTreeMap<(u64, bool),
             let _ = writeln!(text, "{seconds:.6} s, line {}: closed", record.line);
             return;
         }
+        Event::Order(order) => {
+            let _ = writeln!(text, "{seconds:.6} s, operator: {order}");
+            return;
+        }
         Event::FromHost(bytes) => (Sender::Host, bytes),
         Event::ToHost(bytes) => (Sender::Machine, bytes),
     };

@@ -31,6 +31,9 @@ pub enum Tool {
         /// Which one, such as 'vector_list' or 'set picking'; may be abbreviated.
         name: Vec<String>,
     },
+    /// Prints what keys of the window do, as a file for '--mapping'.
+    #[cfg(feature = "window")]
+    Mapping,
 }
 
 /// What went wrong while a tool ran.
@@ -63,6 +66,8 @@ pub fn run(tool: &Tool) -> ExitCode {
         Tool::Lint(arguments) => lint::run(arguments),
         Tool::Functions { name } => reference::functions(name.as_deref()),
         Tool::Commands { name } => reference::commands(name),
+        #[cfg(feature = "window")]
+        Tool::Mapping => say(crate::console::DEFAULT_MAPPING).map(|()| ExitCode::SUCCESS),
     };
     match result {
         Ok(code) => code,

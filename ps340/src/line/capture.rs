@@ -1,4 +1,4 @@
-//! Capture of what passes on the host lines to a file.
+//! Capture of what passes on the host lines, and of what the operator does, to a file.
 
 use super::LineId;
 use protocol::capture::{Event, HEADER, Record};
@@ -34,6 +34,11 @@ impl Capture {
         writeln!(file, "{HEADER}")?;
         let tape = Tape { file: Some(file), begin: Instant::now(), text: String::new() };
         Ok(Capture { shared: Arc::new(Mutex::new(tape)) })
+    }
+
+    /// Writes down that the operator did something now.
+    pub fn record_order(&self, order: &str) {
+        self.record(LineId(0), Event::Order(order.into()));
     }
 
     /// Writes down what happened on a line now.

@@ -14,7 +14,7 @@ mod operator;
 pub use capture::Capture;
 pub use hosts::{MAX_HOSTS, MAX_WAITING_BYTES, Writer};
 pub use listener::{Listener, SocketFile};
-pub use operator::{OperatorLine, serve_operators, serve_stdio};
+pub use operator::{OperatorLine, serve_operators, serve_stdio, serve_window};
 pub use protocol::address::{Address, AddressError, LineAddress};
 pub use source::Source;
 pub use terminal::{PseudoTerminal, open_serial};
@@ -74,7 +74,7 @@ pub enum LineEvent {
     SourceEnded,
     /// An operator's line of text, which wants one line of reply.
     Operator(OperatorLine),
-    /// The operator on standard input is gone.
+    /// The operator on standard input, or at the window, is gone.
     OperatorGone,
     /// The process was asked to end.
     Interrupted,

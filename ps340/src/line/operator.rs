@@ -1,14 +1,13 @@
 //! Operator lines: one order a line, one reply a line.
 
 use super::{Events, LineEvent, Listener, listener::Stream};
+use protocol::capture::MAX_ORDER;
 use std::io::{BufRead, IsTerminal, Write};
 use tokio::{
     io::{AsyncBufRead, AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader},
     sync::oneshot,
 };
 
-/// Longest order, in bytes.
-const MAX_ORDER: u64 = 64 << 10;
 
 /// The reply to an order that is longer.
 const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
@@ -42,9 +41,9 @@ async fn serve(stream: Box<dyn Stream>, events: Events) {
     let mut read = BufReader::new(read);
     loop {
         let mut line = Vec::new();
-        match (&mut read).take(MAX_ORDER).read_until(b'\n', &mut line).await {
+        match (&mut read).take(MAX_ORDER as u64).read_until(b'\n', &mut line).await {
             Ok(0) | Err(_) => return,
-            Ok(n) if n as u64 == MAX_ORDER && !line.ends_with(b"\n") => {
+            Ok(n) if n == MAX_ORDER && !line.ends_with(b"\n") => {
                 // The rest of the line is not another order.
                 if skip_line(&mut read).await.is_err() || write.write_all(TOO_LONG.as_bytes()).await.is_err() {
                     return;
@@ -117,6 +116,16 @@ pub fn serve_stdio(events: &Events) {
         let answer = if people { for_people(&answer) } else { answer };
         if writeln!(out, "{answer}").and_then(|()| out.flush()).is_err() {
             break;
+        }
+    }
+    let _ = events.blocking_send(LineEvent::OperatorGone);
+}
+
+/// Takes orders from a window until that is closed. Blocks.
+pub fn serve_window(orders: std::sync::mpsc::Receiver<OperatorLine>, events: &Events) {
+    for order in orders {
+        if events.blocking_send(LineEvent::Operator(order)).is_err() {
+            return;
         }
     }
     let _ = events.blocking_send(LineEvent::OperatorGone);

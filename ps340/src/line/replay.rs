@@ -1,7 +1,7 @@
 //! Files as hosts: a plain file is sent as it is, a capture is played again.
 
 use super::{
-    Interface, LineId, Surroundings,
+    Interface, LineEvent, LineId, OperatorLine, Surroundings,
     hosts::{Host, MAX_HOSTS, serve, silent_writer},
 };
 use protocol::{
@@ -17,7 +17,7 @@ use std::{
 };
 use tokio::{
     io::{AsyncWrite, AsyncWriteExt},
-    sync::mpsc,
+    sync::{mpsc, oneshot},
     time::{Instant, sleep_until},
 };
 
@@ -140,6 +140,11 @@ async fn play(
             }
             let sent = match record.event {
                 Event::ToHost(_) => continue,
+                Event::Order(text) => {
+                    // Nobody waits for the reply.
+                    let (reply, _) = oneshot::channel();
+                    around.send(LineEvent::Operator(OperatorLine { text, reply })).await
+                }
                 Event::Close => match lines.remove(&record.line) {
                     Some(line) => around.close(line, None).await,
                     None => continue,

@@ -1,12 +1,32 @@
 //! Looking into the machine: pictures, texts, counters, objects; and single steps of its network.
 
-use super::{Counters, Machine, Panel, WORK_PER_STEP, describe};
+use super::{Counters, Machine, Panel, WORK_PER_STEP, describe, tube::Tube};
 use crate::{
-    disk::Disk, memory::MassMemory, network::Network, picture::Picture, port::ObjectId, terminal::Terminal,
-    traversal::Update,
+    disk::Disk, memory::MassMemory, network::Network, picture::Picture, port::ObjectId, raster::FrameBuffer,
+    terminal::Terminal, traversal::Update,
 };
 
+/// Which picture the vector screen shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PictureVersion {
+    updates: u64,
+    overlays: u64,
+    graphics: bool,
+    blanked: bool,
+}
+
 impl Machine {
+    /// Which picture the vector screen shows; another one has another version.
+    pub fn picture_version(&self) -> PictureVersion {
+        let Tube { graphics, blanked, drawn, .. } = &self.tube;
+        PictureVersion { updates: self.counters.updates, overlays: *drawn, graphics: *graphics, blanked: *blanked }
+    }
+
+    /// The memory behind the raster screen.
+    pub fn frame_buffer(&self) -> &FrameBuffer {
+        &self.frame_buffer
+    }
+
     /// What the raster screen shows now.
     pub fn raster_picture(&self) -> Picture {
         self.frame_buffer.picture()
@@ -88,6 +108,11 @@ impl Machine {
     pub fn describe(&self, name: &str) -> Option<String> {
         let id = self.memory.objects.find(name)?;
         Some(describe::describe(&self.memory, id))
+    }
+
+    /// What an object is, in one line, whether it has a name or not.
+    pub fn describe_object(&self, id: ObjectId) -> String {
+        describe::describe(&self.memory, id)
     }
 
     /// Counts anew what network and structure keep books of, for tests.

@@ -21,6 +21,7 @@ mod watch;
 pub use counters::Counters;
 pub use devices::Event;
 pub use host_line::PlainText;
+pub use inspection::PictureVersion;
 pub use keyboard::{Key, KeyboardMode};
 pub use panel::Panel;
 pub use speech::REPORTS_PER_FRAME;
@@ -353,7 +354,7 @@ impl Machine {
         self.streams = Streams::default();
         self.keyboard = Keyboard::default();
         self.terminal = Terminal::default();
-        self.tube = Tube::default();
+        self.tube = self.tube.restarted();
         self.watch = Watch::default();
         self.switch_keyboard(self.settings.keyboard);
         self.messages.push(Message::Information("the machine was started again".into()));

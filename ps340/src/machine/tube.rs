@@ -36,6 +36,8 @@ pub(super) struct Tube {
     cursor_of: Option<CursorKey>,
     /// The strokes of words and cursor.
     overlay: Vec<Stroke>,
+    /// How often `overlay` was made.
+    pub(super) drawn: u64,
 }
 
 /// Strokes of terminal and message line.
@@ -74,7 +76,15 @@ impl Default for Tube {
             cursor: Update::default(),
             cursor_of: None,
             overlay: Vec::new(),
+            drawn: 0,
         }
+    }
+}
+
+impl Tube {
+    /// The switches as at the start; what is drawn next is another picture than all before.
+    pub(super) fn restarted(&self) -> Tube {
+        Tube { drawn: self.drawn + 1, ..Tube::default() }
     }
 }
 
@@ -121,7 +131,8 @@ impl Machine {
         if !self.cursor_is_current() {
             self.update_cursor();
         }
-        let Tube { words, cursor, overlay, .. } = &mut self.tube;
+        let Tube { words, cursor, overlay, drawn, .. } = &mut self.tube;
+        *drawn += 1;
         overlay.clear();
         overlay.extend(words.strokes.iter().chain(cursor.on_screen(SCREEN)));
     }

@@ -84,6 +84,11 @@ impl Network {
         self.put_away();
     }
 
+    /// Whether the counters of the functions are on.
+    pub fn counts_activity(&self) -> bool {
+        self.instruments.as_ref().is_some_and(|instruments| instruments.activity.is_some())
+    }
+
     /// What a function did since its counters were started; none if they are off, or it is no function.
     pub fn activity(&self, id: ObjectId) -> Option<Activity> {
         let counted = self.instruments.as_ref()?.activity.as_ref()?;

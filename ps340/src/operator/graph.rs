@@ -42,7 +42,7 @@ pub(super) fn graph(machine: &Machine, subject: Subject, language: Language) -> 
 }
 
 /// What an object is called: its name, or its number if it has none.
-pub(super) fn title(memory: &MassMemory, id: ObjectId) -> String {
+pub fn title(memory: &MassMemory, id: ObjectId) -> String {
     match memory.objects.name(id) {
         "?" => format!("#{}", id.0),
         name => name.into(),

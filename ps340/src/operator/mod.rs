@@ -7,7 +7,7 @@ mod inspect;
 mod order;
 mod perform;
 
-pub use graph::{Language, Subject};
+pub use graph::{Language, Subject, title};
 pub use inspect::Inspection;
 pub use order::{Order, OrderError, OrderRow, Screen, parse, rows};
 pub use perform::{Outcome, Wait, perform};

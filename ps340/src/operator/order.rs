@@ -92,6 +92,40 @@ pub enum Order {
     Quit,
 }
 
+impl Order {
+    /// Whether somebody does something at the machine, rather than looks at it or waits for it.
+    pub fn is_action(&self) -> bool {
+        match self {
+            Order::Dial { .. }
+            | Order::Key(_)
+            | Order::Press(_)
+            | Order::Mode(Some(_))
+            | Order::Button(_)
+            | Order::PuckMove(_)
+            | Order::PuckPress(_)
+            | Order::PuckRelease
+            | Order::PuckAway
+            | Order::Type(_) => true,
+            Order::Keys
+            | Order::Mode(None)
+            | Order::Frames(_)
+            | Order::Idle(_)
+            | Order::Message(_)
+            | Order::Picture { .. }
+            | Order::Show(_)
+            | Order::Strokes(_)
+            | Order::Overlay(_)
+            | Order::Counters
+            | Order::Panel
+            | Order::Terminal
+            | Order::Inspect(_)
+            | Order::Log
+            | Order::Help
+            | Order::Quit => false,
+        }
+    }
+}
+
 /// Why a line is no order.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OrderError {

@@ -99,6 +99,11 @@ impl FrameBuffer {
         inside.then(|| self.pixels[y as usize * WIDTH + x as usize])
     }
 
+    /// Whether every pixel is as at the start.
+    pub fn is_blank(&self) -> bool {
+        self.pixels.iter().all(|pixel| *pixel == [0; 3])
+    }
+
     /// What the monitor shows, after the tables: top line first, left to right.
     pub fn output(&self) -> Vec<[u8; 3]> {
         let [red, green, blue] = &self.tables;

@@ -1,15 +1,19 @@
 //! The process around the machine: opens the lines, and runs the thread that brings them and the machine together.
 
+mod mirror;
 mod turns;
+
+pub use mirror::{ArcShown, Asked, FunctionShown, InputShown, Mirror, NodeShown, Passed, Shown};
 
 use crate::{
     line::{
-        Address, Capture, Events, LineAddress, LineEvent, Listener, Source, Surroundings, serve_operators, serve_stdio,
+        Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, Source, Surroundings, serve_operators,
+        serve_stdio, serve_window,
     },
     machine::Settings,
 };
 use protocol::address::Place;
-use std::{io, path::PathBuf, time::Duration};
+use std::{io, path::PathBuf, sync::Arc, time::Duration};
 use tokio::sync::{mpsc, oneshot};
 use turns::Turns;
 
@@ -51,6 +55,14 @@ pub struct Options {
     pub settings: Settings,
 }
 
+/// A window on the machine: it sees by a mirror, and gives orders as an operator does.
+pub struct Window {
+    /// What it shows.
+    pub mirror: Arc<Mirror>,
+    /// What it wants; the machine ends when the other end is gone.
+    pub orders: std::sync::mpsc::Receiver<OperatorLine>,
+}
+
 /// Why the process ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
@@ -62,12 +74,12 @@ pub enum End {
 
 /// Runs the machine until its end.
 ///
-/// `ready` is told each address in use, as a line of text, before the first event is taken. Without an operator the
+/// A `window` sees and gives orders, if there is one. `ready` is told each address in use, as a line of text, before the first event is taken. Without an operator the
 /// machine ends when all its lines are files or standard input, and these have ended.
 ///
 /// # Errors
 /// If it cannot listen, or cannot write the capture: the address or the file, and the reason.
-pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
+pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str)) -> io::Result<End> {
     let (events, inbox) = mpsc::channel(WAITING_EVENTS);
     let io_runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let failed = |address: &dyn std::fmt::Display, e: io::Error| {
@@ -81,7 +93,8 @@ pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
         };
         created.map_err(|e| io::Error::new(e.kind(), format!("cannot write {}: {e}", path.display())))
     });
-    let around = Surroundings { events: events.clone(), capture: capture.transpose()? };
+    let capture = capture.transpose()?;
+    let around = Surroundings { events: events.clone(), capture: capture.clone() };
     for address in &options.listen {
         let source = io_runtime.block_on(Source::open(address)).map_err(|e| failed(address, e))?;
         ready(&format!("ready line {}", source.address()?));
@@ -100,6 +113,11 @@ pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
             io_runtime.spawn(serve_operators(listener, events.clone()));
         }
     }
+    let mirror = window.map(|Window { mirror, orders }| {
+        let events = events.clone();
+        std::thread::spawn(move || serve_window(orders, &events));
+        mirror
+    });
     let (stop, stopped) = oneshot::channel::<()>();
     let lines = std::thread::spawn(move || {
         io_runtime.block_on(async {
@@ -111,7 +129,7 @@ pub fn run(options: &Options, mut ready: impl FnMut(&str)) -> io::Result<End> {
         io_runtime.shutdown_background();
     });
     ready("ready");
-    let end = Turns::new(options, inbox)?.run();
+    let end = Turns::new(options, mirror, capture, inbox)?.run();
     let _ = stop.send(());
     let _ = lines.join();
     Ok(end)

@@ -1,14 +1,15 @@
 //! The thread of the machine: takes what happens on the lines, and lets frames pass when they are due.
 
-use super::{Clock, End, Operator, Options, WAITING_EVENTS};
+use super::{Clock, End, Mirror, Operator, Options, WAITING_EVENTS};
 use crate::{
-    line::{Interface, LineEvent, LineId, Writer},
+    line::{Capture, Interface, LineEvent, LineId, Writer},
     machine::{Input, Machine, Micros, time_of_frame},
     operator::{Outcome, Wait, parse, perform, reply},
 };
 use std::{
-    collections::HashMap,
+    collections::{BTreeMap, HashMap},
     io,
+    sync::Arc,
     time::{Duration, Instant},
 };
 use tokio::sync::{mpsc, oneshot};
@@ -21,12 +22,15 @@ const MAX_LAG: Micros = 250_000;
 /// What the thread of the machine holds.
 pub(super) struct Turns {
     machine: Machine,
+    mirror: Option<Arc<Mirror>>,
+    /// Takes what the operator does, if it is wanted.
+    capture: Option<Capture>,
     inbox: mpsc::Receiver<LineEvent>,
     timer: tokio::runtime::Runtime,
     clock: Clock,
     /// Wall-clock time of machine time 0.
     epoch: Instant,
-    writers: HashMap<LineId, (String, Writer)>,
+    writers: BTreeMap<LineId, (String, Writer)>,
     waits: Vec<(Wait, oneshot::Sender<String>)>,
     /// Hosts that have closed their side, and the frame at which they are let go at the latest.
     leaving: Vec<(LineId, u64)>,
@@ -41,18 +45,26 @@ impl Turns {
     ///
     /// # Errors
     /// Those of the system.
-    pub(super) fn new(options: &Options, inbox: mpsc::Receiver<LineEvent>) -> io::Result<Turns> {
+    pub(super) fn new(
+        options: &Options,
+        mirror: Option<Arc<Mirror>>,
+        capture: Option<Capture>,
+        inbox: mpsc::Receiver<LineEvent>,
+    ) -> io::Result<Turns> {
+        let sources = options.listen.len() + usize::from(options.operator != Operator::None || mirror.is_some());
         Ok(Turns {
             machine: Machine::new(options.settings),
+            mirror,
+            capture,
             inbox,
             timer: tokio::runtime::Builder::new_current_thread().enable_time().build()?,
             clock: options.clock,
             epoch: Instant::now(),
-            writers: HashMap::new(),
+            writers: BTreeMap::new(),
             waits: Vec::new(),
             leaving: Vec::new(),
             lost: HashMap::new(),
-            sources: options.listen.len() + usize::from(options.operator != Operator::None),
+            sources,
         })
     }
 
@@ -127,7 +139,12 @@ impl Turns {
                 };
                 self.step(Some(attach), 0);
             }
-            LineEvent::Bytes(line, bytes) => self.step(Some(Input::Bytes(line, bytes)), 0),
+            LineEvent::Bytes(line, bytes) => {
+                if let Some(mirror) = &self.mirror {
+                    mirror.pass(line, true, &bytes, &self.machine);
+                }
+                self.step(Some(Input::Bytes(line, bytes)), 0);
+            }
             LineEvent::Closed { line, error } => {
                 if let Some((peer, _)) = self.writers.get(&line) {
                     match error {
@@ -139,7 +156,12 @@ impl Turns {
             }
             LineEvent::Operator(order) => {
                 let outcome = match parse(&order.text) {
-                    Ok(parsed) => perform(&parsed, &mut self.machine),
+                    Ok(parsed) => {
+                        if let Some(capture) = self.capture.as_ref().filter(|_| parsed.is_action()) {
+                            capture.record_order(&order.text);
+                        }
+                        perform(&parsed, &mut self.machine)
+                    }
                     Err(error) => Outcome::Done(Err(error.to_string())),
                 };
                 // What an order made the machine say leaves before its reply.
@@ -162,6 +184,9 @@ impl Turns {
 
     fn step(&mut self, input: Option<Input>, until: Micros) {
         for output in self.machine.step(input, until) {
+            if let Some(mirror) = &self.mirror {
+                mirror.pass(output.line, false, &output.bytes, &self.machine);
+            }
             if let Some((_, writer)) = self.writers.get(&output.line)
                 && !writer.send(output.bytes)
             {
@@ -169,6 +194,9 @@ impl Turns {
             }
         }
         if until > 0 {
+            if let Some(mirror) = &self.mirror {
+                mirror.renew(&mut self.machine, self.writers.values().map(|(peer, _)| peer.as_str()));
+            }
             for (line, lost) in std::mem::take(&mut self.lost) {
                 let peer = self.writers.get(&line).map_or("that closed", |w| w.0.as_str());
                 tracing::warn!("host line {peer} does not read; {lost} messages to it are lost");

@@ -1,0 +1,129 @@
+//! The eight dials with their labels.
+
+use super::{orders::Orders, places};
+use crate::{machine::Panel, port::Label};
+use egui::{Align2, Color32, FontId, Key, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, Role, vec2};
+use std::f32::consts::TAU;
+
+/// Points of dragging that are a turn.
+const POINTS_PER_TURN: f64 = 240.0;
+/// Points of the wheel that are a turn.
+const WHEEL_PER_TURN: f64 = 1600.0;
+/// Turns of one stroke of an arrow key.
+const KEY_TURNS: f64 = 1.0 / 64.0;
+/// What SHIFT makes of a movement, and what CONTROL does.
+const FINE: f64 = 0.1;
+const COARSE: f64 = 10.0;
+/// The colour of the light-emitting diodes of labels and lights.
+pub const LIT: Color32 = Color32::from_rgb(255, 84, 56);
+
+/// The dials.
+#[derive(Default)]
+pub struct Dials {
+    /// Where each mark points, in turns.
+    turned: [f64; 8],
+    /// What is turned but was not ordered yet: the machine hears of less than a thousandth of a step never.
+    pending: [f64; 8],
+}
+
+impl Dials {
+    /// Turns a dial (1..=8) by something else than its picture.
+    pub fn turn(&mut self, dial: u8, turns: f64) {
+        if let Some(index) = usize::from(dial).checked_sub(1).filter(|index| *index < 8) {
+            self.turned[index] += turns;
+            self.pending[index] += turns;
+        }
+    }
+
+    /// Shows the dials in a row, and orders what is turned.
+    pub fn show(&mut self, ui: &mut Ui, panel: &Panel, size: f32) {
+        ui.horizontal(|ui| {
+            for index in 0..8 {
+                let dial = index as u8 + 1;
+                let label = String::from_utf8_lossy(panel.label(Label::Dial(dial))).into_owned();
+                let turns = self.show_dial(ui, dial, &label, size);
+                self.turn(dial, turns);
+            }
+        });
+    }
+
+    /// Gives the orders of what was turned.
+    pub fn give(&mut self, orders: &mut Orders) {
+        for (dial, pending) in (1..).zip(&mut self.pending) {
+            if *pending != 0.0 {
+                orders.give(format!("dial {dial} {pending}"));
+                *pending = 0.0;
+            }
+        }
+    }
+
+    /// Shows one dial; returns by how many turns it was turned.
+    fn show_dial(&self, ui: &mut Ui, dial: u8, label: &str, size: f32) -> f64 {
+        let width = size.max(76.0);
+        let (area, _) = ui.allocate_exact_size(vec2(width, size + 22.0), Sense::hover());
+        let strip = Rect::from_min_size(area.min, vec2(width, 18.0));
+        show_label(ui, strip, label);
+        let center = Rect::from_min_max(strip.left_bottom(), area.max).center() + vec2(0.0, 2.0);
+        let knob = Rect::from_center_size(center, Vec2::splat(size));
+        let response = ui.interact(knob, ui.scope_id().with(("dial", dial)), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("dial {dial} {label}")));
+        places::note(ui, &format!("dial {dial}"), knob.center());
+        let response = response.on_hover_text(
+            "drag right or up, use the wheel, or the arrow keys; SHIFT fine, CONTROL coarse; double click: a quarter turn",
+        );
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        self.paint(ui, knob, dial, &response);
+        movement(ui, &response)
+    }
+
+    fn paint(&self, ui: &Ui, knob: Rect, dial: u8, response: &Response) {
+        let painter = ui.painter();
+        let (center, radius) = (knob.center(), knob.width() / 2.0 - 1.0);
+        let rim = if response.has_focus() || response.dragged() { LIT } else { Color32::from_gray(95) };
+        painter.circle(center, radius, Color32::from_gray(34), Stroke::new(1.5, rim));
+        painter.circle(center, radius * 0.78, Color32::from_gray(58), Stroke::new(1.0, Color32::from_gray(80)));
+        let angle = (self.turned[usize::from(dial) - 1].rem_euclid(1.0)) as f32 * TAU;
+        let direction = vec2(angle.sin(), -angle.cos());
+        let mark = Stroke::new(2.5, Color32::from_gray(225));
+        painter.line_segment([center + direction * radius * 0.35, center + direction * radius * 0.74], mark);
+        painter.text(center, Align2::CENTER_CENTER, dial, FontId::proportional(11.0), Color32::from_gray(140));
+    }
+}
+
+/// By how many turns somebody turns the dial of a response.
+fn movement(ui: &Ui, response: &Response) -> f64 {
+    let held = ui.input(|input| input.modifiers);
+    let rate = match (held.shift, held.ctrl) {
+        (true, _) => FINE,
+        (_, true) => COARSE,
+        _ => 1.0,
+    };
+    let dragged = response.drag_delta();
+    let mut turns = f64::from(dragged.x - dragged.y) / POINTS_PER_TURN;
+    if response.hovered() {
+        // With SHIFT, systems turn the wheel sideways.
+        turns += ui.input(|input| f64::from(input.smooth_scroll_delta.x + input.smooth_scroll_delta.y)) / WHEEL_PER_TURN;
+    }
+    if response.double_clicked() {
+        turns += 0.25;
+    }
+    if response.has_focus() {
+        let lock = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, lock));
+        let strokes = ui.input(|input| {
+            let count = |key| input.num_presses(key) as f64;
+            count(Key::ArrowUp) + count(Key::ArrowRight) - count(Key::ArrowDown) - count(Key::ArrowLeft)
+        });
+        turns += strokes * KEY_TURNS;
+    }
+    turns * rate
+}
+
+/// Shows a text as the diodes of a label do.
+pub fn show_label(ui: &Ui, area: Rect, text: &str) {
+    let painter = ui.painter();
+    painter.rect_filled(area.shrink(1.0), 2.0, Color32::from_rgb(20, 6, 4));
+    painter.text(area.center(), Align2::CENTER_CENTER, text, FontId::monospace(12.0), LIT);
+}

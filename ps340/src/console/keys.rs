@@ -1,0 +1,91 @@
+//! The twelve function keys with their labels, and the thirty-two lighted buttons.
+
+use super::{
+    dials::{LIT, show_label},
+    orders::Orders,
+    places,
+};
+use crate::{machine::Panel, port::Label};
+use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, Role, vec2};
+
+/// Which row of the function keys a click presses, if no key is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Row {
+    /// 1 to 12.
+    #[default]
+    Plain,
+    /// 13 to 24.
+    Shift,
+    /// 25 to 36.
+    Control,
+}
+
+/// Shows the function keys, and orders those that are pressed.
+pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, orders: &mut Orders) {
+    ui.horizontal(|ui| {
+        for key in 1..=12_u8 {
+            let label = String::from_utf8_lossy(panel.label(Label::Key(key))).into_owned();
+            let (area, response) = ui.allocate_exact_size(vec2(74.0, 44.0), Sense::click());
+            let name = format!("F{key} {label}");
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+            show_label(ui, Rect::from_min_size(area.min, vec2(area.width(), 18.0)), &label);
+            let cap = Rect::from_min_max(area.min + vec2(4.0, 20.0), area.max - vec2(4.0, 0.0));
+            let fill = if response.is_pointer_button_down_on() { 30 } else { 62 };
+            ui.painter().rect_filled(cap, 4.0, Color32::from_gray(fill));
+            ui.painter().text(
+                cap.center(),
+                Align2::CENTER_CENTER,
+                format!("F{key}"),
+                FontId::proportional(12.0),
+                Color32::from_gray(220),
+            );
+            places::note(ui, &format!("key {key}"), cap.center());
+            let held = ui.input(|input| input.modifiers);
+            if response.on_hover_text("with SHIFT 13 to 24, with CONTROL 25 to 36").clicked() {
+                let other = match *row {
+                    _ if held.shift => " shift",
+                    _ if held.ctrl => " control",
+                    Row::Plain => "",
+                    Row::Shift => " shift",
+                    Row::Control => " control",
+                };
+                orders.give(format!("key {key}{other}"));
+            }
+        }
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for (value, text) in [(Row::Plain, "plain"), (Row::Shift, "SHIFT"), (Row::Control, "CTRL")] {
+                ui.radio_value(row, value, egui::RichText::new(text).small());
+            }
+        });
+    });
+}
+
+/// Shows the lighted buttons in four rows of eight, and orders those that are pressed.
+pub fn show_buttons(ui: &mut Ui, panel: &Panel, orders: &mut Orders) {
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
+        for row in 0..4_u8 {
+            ui.horizontal(|ui| {
+                for column in 0..8_u8 {
+                    show_button(ui, panel, row * 8 + column + 1, orders);
+                }
+            });
+        }
+    });
+}
+
+fn show_button(ui: &mut Ui, panel: &Panel, button: u8, orders: &mut Orders) {
+    let (area, response) = ui.allocate_exact_size(vec2(27.0, 20.0), Sense::click());
+    let is_lit = panel.light(button);
+    let name = format!("button {button}{}", if is_lit { ", lit" } else { "" });
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    let (fill, ink) = if is_lit { (LIT, Color32::BLACK) } else { (Color32::from_gray(52), Color32::from_gray(150)) };
+    let edge = Stroke::new(1.0, Color32::from_gray(if response.is_pointer_button_down_on() { 200 } else { 90 }));
+    ui.painter().rect(area, 3.0, fill, edge, egui::StrokeKind::Inside);
+    ui.painter().text(area.center(), Align2::CENTER_CENTER, button, FontId::proportional(11.0), ink);
+    places::note(ui, &format!("button {button}"), area.center());
+    if response.clicked() {
+        orders.give(format!("button {button}"));
+    }
+}

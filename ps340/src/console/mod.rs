@@ -1,0 +1,132 @@
+//! The console: a window with both screens and every device of the machine.
+//!
+//! It is the only user of egui, eframe and wgpu, and owns no state of the machine: it sees by a mirror
+//! ([`crate::shell::Mirror`]) and acts by orders, as an operator on a line does.
+
+mod orders;
+mod places;
+mod mapping;
+mod libraries;
+mod painter;
+mod screens;
+mod keyboard;
+mod dials;
+mod pad;
+mod keys;
+mod views;
+mod app;
+
+pub use mapping::{DEFAULT_MAPPING, Mapping, MappingError};
+
+use crate::shell::{End, Mirror, Options, Window, run};
+use app::App;
+use std::{
+    io,
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{Arc, OnceLock, mpsc},
+};
+
+/// How the window begins.
+#[derive(Clone, Debug, Default)]
+pub struct Appearance {
+    /// What keys do.
+    pub mapping: Mapping,
+    /// Points on the screen per unit of the window; none for what the display says.
+    pub scale: Option<f32>,
+}
+
+/// Why there is no window, or no machine.
+#[derive(Debug, thiserror::Error)]
+pub enum ConsoleError {
+    /// The machine cannot run.
+    #[error(transparent)]
+    Machine(#[from] io::Error),
+    /// No display is there.
+    #[error("no window: neither DISPLAY nor WAYLAND_DISPLAY is set; without '--window' the machine needs no display")]
+    NoDisplay,
+    /// A library of the window system is missing.
+    #[error("no window: the library {library} is missing; on Debian and Ubuntu: apt install {package}")]
+    NoLibrary {
+        /// Its file.
+        library: &'static str,
+        /// The package that has it.
+        package: &'static str,
+    },
+    /// Nothing can draw a window here.
+    #[error(
+        "no window: {0}; it needs Vulkan or OpenGL, on Debian and Ubuntu: apt install mesa-vulkan-drivers libvulkan1"
+    )]
+    Graphics(String),
+}
+
+/// Runs the machine with a window until its end; blocks. Must be called by the first thread of the process.
+///
+/// `ready` is told each address in use, as a line of text.
+///
+/// # Errors
+/// Why there is no window; then the machine is not run either.
+pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) + Send) -> Result<End, ConsoleError> {
+    libraries::check()?;
+    let context = Arc::new(OnceLock::<egui::Context>::new());
+    let woken = context.clone();
+    let wake = move || {
+        if let Some(context) = woken.get() {
+            context.request_repaint();
+        }
+    };
+    let mirror = Arc::new(Mirror::new(wake));
+    let (sender, orders) = mpsc::channel();
+    let window = Window { mirror: mirror.clone(), orders };
+    std::thread::scope(|scope| {
+        let closing = context.clone();
+        let machine = scope.spawn(move || {
+            let end = run(options, Some(window), ready);
+            if let Some(context) = closing.get() {
+                context.send_viewport_cmd(egui::ViewportCommand::Close);
+                context.request_repaint();
+            }
+            end
+        });
+        let shown = show(context, mirror, sender, appearance);
+        // The other end of the orders is gone: the machine ends if it has not yet.
+        let end = machine.join().unwrap_or_else(|_| Err(io::Error::other("the machine's thread failed")));
+        shown?;
+        Ok(end?)
+    })
+}
+
+/// Shows the window until it is closed.
+fn show(
+    context: Arc<OnceLock<egui::Context>>,
+    mirror: Arc<Mirror>,
+    orders: mpsc::Sender<crate::line::OperatorLine>,
+    appearance: Appearance,
+) -> Result<(), ConsoleError> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("PS 340")
+        .with_app_id("ps340")
+        .with_inner_size([1280.0, 860.0])
+        .with_min_inner_size([1.0, 1.0]);
+    // Keys such as CONTROL C belong to the machine.
+    let native = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
+    let started = catch_unwind(AssertUnwindSafe(|| {
+        eframe::run_native(
+            "PS 340",
+            native,
+            Box::new(move |creation| {
+                let _ = context.set(creation.egui_ctx.clone());
+                Ok(Box::new(App::new(creation, mirror, orders, appearance)))
+            }),
+        )
+    }));
+    match started {
+        Ok(Ok(())) => Ok(()),
+        Ok(Err(error)) => Err(ConsoleError::Graphics(error.to_string())),
+        // The window system's own code panics where a library or a display fails it; its message was printed.
+        Err(panic) => {
+            let text = panic.downcast_ref::<String>().cloned();
+            let text = text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+            Err(ConsoleError::Graphics(text.unwrap_or_else(|| "the window system failed".into())))
+        }
+    }
+}

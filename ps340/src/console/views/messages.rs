@@ -1,0 +1,27 @@
+//! The numbered messages of the machine.
+
+use super::{Asked, Orders, Shown, Ui, View};
+
+/// The latest messages.
+pub struct MessagesView;
+
+impl View for MessagesView {
+    fn title(&self) -> &'static str {
+        "Messages"
+    }
+
+    fn ask(&self, asked: &mut Asked) {
+        asked.log = true;
+    }
+
+    fn show(&mut self, ui: &mut Ui, shown: &Shown, _orders: &mut Orders) {
+        if shown.log.is_empty() {
+            ui.weak("The machine has had nothing to say.");
+        }
+        egui::ScrollArea::both().auto_shrink(false).stick_to_bottom(true).show(ui, |ui| {
+            for message in shown.log.iter() {
+                ui.monospace(message);
+            }
+        });
+    }
+}

@@ -1,0 +1,34 @@
+//! Views of the machine's inside: one a part, beside the screens.
+
+mod counters;
+mod help;
+mod line;
+mod messages;
+mod network;
+mod structure;
+
+use super::orders::Orders;
+use crate::shell::{Asked, Shown};
+use egui::Ui;
+
+/// Something to look at beside the screens.
+pub trait View {
+    /// What its tab says.
+    fn title(&self) -> &'static str;
+    /// Asks the mirror for what the view shows.
+    fn ask(&self, asked: &mut Asked);
+    /// Shows it.
+    fn show(&mut self, ui: &mut Ui, shown: &Shown, orders: &mut Orders);
+}
+
+/// Every view, in the order of their tabs.
+pub fn all() -> Vec<Box<dyn View>> {
+    vec![
+        Box::new(network::NetworkView::default()),
+        Box::new(structure::StructureView::default()),
+        Box::new(line::LineView::default()),
+        Box::new(counters::CountersView::default()),
+        Box::new(messages::MessagesView),
+        Box::new(help::HelpView::default()),
+    ]
+}

@@ -1,0 +1,38 @@
+//! The display structure as a tree.
+
+use super::{Asked, Orders, Shown, Ui, View};
+
+/// The tree, with a filter.
+#[derive(Default)]
+pub struct StructureView {
+    filter: String,
+}
+
+impl View for StructureView {
+    fn title(&self) -> &'static str {
+        "Structure"
+    }
+
+    fn ask(&self, asked: &mut Asked) {
+        asked.structure = true;
+    }
+
+    fn show(&mut self, ui: &mut Ui, shown: &Shown, _orders: &mut Orders) {
+        ui.horizontal(|ui| {
+            let label = ui.label("Lines with");
+            ui.text_edit_singleline(&mut self.filter).labelled_by(label.id);
+        });
+        if shown.structure.is_empty() {
+            ui.weak("Nothing is displayed.");
+        }
+        let filter = self.filter.to_ascii_uppercase();
+        let lines: Vec<_> =
+            shown.structure.iter().filter(|node| node.text.to_ascii_uppercase().contains(&filter)).collect();
+        let height = ui.text_style_height(&egui::TextStyle::Monospace);
+        egui::ScrollArea::both().auto_shrink(false).show_rows(ui, height, lines.len(), |ui, rows| {
+            for node in &lines[rows] {
+                ui.add(egui::Label::new(format!("{}{}", "  ".repeat(node.level), node.text)).extend());
+            }
+        });
+    }
+}

@@ -1,0 +1,186 @@
+//! What people see of the machine, copied by its thread for a window.
+//!
+//! The window says what it shows ([`Asked`]), and only that is copied; what has not changed since is shared with the copy
+//! before. Neither thread waits for the other longer than a pointer takes to move.
+
+mod network;
+mod structure;
+mod traffic;
+
+pub use network::{ArcShown, FunctionShown, InputShown};
+pub use structure::NodeShown;
+pub use traffic::{Passed, Traffic};
+
+use crate::{
+    line::LineId,
+    machine::{Counters, KeyboardMode, Machine, Panel, PictureVersion, time_of_frame},
+    raster::FrameBuffer,
+    traversal::Stroke,
+};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// Frames between two copies of what people read: texts at ten a second are as many as anyone follows.
+const READ_FRAMES: u64 = 6;
+
+/// What a window shows besides screens and panel.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Asked {
+    /// The functions whose names hold this text, in capital letters; none if the network is not shown.
+    pub network: Option<String>,
+    /// Whether the display structure is shown.
+    pub structure: bool,
+    /// Whether the bytes on the host lines are shown.
+    pub traffic: bool,
+    /// Whether the messages of the machine are shown.
+    pub log: bool,
+}
+
+/// What people see of the machine at a frame.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// The frame.
+    pub frame: u64,
+    /// Its time in microseconds.
+    pub micros: u64,
+    /// Which picture `strokes` is.
+    pub picture: PictureVersion,
+    /// What the vector screen shows.
+    pub strokes: Arc<Vec<Stroke>>,
+    /// What the raster screen shows.
+    pub raster: Arc<FrameBuffer>,
+    /// Labels, lights, message line.
+    pub panel: Panel,
+    /// Where typed characters go.
+    pub mode: KeyboardMode,
+    /// What the machine has counted.
+    pub counters: Counters,
+    /// Hosts that are attached: who, in the order of their lines.
+    pub hosts: Vec<String>,
+    /// The latest messages of the machine, oldest first.
+    pub log: Arc<Vec<String>>,
+    /// The functions that were asked for.
+    pub network: Arc<Vec<FunctionShown>>,
+    /// The display structure as a tree.
+    pub structure: Arc<Vec<NodeShown>>,
+    /// What passed on the host lines lately.
+    pub traffic: Arc<Vec<Passed>>,
+}
+
+/// A copy of what people see, renewed by the machine's thread and read by the window's.
+pub struct Mirror {
+    asked: Mutex<Asked>,
+    shown: Mutex<Arc<Shown>>,
+    traffic: Mutex<Traffic>,
+    /// Told after each copy that differs from the one before.
+    wake: Box<dyn Fn() + Send + Sync>,
+}
+
+impl Mirror {
+    /// A mirror without a picture; `wake` is called by the machine's thread when there is something new.
+    pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Mirror {
+        Mirror {
+            asked: Mutex::default(),
+            shown: Mutex::default(),
+            traffic: Mutex::default(),
+            wake: Box::new(wake),
+        }
+    }
+
+    /// Says what is wanted from now on.
+    pub fn ask(&self, asked: &Asked) {
+        let mut now = lock(&self.asked);
+        if *now != *asked {
+            now.clone_from(asked);
+        }
+    }
+
+    /// The latest copy.
+    pub fn shown(&self) -> Arc<Shown> {
+        lock(&self.shown).clone()
+    }
+
+    /// Bytes pass on a host line.
+    pub(super) fn pass(&self, line: LineId, from_host: bool, bytes: &[u8], machine: &Machine) {
+        if lock(&self.asked).traffic {
+            lock(&self.traffic).record(time_of_frame(machine.frame()), line, from_host, bytes);
+        }
+    }
+
+    /// Copies what people see now.
+    ///
+    /// - `hosts`: who is attached.
+    pub(super) fn renew<'a>(&self, machine: &mut Machine, hosts: impl Iterator<Item = &'a str>) {
+        let before = self.shown();
+        let frame = machine.frame();
+        let picture = machine.picture_version();
+        let mut shown = Shown {
+            frame,
+            micros: time_of_frame(frame),
+            panel: machine.panel().clone(),
+            mode: machine.keyboard_mode(),
+            counters: machine.counters(),
+            hosts: hosts.map(str::to_owned).collect(),
+            ..Shown::clone(&before)
+        };
+        let mut is_new = shown.panel != before.panel || shown.mode != before.mode || shown.hosts != before.hosts;
+        if picture != before.picture {
+            shown.picture = picture;
+            shown.strokes = Arc::new(machine.visible_strokes().into_owned());
+            is_new = true;
+        }
+        if *machine.frame_buffer() != *before.raster {
+            shown.raster = Arc::new(machine.frame_buffer().clone());
+            is_new = true;
+        }
+        if frame / READ_FRAMES != before.frame / READ_FRAMES {
+            is_new |= self.renew_texts(&mut shown, machine) || Counters { frame: 0, ..shown.counters } != Counters { frame: 0, ..before.counters };
+        }
+        *lock(&self.shown) = Arc::new(shown);
+        if is_new {
+            (self.wake)();
+        }
+    }
+
+    /// Copies what people read; whether something of it is new.
+    fn renew_texts(&self, shown: &mut Shown, machine: &mut Machine) -> bool {
+        let asked = lock(&self.asked).clone();
+        let mut is_new = false;
+        if let Some(pattern) = &asked.network {
+            if !machine.memory().network.counts_activity() {
+                machine.instruments().count_activity(true);
+            }
+            is_new |= renew(&mut shown.network, network::functions(machine, pattern));
+        }
+        if asked.structure {
+            is_new |= renew(&mut shown.structure, structure::tree(machine));
+        }
+        if asked.log && (shown.log.len() != machine.log().count() || shown.log.last().map(String::as_str) != machine.log().last()) {
+            is_new |= renew(&mut shown.log, machine.log().map(str::to_owned).collect());
+        }
+        let mut traffic = lock(&self.traffic);
+        if !asked.traffic {
+            traffic.clear();
+        } else if traffic.take_news() {
+            shown.traffic = Arc::new(traffic.passed().cloned().collect());
+            is_new = true;
+        }
+        is_new
+    }
+}
+
+/// Replaces a shared list if it is another now.
+fn renew<T: PartialEq>(shared: &mut Arc<Vec<T>>, now: Vec<T>) -> bool {
+    let differs = **shared != now;
+    if differs {
+        *shared = Arc::new(now);
+    }
+    differs
+}
+
+/// A thread that panicked with the lock leaves a whole value: each is replaced at once.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+#[cfg(test)]
+mod tests;
