@@ -106,7 +106,8 @@ impl App {
                 }
             }
             ui.separator();
-            for (key, hint) in [("graph", "graphics off and on"), ("term", "text off and on"), ("setup", "set-up page")] {
+            for (key, hint) in [("graph", "graphics off and on"), ("term", "text off and on"), ("setup", "set-up page")]
+            {
                 if ui.button(key.to_uppercase()).on_hover_text(hint).clicked() {
                     self.orders.give(format!("key {key}"));
                 }
@@ -138,6 +139,7 @@ impl App {
 
     fn show_devices(&mut self, ui: &mut Ui, shown: &Shown) {
         egui::ScrollArea::horizontal().show(ui, |ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
             ui.horizontal(|ui| {
                 ui.vertical(|ui| {
                     self.dials.show(ui, &shown.panel, 52.0);
@@ -147,6 +149,15 @@ impl App {
                 show_buttons(ui, &shown.panel, &mut self.orders);
             });
         });
+    }
+
+    /// Asks for what the open view shows, if any.
+    fn ask(&self) {
+        let mut asked = Asked::default();
+        if let Some(view) = self.view.and_then(|index| self.views.get(index)) {
+            view.ask(&mut asked);
+        }
+        self.mirror.ask(&asked);
     }
 
     fn show_raster_window(&mut self, ui: &Ui, shown: &Shown) {
@@ -175,11 +186,6 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.orders.take_replies();
         let shown = self.mirror.shown();
-        let mut asked = Asked::default();
-        if let Some(view) = self.view.and_then(|index| self.views.get(index)) {
-            view.ask(&mut asked);
-        }
-        self.mirror.ask(&asked);
         if !self.raster_seen && !shown.raster.is_blank() {
             self.raster_seen = true;
             if self.raster_place == RasterPlace::Hidden {
@@ -195,6 +201,7 @@ impl eframe::App for App {
                 view.show(ui, &shown, &mut self.orders);
             });
         }
+        self.ask();
         let width = ui.available_width();
         if self.raster_place == RasterPlace::Beside {
             Panel::right("raster").resizable(true).default_size(width * 0.45).frame(egui::Frame::NONE).show(ui, |ui| {

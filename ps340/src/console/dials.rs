@@ -2,7 +2,7 @@
 
 use super::{orders::Orders, places};
 use crate::{machine::Panel, port::Label};
-use egui::{Align2, Color32, FontId, Key, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, Role, vec2};
+use egui::{Align2, Color32, FontId, Key, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 use std::f32::consts::TAU;
 
 /// Points of dragging that are a turn.
@@ -22,8 +22,10 @@ pub const LIT: Color32 = Color32::from_rgb(255, 84, 56);
 pub struct Dials {
     /// Where each mark points, in turns.
     turned: [f64; 8],
-    /// What is turned but was not ordered yet: the machine hears of less than a thousandth of a step never.
+    /// What is turned but was not ordered yet.
     pending: [f64; 8],
+    /// Where the mouse was when the dial that it holds was turned last.
+    grip: Option<(u8, Pos2)>,
 }
 
 impl Dials {
@@ -58,7 +60,7 @@ impl Dials {
     }
 
     /// Shows one dial; returns by how many turns it was turned.
-    fn show_dial(&self, ui: &mut Ui, dial: u8, label: &str, size: f32) -> f64 {
+    fn show_dial(&mut self, ui: &mut Ui, dial: u8, label: &str, size: f32) -> f64 {
         let width = size.max(76.0);
         let (area, _) = ui.allocate_exact_size(vec2(width, size + 22.0), Sense::hover());
         let strip = Rect::from_min_size(area.min, vec2(width, 18.0));
@@ -75,7 +77,22 @@ impl Dials {
             response.request_focus();
         }
         self.paint(ui, knob, dial, &response);
-        movement(ui, &response)
+        movement(ui, &response) + self.drag(ui, dial, &response) * rate(ui)
+    }
+
+    /// By how many turns the mouse drags the dial. All of its way counts, from where the button went down to where it
+    /// came up.
+    fn drag(&mut self, ui: &Ui, dial: u8, response: &Response) -> f64 {
+        let held = self.grip.filter(|(held, _)| *held == dial);
+        if held.is_none() && !response.is_pointer_button_down_on() {
+            return 0.0;
+        }
+        let (at, origin, is_down) =
+            ui.input(|input| (input.pointer.latest_pos(), input.pointer.press_origin(), input.pointer.primary_down()));
+        let Some(from) = held.map(|(_, from)| from).or(origin) else { return 0.0 };
+        let at = at.unwrap_or(from);
+        self.grip = is_down.then_some((dial, at));
+        f64::from((at.x - from.x) - (at.y - from.y)) / POINTS_PER_TURN
     }
 
     fn paint(&self, ui: &Ui, knob: Rect, dial: u8, response: &Response) {
@@ -92,19 +109,23 @@ impl Dials {
     }
 }
 
-/// By how many turns somebody turns the dial of a response.
-fn movement(ui: &Ui, response: &Response) -> f64 {
+/// What the keys that are held make of a movement.
+fn rate(ui: &Ui) -> f64 {
     let held = ui.input(|input| input.modifiers);
-    let rate = match (held.shift, held.ctrl) {
+    match (held.shift, held.ctrl) {
         (true, _) => FINE,
         (_, true) => COARSE,
         _ => 1.0,
-    };
-    let dragged = response.drag_delta();
-    let mut turns = f64::from(dragged.x - dragged.y) / POINTS_PER_TURN;
+    }
+}
+
+/// By how many turns somebody turns the dial by wheel and keys.
+fn movement(ui: &Ui, response: &Response) -> f64 {
+    let mut turns = 0.0;
     if response.hovered() {
         // With SHIFT, systems turn the wheel sideways.
-        turns += ui.input(|input| f64::from(input.smooth_scroll_delta.x + input.smooth_scroll_delta.y)) / WHEEL_PER_TURN;
+        turns +=
+            ui.input(|input| f64::from(input.smooth_scroll_delta.x + input.smooth_scroll_delta.y)) / WHEEL_PER_TURN;
     }
     if response.double_clicked() {
         turns += 0.25;
@@ -118,7 +139,7 @@ fn movement(ui: &Ui, response: &Response) -> f64 {
         });
         turns += strokes * KEY_TURNS;
     }
-    turns * rate
+    turns * rate(ui)
 }
 
 /// Shows a text as the diodes of a label do.

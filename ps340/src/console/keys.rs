@@ -6,7 +6,7 @@ use super::{
     places,
 };
 use crate::{machine::Panel, port::Label};
-use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, Role, vec2};
+use egui::{Align2, Color32, FontId, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 /// Which row of the function keys a click presses, if no key is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, orders: &mut Orders)
     ui.horizontal(|ui| {
         for key in 1..=12_u8 {
             let label = String::from_utf8_lossy(panel.label(Label::Key(key))).into_owned();
-            let (area, response) = ui.allocate_exact_size(vec2(74.0, 44.0), Sense::click());
+            let (area, response) = ui.allocate_exact_size(vec2(68.0, 44.0), Sense::click());
             let name = format!("F{key} {label}");
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             show_label(ui, Rect::from_min_size(area.min, vec2(area.width(), 18.0)), &label);

@@ -74,7 +74,14 @@ impl Pad {
     /// Gives the orders of the buttons, and turns dials by the axes.
     ///
     /// - `seconds`: since the frame before.
-    pub fn act(&mut self, seconds: f64, mapping: &Mapping, dials: &mut Dials, orders: &mut Orders, context: &egui::Context) {
+    pub fn act(
+        &mut self,
+        seconds: f64,
+        mapping: &Mapping,
+        dials: &mut Dials,
+        orders: &mut Orders,
+        context: &egui::Context,
+    ) {
         for event in self.events.try_iter() {
             match event {
                 PadEvent::Press(button) => {

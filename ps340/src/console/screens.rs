@@ -9,8 +9,8 @@ use super::{
 };
 use crate::{raster::FrameBuffer, shell::Shown};
 use egui::{
-    Align2, Color32, ColorImage, FontId, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle,
-    TextureOptions, Ui, Vec2, WidgetInfo, Role, vec2,
+    Align2, Color32, ColorImage, Event, FontId, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
 };
 use std::sync::Arc;
 
@@ -30,15 +30,13 @@ const PUCK: [(PointerButton, u8); 5] = [
 pub struct VectorScreen {
     painter: Painter,
     texture: Option<TextureHandle>,
-    /// Where the puck was last, if it is on the tablet.
-    puck: Option<[f32; 2]>,
-    pressed: u8,
+    puck: Puck,
 }
 
 impl VectorScreen {
     /// A dark screen.
     pub fn new(context: egui::Context) -> VectorScreen {
-        VectorScreen { painter: Painter::new(context), texture: None, puck: None, pressed: 0 }
+        VectorScreen { painter: Painter::new(context), texture: None, puck: Puck::default() }
     }
 
     /// Shows the screen as the largest square of the space that is left, and orders what puck and keyboard do.
@@ -58,13 +56,17 @@ impl VectorScreen {
         places::note(ui, "vector screen", area.center());
         places::note(ui, "vector screen's corner", area.right_top());
         self.keyboard(ui, &response, mapping, orders);
-        self.tablet(ui, &response, area, orders);
+        // Under another window, or a menu, the mouse is no puck.
+        let is_covered = !response.contains_pointer() && self.puck.pressed == 0 && ui.ui_contains_pointer();
+        if !is_covered {
+            ui.input(|input| self.puck.orders(&input.events, area)).into_iter().for_each(|order| orders.give(order));
+        }
     }
 
-    /// Gives what is typed to the machine while the screen has the focus, which it takes at the start and by a click.
+    /// Gives what is typed to the machine while the screen has the focus, which it takes at the start and by a press.
     fn keyboard(&mut self, ui: &Ui, response: &Response, mapping: &Mapping, orders: &mut Orders) {
         let nobody = ui.memory(|memory| memory.focused().is_none());
-        if nobody || response.is_pointer_button_down_on() {
+        if nobody || response.is_pointer_button_down_on() || response.clicked() {
             response.request_focus();
         }
         let edge = if response.has_focus() { Color32::from_rgb(70, 110, 160) } else { Color32::from_gray(45) };
@@ -75,39 +77,73 @@ impl VectorScreen {
             ui.input(|input| keyboard::type_events(&input.events, mapping, orders));
         }
     }
+}
 
-    /// Moves and presses the puck as the mouse does on the screen.
-    fn tablet(&mut self, ui: &Ui, response: &Response, area: Rect, orders: &mut Orders) {
-        let (at, down) = ui.input(|input| {
-            let down = PUCK.iter().filter(|(button, _)| input.pointer.button_down(*button));
-            (input.pointer.latest_pos(), down.fold(0, |sum, (_, code)| sum | code))
-        });
+/// The puck, which the mouse is while it is on the vector screen.
+#[derive(Debug, Default)]
+struct Puck {
+    /// Where it is, if it is on the tablet.
+    place: Option<[f32; 2]>,
+    /// The codes of the buttons that are down.
+    pressed: u8,
+}
+
+impl Puck {
+    /// The orders that events of the mouse mean, in their order, so that none is lost however slowly pictures come.
+    ///
+    /// A press counts where it began: on the screen. Until it ends, the puck stays on the tablet.
+    fn orders(&mut self, events: &[Event], area: Rect) -> Vec<String> {
+        let mut orders = Vec::new();
+        for event in events {
+            match event {
+                Event::PointerMoved(at) => self.go(Some(*at), area, &mut orders),
+                Event::PointerGone => self.go(None, area, &mut orders),
+                Event::PointerButton { pos, button, pressed, .. } => {
+                    let code = PUCK.iter().find(|(name, _)| name == button).map_or(0, |(_, code)| *code);
+                    self.go(Some(*pos), area, &mut orders);
+                    match pressed {
+                        true if area.contains(*pos) => self.press(self.pressed | code, &mut orders),
+                        true => {}
+                        false => {
+                            self.press(self.pressed & !code, &mut orders);
+                            self.go(Some(*pos), area, &mut orders);
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        orders
+    }
+
+    fn go(&mut self, at: Option<Pos2>, area: Rect, orders: &mut Vec<String>) {
         let is_drawing = self.pressed != 0;
-        let on_tablet = at.filter(|_| response.contains_pointer() || is_drawing);
-        let place = on_tablet.map(|at| place(at, area));
-        if place != self.puck {
-            match place {
-                Some([x, y]) => orders.give(format!("puck move {x} {y}")),
-                None => orders.give("puck away"),
-            }
-            self.puck = place;
+        let place = match at {
+            Some(at) if is_drawing || area.contains(at) => Some(place(at, area)),
+            None if is_drawing => self.place,
+            _ => None,
+        };
+        if place != self.place {
+            self.place = place;
+            orders.push(match place {
+                Some([x, y]) => format!("puck move {x} {y}"),
+                None => "puck away".into(),
+            });
         }
-        // A press counts where it began: on the screen.
-        let pressed = if is_drawing || response.contains_pointer() { down } else { 0 };
-        if pressed != self.pressed && self.puck.is_some() {
-            match pressed {
-                0 => orders.give("puck release"),
-                code => orders.give(format!("puck press {code}")),
-            }
+    }
+
+    fn press(&mut self, pressed: u8, orders: &mut Vec<String>) {
+        if pressed != self.pressed {
+            self.pressed = pressed;
+            orders.push(if pressed == 0 { "puck release".into() } else { format!("puck press {pressed}") });
         }
-        self.pressed = if self.puck.is_some() { pressed } else { 0 };
     }
 }
 
 /// The place of the tablet under a point of the screen, -1..=1.
 fn place(at: Pos2, area: Rect) -> [f32; 2] {
     let from_center = (at - area.center()) / (area.size() / 2.0);
-    [from_center.x, -from_center.y].map(|c| c.clamp(-1.0, 1.0))
+    [from_center.x, 0.0 - from_center.y].map(|c| c.clamp(-1.0, 1.0))
 }
 
 /// The raster screen.
@@ -137,13 +173,7 @@ impl RasterScreen {
 }
 
 /// Replaces the picture of a texture.
-fn put(
-    texture: &mut Option<TextureHandle>,
-    ui: &Ui,
-    name: &str,
-    image: Arc<ColorImage>,
-    options: TextureOptions,
-) {
+fn put(texture: &mut Option<TextureHandle>, ui: &Ui, name: &str, image: Arc<ColorImage>, options: TextureOptions) {
     match texture {
         Some(texture) => texture.set(image, options),
         None => *texture = Some(ui.ctx().load_texture(name, image, options)),
@@ -173,5 +203,24 @@ mod tests {
         assert_eq!(place(Pos2::new(300.0, 250.0), area), [1.0, -1.0]);
         assert_eq!(place(Pos2::new(200.0, 150.0), area), [0.0, 0.0]);
         assert_eq!(place(Pos2::new(900.0, 150.0), area), [1.0, 0.0]);
+    }
+
+    #[test]
+    fn a_click_that_is_over_before_the_picture_is_a_press_and_a_release() {
+        let area = Rect::from_min_max(Pos2::ZERO, Pos2::new(200.0, 200.0));
+        let button = |pressed, x| Event::PointerButton {
+            pos: Pos2::new(x, 100.0),
+            button: PointerButton::Middle,
+            pressed,
+            modifiers: Default::default(),
+        };
+        let mut puck = Puck::default();
+        let mut orders = |events: &[Event]| puck.orders(events, area).join("; ");
+        let click = [Event::PointerMoved(Pos2::new(150.0, 100.0)), button(true, 150.0), button(false, 150.0)];
+        assert_eq!(orders(&click), "puck move 0.5 0; puck press 2; puck release");
+        // A press that began on the screen keeps the puck on the tablet; one that began elsewhere is none.
+        let drawn = [button(true, 150.0), Event::PointerMoved(Pos2::new(300.0, 100.0)), button(false, 300.0)];
+        assert_eq!(orders(&drawn), "puck press 2; puck move 1 0; puck release; puck away");
+        assert_eq!(orders(&[button(true, 300.0), button(false, 300.0), Event::PointerGone]), "");
     }
 }

@@ -8,7 +8,6 @@ use tokio::{
     sync::oneshot,
 };
 
-
 /// The reply to an order that is longer.
 const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
 

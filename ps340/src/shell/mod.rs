@@ -7,8 +7,8 @@ pub use mirror::{ArcShown, Asked, FunctionShown, InputShown, Mirror, NodeShown, 
 
 use crate::{
     line::{
-        Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, Source, Surroundings, serve_operators,
-        serve_stdio, serve_window,
+        Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, Source, Surroundings,
+        serve_operators, serve_stdio, serve_window,
     },
     machine::Settings,
 };

@@ -37,10 +37,8 @@ impl HelpView {
             Page { title: "Orders of the operator".into(), text: orders.collect() },
         ];
         let commands = reference::rows().map(|row| Page { title: row.name.to_owned(), text: row.to_string() });
-        let functions = functions::all().map(|row| Page {
-            title: format!("F:{}", row.name),
-            text: page::page(row.name).unwrap_or_default(),
-        });
+        let functions = functions::all()
+            .map(|row| Page { title: format!("F:{}", row.name), text: page::page(row.name).unwrap_or_default() });
         first.into_iter().chain(commands).chain(functions).collect()
     }
 }

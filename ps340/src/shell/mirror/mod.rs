@@ -78,12 +78,7 @@ pub struct Mirror {
 impl Mirror {
     /// A mirror without a picture; `wake` is called by the machine's thread when there is something new.
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Mirror {
-        Mirror {
-            asked: Mutex::default(),
-            shown: Mutex::default(),
-            traffic: Mutex::default(),
-            wake: Box::new(wake),
-        }
+        Mirror { asked: Mutex::default(), shown: Mutex::default(), traffic: Mutex::default(), wake: Box::new(wake) }
     }
 
     /// Says what is wanted from now on.
@@ -133,7 +128,8 @@ impl Mirror {
             is_new = true;
         }
         if frame / READ_FRAMES != before.frame / READ_FRAMES {
-            is_new |= self.renew_texts(&mut shown, machine) || Counters { frame: 0, ..shown.counters } != Counters { frame: 0, ..before.counters };
+            is_new |= self.renew_texts(&mut shown, machine)
+                || Counters { frame: 0, ..shown.counters } != Counters { frame: 0, ..before.counters };
         }
         *lock(&self.shown) = Arc::new(shown);
         if is_new {
@@ -154,7 +150,10 @@ impl Mirror {
         if asked.structure {
             is_new |= renew(&mut shown.structure, structure::tree(machine));
         }
-        if asked.log && (shown.log.len() != machine.log().count() || shown.log.last().map(String::as_str) != machine.log().last()) {
+        if asked.log
+            && (shown.log.len() != machine.log().count()
+                || shown.log.last().map(String::as_str) != machine.log().last())
+        {
             is_new |= renew(&mut shown.log, machine.log().map(str::to_owned).collect());
         }
         let mut traffic = lock(&self.traffic);
