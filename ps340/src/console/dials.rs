@@ -2,7 +2,10 @@
 
 use super::{orders::Orders, places};
 use crate::{machine::Panel, port::Label};
-use egui::{Align2, Color32, FontId, Key, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use egui::{
+    Align2, Color32, Event, FontId, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2,
+    WidgetInfo, vec2,
+};
 use std::f32::consts::TAU;
 
 /// Points of dragging that are a turn.
@@ -40,11 +43,16 @@ impl Dials {
     /// Shows the dials in a row, and orders what is turned.
     pub fn show(&mut self, ui: &mut Ui, panel: &Panel, size: f32) {
         ui.horizontal(|ui| {
-            for index in 0..8 {
-                let dial = index as u8 + 1;
+            let mut knobs = Vec::new();
+            for dial in 1..=8 {
                 let label = String::from_utf8_lossy(panel.label(Label::Dial(dial))).into_owned();
-                let turns = self.show_dial(ui, dial, &label, size);
+                let (knob, turns) = self.show_dial(ui, dial, &label, size);
+                knobs.push(knob);
                 self.turn(dial, turns);
+            }
+            let rate = rate(ui);
+            for (dial, turns) in ui.input(|input| self.drag(&input.events, &knobs)) {
+                self.turn(dial, turns * rate);
             }
         });
     }
@@ -59,8 +67,8 @@ impl Dials {
         }
     }
 
-    /// Shows one dial; returns by how many turns it was turned.
-    fn show_dial(&mut self, ui: &mut Ui, dial: u8, label: &str, size: f32) -> f64 {
+    /// Shows one dial; returns where it is, and by how many turns wheel and keys turn it.
+    fn show_dial(&self, ui: &mut Ui, dial: u8, label: &str, size: f32) -> (Rect, f64) {
         let width = size.max(76.0);
         let (area, _) = ui.allocate_exact_size(vec2(width, size + 22.0), Sense::hover());
         let strip = Rect::from_min_size(area.min, vec2(width, 18.0));
@@ -73,26 +81,33 @@ impl Dials {
         let response = response.on_hover_text(
             "drag right or up, use the wheel, or the arrow keys; SHIFT fine, CONTROL coarse; double click: a quarter turn",
         );
-        if response.clicked() || response.drag_started() {
+        if response.clicked() || response.is_pointer_button_down_on() {
             response.request_focus();
         }
         self.paint(ui, knob, dial, &response);
-        movement(ui, &response) + self.drag(ui, dial, &response) * rate(ui)
+        (knob, movement(ui, &response))
     }
 
-    /// By how many turns the mouse drags the dial. All of its way counts, from where the button went down to where it
-    /// came up.
-    fn drag(&mut self, ui: &Ui, dial: u8, response: &Response) -> f64 {
-        let held = self.grip.filter(|(held, _)| *held == dial);
-        if held.is_none() && !response.is_pointer_button_down_on() {
-            return 0.0;
+    /// The dials that events of the mouse turn, and by how many turns. All of the way counts, from where the button
+    /// went down to where it came up, however slowly pictures come.
+    ///
+    /// - `knobs`: where the dials are, from dial 1.
+    fn drag(&mut self, events: &[Event], knobs: &[Rect]) -> Vec<(u8, f64)> {
+        let mut turned = Vec::new();
+        for event in events {
+            let (at, is_down) = match event {
+                Event::PointerMoved(at) => (*at, true),
+                Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } => (*pos, *pressed),
+                _ => continue,
+            };
+            if let Some((dial, from)) = self.grip {
+                turned.push((dial, f64::from((at.x - from.x) - (at.y - from.y)) / POINTS_PER_TURN));
+                self.grip = is_down.then_some((dial, at));
+            } else if is_down && matches!(event, Event::PointerButton { .. }) {
+                self.grip = (1..).zip(knobs).find(|(_, knob)| knob.contains(at)).map(|(dial, _)| (dial, at));
+            }
         }
-        let (at, origin, is_down) =
-            ui.input(|input| (input.pointer.latest_pos(), input.pointer.press_origin(), input.pointer.primary_down()));
-        let Some(from) = held.map(|(_, from)| from).or(origin) else { return 0.0 };
-        let at = at.unwrap_or(from);
-        self.grip = is_down.then_some((dial, at));
-        f64::from((at.x - from.x) - (at.y - from.y)) / POINTS_PER_TURN
+        turned
     }
 
     fn paint(&self, ui: &Ui, knob: Rect, dial: u8, response: &Response) {
@@ -147,4 +162,27 @@ pub fn show_label(ui: &Ui, area: Rect, text: &str) {
     let painter = ui.painter();
     painter.rect_filled(area.shrink(1.0), 2.0, Color32::from_rgb(20, 6, 4));
     painter.text(area.center(), Align2::CENTER_CENTER, text, FontId::monospace(12.0), LIT);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_of_the_way_of_the_mouse_turns_the_dial_where_it_began() {
+        let knobs = [0.0, 100.0].map(|x| Rect::from_min_size(Pos2::new(x, 0.0), Vec2::splat(50.0)));
+        let button = |pressed, x| Event::PointerButton {
+            pos: Pos2::new(x, 25.0),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Default::default(),
+        };
+        let mut dials = Dials::default();
+        let events = [button(true, 25.0), Event::PointerMoved(Pos2::new(85.0, 25.0)), button(false, 145.0)];
+        assert_eq!(dials.drag(&events, &knobs), [(1, 0.25), (1, 0.25)]);
+        assert_eq!(dials.drag(&[Event::PointerMoved(Pos2::new(125.0, 25.0))], &knobs), []);
+        assert_eq!(dials.drag(&[button(true, 75.0), Event::PointerMoved(Pos2::ZERO)], &knobs), []);
+        assert_eq!(dials.drag(&[button(true, 125.0)], &knobs), []);
+        assert_eq!(dials.drag(&[Event::PointerMoved(Pos2::new(125.0, 49.0))], &knobs), [(2, -0.1)]);
+    }
 }

@@ -25,7 +25,7 @@ fn frame(machine: &mut Machine, mirror: &Mirror) {
 
 #[test]
 fn a_picture_that_stands_still_is_shared_and_wakes_nobody() {
-    let (mut machine, mirror, woken) = machine("A := VECTOR_LIST n=2 P 0,0 L 1,0; DISPLAY A;");
+    let (mut machine, mirror, woken) = machine("A := VECTOR_LIST ITEMIZED N=2 P 0,0 L 1,0; DISPLAY A;");
     for _ in 0..2 * READ_FRAMES {
         frame(&mut machine, &mirror);
     }
@@ -42,7 +42,7 @@ fn a_picture_that_stands_still_is_shared_and_wakes_nobody() {
 
 #[test]
 fn a_new_picture_is_copied_at_its_frame() {
-    let (mut machine, mirror, woken) = machine("A := VECTOR_LIST n=2 P 0,0 L 1,0; DISPLAY A;");
+    let (mut machine, mirror, woken) = machine("A := VECTOR_LIST ITEMIZED N=2 P 0,0 L 1,0; DISPLAY A;");
     frame(&mut machine, &mirror);
     let (before, calls) = (mirror.shown(), woken.load(Ordering::Relaxed));
     machine.step([Input::Bytes(LINE, b"REMOVE A;".to_vec())], 0);
@@ -55,7 +55,7 @@ fn a_new_picture_is_copied_at_its_frame() {
 #[test]
 fn only_what_is_asked_for_is_copied() {
     let text = "A := F:ADDC; CONNECT A<1>:<1>B; B := F:PRINT; SEND 2 TO <2>A; \
-                R := ROTATE IN X 90 THEN V; V := VECTOR_LIST n=2 P 0,0 L 1,0; DISPLAY R;";
+                R := ROTATE IN X 90 THEN V; V := VECTOR_LIST ITEMIZED N=2 P 0,0 L 1,0; DISPLAY R;";
     let (mut machine, mirror, _) = machine(text);
     frame(&mut machine, &mirror);
     mirror.pass(LINE, true, b"A", &machine);
