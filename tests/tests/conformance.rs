@@ -212,6 +212,43 @@ fn every_command_of_the_reference_has_a_case() {
     assert!(missing.is_empty(), "no case has {missing:?}");
 }
 
+/// The fields of a command that may be given or not, or hold or not, with what they are in it: from its listing for
+/// debugging, so that no field is forgotten.
+fn choices(command: &Command) -> Vec<(String, &'static str)> {
+    let text = format!("{command:?}");
+    // Of screens there are ALL or some.
+    let states = [("None", "left out"), ("All", "left out"), ("Some(", "given"), ("true", "on"), ("false", "off")];
+    let fields = text.match_indices(": ").filter_map(|(at, _)| {
+        let field = text[..at].rsplit(|c: char| !c.is_alphanumeric() && c != '_').next()?;
+        let state = states.iter().find(|(start, _)| text[at + 2..].starts_with(start))?;
+        Some((field.to_string(), state.1))
+    });
+    fields.collect()
+}
+
+#[test]
+fn what_may_be_left_out_of_a_command_is_left_out_in_a_case_and_given_in_another() {
+    let mut seen = BTreeSet::new();
+    for command in commands() {
+        let name = reference::name_of(&command);
+        seen.extend(choices(&command).into_iter().map(|(field, state)| (name, field, state)));
+    }
+    let other = |state| match state {
+        "left out" => "given",
+        "given" => "left out",
+        "on" => "off",
+        _ => "on",
+    };
+    // What is only another name for an object always has one.
+    let missing: Vec<String> = seen
+        .iter()
+        .filter(|(name, ..)| *name != "ALIAS")
+        .filter(|(name, field, state)| !seen.contains(&(*name, field.clone(), other(state))))
+        .map(|(name, field, state)| format!("{name}: {field} is always {state}"))
+        .collect();
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
 /// The rows of the tables of COMPATIBILITY.md, each as its cells.
 fn decisions() -> Vec<Vec<&'static str>> {
     let lines = include_str!("../../ps340/COMPATIBILITY.md").lines().filter(|line| line.starts_with("| "));

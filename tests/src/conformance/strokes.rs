@@ -123,12 +123,8 @@ mod tests {
         assert_eq!(text.line("{ COLOR 0,0 }"), Some(Rest::Lines));
         assert_eq!(text.line("P 0,0 I=1"), Some(Rest::Lines));
         assert_eq!(text.line("L 0,0 I=1;"), Some(Rest::Nothing));
-        let stroke = |start, end, intensity, color| StrokeLine {
-            start,
-            end,
-            intensity: Some(intensity),
-            color: Some(color),
-        };
+        let stroke =
+            |start, end, intensity, color| StrokeLine { start, end, intensity: Some(intensity), color: Some(color) };
         let expected = [
             stroke([-1.0, 0.0], [0.5, 0.25], [1.0, 1.0], [1.0, 0.0, 0.0]),
             stroke([0.5, 0.25], [1.0, 1.0], [1.0, 0.5], [1.0, 0.0, 0.0]),
