@@ -10,7 +10,7 @@ use protocol::command::{
     words::Word,
 };
 use ps340::functions;
-use std::{cell::RefCell, collections::BTreeSet, time::Duration};
+use std::{cell::RefCell, collections::BTreeSet, fs, path::Path, time::Duration};
 use tests::{
     Machine,
     conformance::{
@@ -42,9 +42,17 @@ fn written() -> Vec<Case> {
     conformance::read_folder(&conformance::cases_folder()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn all() -> Vec<Case> {
+/// Every case that there is.
+fn known() -> Vec<Case> {
     let mut cases = written();
     cases.extend(walk::cases());
+    cases
+}
+
+/// The cases to be played: those that take seconds only when everything is to be walked.
+fn all() -> Vec<Case> {
+    let mut cases = known();
+    cases.retain(|case| is_long() || !case.is_long);
     cases
 }
 
@@ -70,8 +78,11 @@ fn play_at<'c>(
     cases: impl IntoIterator<Item = &'c Case>,
 ) -> Report {
     let machine = RefCell::new(machine);
-    let target = Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false };
-    conformance::run(&target, Some(&mut Here(&machine)), cases, |_| {}).unwrap()
+    conformance::run(&target(place, way, cut), Some(&mut Here(&machine)), cases, |_| {}).unwrap()
+}
+
+fn target(place: Place, way: Way, cut: Option<u64>) -> Target {
+    Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false }
 }
 
 fn assert_passed(report: &Report, what: &str) {
@@ -126,6 +137,30 @@ fn a_pseudo_terminal_carries_the_cases_too() {
 }
 
 #[test]
+fn strokes_come_over_the_host_line_where_nobody_is_at_the_machine() {
+    let machine = Machine::start(PS340, &[]);
+    let place = format!("tcp:{}", machine.line).parse().unwrap();
+    let cases = all();
+    let draws = |case: &&Case| case.steps.iter().any(|(_, step)| matches!(step, Step::Strokes { .. }));
+    let some = cases.iter().filter(draws).step_by(if is_long() { 1 } else { 11 });
+    let report = conformance::run(&target(place, Way::default(), None), None, some, |_| {}).unwrap();
+    let failed: Vec<String> = report.failures().map(|(case, failure)| failure_text(case, failure)).collect();
+    assert!(failed.is_empty(), "{}", failed.concat());
+    // What needs a person, frames one after the other, or more strokes than the line brings.
+    let tally = report.tally();
+    assert!(tally.passed > 9 * tally.skipped, "{}", report.text());
+}
+
+#[test]
+fn a_machine_that_answers_nothing_ends_the_run_at_once() {
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let place = format!("tcp:{}", silent.local_addr().unwrap()).parse().unwrap();
+    let target = Target { patience: Duration::from_millis(300), ..target(place, Way::default(), None) };
+    let error = conformance::run(&target, None, &all(), |_| {}).unwrap_err();
+    assert_eq!(error.to_string(), "expected an answer of the machine, found nothing for 300ms, after: nothing");
+}
+
+#[test]
 fn a_wrong_expectation_fails_at_its_line() {
     let text = "section B.4\ncase a M x\n> SEND 'B' TO <1>HOST_MESSAGE;\n< A\ncase b M y\n> SEND 'B' TO <1>HOST_MESSAGE;\nquiet\n\
                 case c M z\n> DISPLAY 3;\nquiet\ncase d M z\nstrokes 1\n";
@@ -138,8 +173,10 @@ fn a_wrong_expectation_fails_at_its_line() {
 #[test]
 fn every_fact_of_the_client_has_a_case() {
     let proved: BTreeSet<String> = written().into_iter().flat_map(|case| case.facts).collect();
-    let facts: BTreeSet<&str> =
-        include_str!("../conformance/facts.txt").lines().filter(|l| !l.is_empty() && !l.starts_with('#')).collect();
+    let lines = include_str!("../conformance/facts.txt").lines().filter(|l| !l.is_empty() && !l.starts_with('#'));
+    let named: Vec<(&str, &str)> = lines.map(|line| line.split_once(" | ").expect("a name and what it says")).collect();
+    let facts: BTreeSet<&str> = named.iter().map(|fact| fact.0).filter(|name| !name.starts_with('-')).collect();
+    assert_eq!(facts.len() + named.iter().filter(|fact| fact.0.starts_with("- ")).count(), named.len());
     let missing: Vec<&&str> = facts.iter().filter(|fact| !proved.contains(**fact)).collect();
     assert!(missing.is_empty(), "no case proves: {missing:?}");
     let unknown: Vec<&String> = proved.iter().filter(|fact| !facts.contains(fact.as_str())).collect();
@@ -175,20 +212,76 @@ fn every_command_of_the_reference_has_a_case() {
     assert!(missing.is_empty(), "no case has {missing:?}");
 }
 
-/// The column `Case` of a row of COMPATIBILITY.md: `names` of cases, or none.
-fn named_cases(row: &str) -> impl Iterator<Item = &str> {
-    let column = row.split('|').nth(5).unwrap_or_default();
-    column.split('`').skip(1).step_by(2)
+/// The fields of a command that may be given or not, or hold or not, with what they are in it: from its listing for
+/// debugging, so that no field is forgotten.
+fn choices(command: &Command) -> Vec<(String, &'static str)> {
+    let text = format!("{command:?}");
+    // Of screens there are ALL or some.
+    let states = [("None", "left out"), ("All", "left out"), ("Some(", "given"), ("true", "on"), ("false", "off")];
+    let fields = text.match_indices(": ").filter_map(|(at, _)| {
+        let field = text[..at].rsplit(|c: char| !c.is_alphanumeric() && c != '_').next()?;
+        let state = states.iter().find(|(start, _)| text[at + 2..].starts_with(start))?;
+        Some((field.to_string(), state.1))
+    });
+    fields.collect()
 }
 
 #[test]
-fn the_cases_that_decisions_name_exist() {
-    let decisions = include_str!("../../ps340/COMPATIBILITY.md");
-    let ids: BTreeSet<String> = all().into_iter().map(|case| case.id).collect();
-    let named: BTreeSet<&str> = decisions.lines().filter(|l| l.starts_with("| ")).flat_map(named_cases).collect();
-    let unknown: Vec<&&str> = named.iter().filter(|id| !ids.contains(**id)).collect();
-    assert!(unknown.is_empty(), "no such cases: {unknown:?}");
-    assert!(named.len() > 100, "{} cases are named", named.len());
+fn what_may_be_left_out_of_a_command_is_left_out_in_a_case_and_given_in_another() {
+    let mut seen = BTreeSet::new();
+    for command in commands() {
+        let name = reference::name_of(&command);
+        seen.extend(choices(&command).into_iter().map(|(field, state)| (name, field, state)));
+    }
+    let other = |state| match state {
+        "left out" => "given",
+        "given" => "left out",
+        "on" => "off",
+        _ => "on",
+    };
+    // What is only another name for an object always has one.
+    let missing: Vec<String> = seen
+        .iter()
+        .filter(|(name, ..)| *name != "ALIAS")
+        .filter(|(name, field, state)| !seen.contains(&(*name, field.clone(), other(state))))
+        .map(|(name, field, state)| format!("{name}: {field} is always {state}"))
+        .collect();
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+/// The rows of the tables of COMPATIBILITY.md, each as its cells.
+fn decisions() -> Vec<Vec<&'static str>> {
+    let lines = include_str!("../../ps340/COMPATIBILITY.md").lines().filter(|line| line.starts_with("| "));
+    let rows = lines.map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect::<Vec<_>>());
+    rows.filter(|row| row[0] != "Point").collect()
+}
+
+/// Whether `PATH::NAME` is a test of this source tree.
+fn is_test(path_and_name: &str) -> bool {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let Some((path, name)) = path_and_name.split_once("::") else { return false };
+    let text = fs::read_to_string(root.join(path)).unwrap_or_default();
+    let Some(at) = text.find(&format!("fn {name}(")) else { return false };
+    // The attribute stands on one of the lines before.
+    text[..at].lines().rev().take(4).any(|line| line.contains("#[test]") || line.contains("#[tokio::test"))
+}
+
+#[test]
+fn every_decision_names_a_case_or_a_test_that_exists() {
+    let ids: BTreeSet<String> = known().into_iter().map(|case| case.id).collect();
+    let decisions = decisions();
+    let mut wrong = Vec::new();
+    for row in &decisions {
+        let [point, _, _, _, proofs] = row[..] else { panic!("a row has five cells: {row:?}") };
+        let proofs: Vec<&str> = proofs.split('`').skip(1).step_by(2).collect();
+        let unknown = proofs.iter().filter(|proof| !ids.contains(**proof) && !is_test(proof));
+        wrong.extend(unknown.map(|proof| format!("{point}: there is no {proof}")));
+        if proofs.is_empty() {
+            wrong.push(format!("{point}: names neither case nor test"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(decisions.len() > 200, "{} decisions", decisions.len());
 }
 
 #[test]
@@ -216,7 +309,7 @@ fn every_word_of_the_commands_has_a_case() {
 #[test]
 fn every_function_and_every_initial_instance_has_a_case() {
     let (mut functions, mut names) = (BTreeSet::new(), BTreeSet::new());
-    for case in all() {
+    for case in known() {
         let mut reader = CommandReader::default();
         reader.push(case.text().as_bytes());
         for command in reader.by_ref().filter_map(|read| Some(read.ok()?.command)) {

@@ -4,9 +4,9 @@ use std::{
     fs,
     io::{Read, Write},
     net::TcpStream,
-    time::Duration,
+    time::{Duration, Instant},
 };
-use tests::{Host, Machine};
+use tests::{Host, Machine, PATIENCE};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 
@@ -130,6 +130,30 @@ fn a_virtual_clock_passes_only_while_someone_waits() {
     assert_eq!(frame(&mut machine).as_deref(), Some("frame=0"));
     machine.order("frames 1000000");
     assert_eq!(frame(&mut machine).as_deref(), Some("frame=1000000"));
+}
+
+#[test]
+fn plain_text_and_keyboard_begin_as_the_options_say() {
+    let all: [(&[&str], &str, bool); 4] = [
+        (&[], "interactive", true),
+        (&["--plain-text", "terminal"], "terminal", false),
+        (&["--plain-text", "terminal", "--keyboard", "command"], "command", false),
+        (&["--keyboard", "terminal"], "terminal", true),
+    ];
+    for (options, mode, is_command) in all {
+        let mut machine = Machine::start(PS340, options);
+        assert_eq!(machine.order("mode"), mode, "{options:?}");
+        let mut host = machine.attach();
+        host.send("A := VECTOR_LIST DOTS 0,0; DISPLAY A;\r\n");
+        let begin = Instant::now();
+        let (mut drawn, mut shown) = (false, false);
+        while !drawn && !shown {
+            assert!(begin.elapsed() < PATIENCE, "{options:?}: the text went nowhere");
+            drawn = machine.order("strokes").starts_with("1 ");
+            shown = machine.order("terminal").contains("DISPLAY A;");
+        }
+        assert_eq!((drawn, shown), (is_command, !is_command), "{options:?}");
+    }
 }
 
 #[test]

@@ -48,7 +48,8 @@ fn items<'s>(strokes: impl IntoIterator<Item = &'s Stroke>) -> impl Iterator<Ite
             items.push(Item::Color(hue::hue_saturation(stroke.color)));
         }
         let [first, last] = stroke.intensity;
-        if stroke.is_dot() {
+        // A vector along the line of sight is a dot on the screen with two intensities.
+        if stroke.is_dot() && first == last {
             items.push(Item::Dot(stroke.start, first));
         } else {
             if at != Some((stroke.start, first)) {
@@ -147,6 +148,12 @@ mod tests {
         assert_eq!(list.points.len(), 5);
         assert_eq!(list.lines, [false, true, true, false, true]);
         assert_eq!(list.points[2], [1.0, 1.0, 0.0, 0.5]);
+    }
+
+    #[test]
+    fn a_vector_along_the_line_of_sight_keeps_both_intensities() {
+        let stroke = Stroke { start: [0.0; 2], end: [0.0; 2], intensity: [1.0, 0.0], color: [1.0; 3] };
+        assert_eq!(lines(&[stroke])[2..], ["P 0,0 I=1", "L 0,0 I=0;"]);
     }
 
     #[test]

@@ -39,6 +39,9 @@ struct Arguments {
     /// Only cases with these tags, such as SM.
     #[arg(long, value_name = "LETTERS")]
     tags: Option<String>,
+    /// The cases that take seconds each, too.
+    #[arg(long)]
+    long: bool,
     /// Where the files of cases are.
     #[arg(long, value_name = "FOLDER")]
     cases: Option<PathBuf>,
@@ -69,6 +72,7 @@ impl Arguments {
         };
         (self.section.is_empty() || self.section.iter().any(below))
             && (self.case.is_empty() || self.case.contains(&case.id))
+            && (self.long || !case.is_long || self.case.contains(&case.id))
             && self.tags.as_ref().is_none_or(|tags| tags.to_uppercase().contains(case.tag.letter()))
     }
 }
@@ -124,7 +128,7 @@ fn run(arguments: &Arguments) -> Result<bool, (u8, String)> {
             println!("passed {}: {}", outcome.case.id, outcome.case.title);
         }
     });
-    let report = report.map_err(|e| (3, format!("the machine cannot be reached: {e}")))?;
+    let report = report.map_err(|e| (3, format!("no machine at {}: {e}", arguments.place)))?;
     print!("{}", report.text());
     for (file, text) in [(&arguments.json, report.json()), (&arguments.junit, report.junit())] {
         if let Some(file) = file {

@@ -43,6 +43,8 @@ pub struct Case {
     pub facts: Vec<String>,
     /// Its commands are about the text form itself, and are sent as they stand.
     pub text_only: bool,
+    /// It takes seconds, and is played only when long cases are asked for.
+    pub is_long: bool,
     /// Allowed difference of numbers, absolute and relative.
     pub tolerance: f64,
     /// What is done and expected.
@@ -63,6 +65,7 @@ impl Case {
             tag,
             facts: Vec::new(),
             text_only: false,
+            is_long: false,
             tolerance: DEFAULT_TOLERANCE,
             steps: Vec::new(),
             file: String::new(),
@@ -70,9 +73,14 @@ impl Case {
         }
     }
 
-    /// Whether someone must be at the machine.
+    /// Whether someone must be at the machine. Strokes of one frame can also be asked for over the host line.
     pub fn needs_operator(&self) -> bool {
-        self.steps.iter().any(|(_, step)| matches!(step, Step::Order(_) | Step::Reply(_) | Step::Strokes { .. }))
+        let needs = |step: &Step| match step {
+            Step::Order(_) | Step::Reply(_) => true,
+            Step::Strokes { frames, .. } => *frames > 1,
+            _ => false,
+        };
+        self.steps.iter().any(|(_, step)| needs(step))
     }
 
     /// Whether warnings of the machine are messages of this case.
@@ -80,14 +88,20 @@ impl Case {
         self.steps.iter().any(|(_, step)| matches!(step, Step::Expect(Expected::Fault { class: 'W', .. })))
     }
 
-    /// All text that is sent, without what the runner adds.
+    /// All text that is sent, without what the runner adds; of repeated commands the first.
     pub fn text(&self) -> String {
         let sent = self.steps.iter().filter_map(|(_, step)| match step {
-            Step::Send(text) => Some(text.as_str()),
+            Step::Send(text) => Some(text.clone()),
+            Step::Each { first, text, .. } => Some(with_number(text, *first)),
             _ => None,
         });
         sent.collect()
     }
+}
+
+/// Commands in which a number stands for `#`, and the next for `##`.
+pub fn with_number(text: &str, number: usize) -> String {
+    text.replace("##", &(number + 1).to_string()).replace('#', &number.to_string())
 }
 
 /// The tolerance of a case that gives none.
@@ -96,8 +110,17 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-6;
 /// Something to do, or to expect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// `> text`, `each 1 9 text`: commands, with the line ends.
+    /// `> text`: commands, with the line ends.
     Send(String),
+    /// `each 1 9 text`: the same commands for each number.
+    Each {
+        /// The first number.
+        first: usize,
+        /// The last.
+        last: usize,
+        /// The commands, with their line end, for [`with_number`].
+        text: String,
+    },
     /// `raw "..."`: bytes on the line as they are.
     Raw(Vec<u8>),
     /// `watch NAME<1> [as WORD]`: from now on each message of the output is printed and sent to the host.

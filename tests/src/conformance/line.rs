@@ -6,9 +6,10 @@ use rustix::{
     time::Timespec,
 };
 use std::{
+    fmt,
     fs::{File, OpenOptions},
     io::{self, Read, Write},
-    net::{Shutdown, TcpStream},
+    net::{Shutdown, TcpStream, ToSocketAddrs},
     os::unix::net::UnixStream,
     path::PathBuf,
     str::FromStr,
@@ -22,6 +23,8 @@ use std::{
 
 /// How long a machine may take to let a host go.
 const GOODBYE: Duration = Duration::from_secs(3);
+/// How long a machine may take to take a connection.
+const CONNECT_LIMIT: Duration = Duration::from_secs(10);
 /// How long a machine may refuse to take bytes.
 const WRITE_LIMIT: Duration = Duration::from_secs(30);
 
@@ -48,6 +51,15 @@ impl FromStr for Place {
             }
         }
         text.parse().map(Place::Socket).map_err(|e: protocol::address::AddressError| e.to_string())
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Socket(address) => address.fmt(f),
+            Place::Terminal(path) => path.display().fmt(f),
+        }
     }
 }
 
@@ -96,7 +108,7 @@ impl Line {
     pub fn attach(place: &Place) -> io::Result<Line> {
         let (stream, reader): (Stream, Box<dyn Read + Send>) = match place {
             Place::Socket(Address::Tcp(at)) => {
-                let stream = TcpStream::connect(at.as_str())?;
+                let stream = connect(at)?;
                 stream.set_nodelay(true)?;
                 stream.set_write_timeout(Some(WRITE_LIMIT))?;
                 let reader = stream.try_clone()?;
@@ -175,6 +187,18 @@ impl Drop for Line {
             }
         };
     }
+}
+
+/// Connects to the first address of a host that answers.
+fn connect(at: &str) -> io::Result<TcpStream> {
+    let mut result = Err(io::ErrorKind::AddrNotAvailable.into());
+    for address in at.to_socket_addrs()? {
+        result = TcpStream::connect_timeout(&address, CONNECT_LIMIT);
+        if result.is_ok() {
+            break;
+        }
+    }
+    result
 }
 
 /// Switches off echo, translation and line editing.

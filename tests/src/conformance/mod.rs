@@ -9,6 +9,7 @@ pub mod walk;
 pub mod form;
 pub mod line;
 pub mod person;
+pub mod strokes;
 pub mod session;
 pub mod report;
 pub mod suite;

@@ -4,7 +4,7 @@ use super::case::{Case, Expected, Step, StrokeLine, Tag};
 use std::fmt;
 
 /// Largest number of an `each` step.
-const MAX_EACH: usize = 100_000;
+const MAX_EACH: usize = 1_000_000;
 
 /// Why a file of cases cannot be read, with its place.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -88,6 +88,7 @@ impl Reader<'_> {
             "case" => return self.begin_case(number, rest),
             "fact" => self.case()?.facts.push(required(rest, "the number of a fact")?.into()),
             "text-only" => self.case()?.text_only = true,
+            "long" => self.case()?.is_long = true,
             "tolerance" => {
                 let given = rest.trim().parse().ok().filter(|t| (0.0..1.0).contains(t));
                 self.case()?.tolerance = given.ok_or(Problem::Expected("a tolerance, 0 to 1"))?;
@@ -152,7 +153,7 @@ impl Reader<'_> {
             return Err(Problem::Expected("more expectations of '<&'"));
         }
         let expects = |step: &Step| {
-            !matches!(step, Step::Send(_) | Step::Raw(_) | Step::Watch { .. } | Step::Order(_) | Step::Frames(_))
+            matches!(step, Step::Expect(_) | Step::Reply(_) | Step::Strokes { .. } | Step::Drop | Step::Quiet)
         };
         match self.cases.last() {
             Some(case) if !case.steps.iter().any(|(_, s)| expects(s)) => Err(Problem::Idle(case.id.clone())),
@@ -201,10 +202,7 @@ fn expectation(word: &str, rest: &str) -> Result<Expected, Problem> {
 fn step(word: &str, rest: &str) -> Result<Step, Problem> {
     Ok(match word {
         ">" => Step::Send(format!("{rest}\n")),
-        "raw" => {
-            let quoted = rest.trim().strip_prefix('"').and_then(|text| text.strip_suffix('"'));
-            Step::Raw(unescape(quoted.ok_or(Problem::Expected("bytes in double quotes"))?)?)
-        }
+        "raw" => Step::Raw(quoted(rest)?),
         "each" => each(rest)?,
         "watch" => watch(rest)?,
         "@" => Step::Order(required(rest, "an order of the operator")?.into()),
@@ -217,6 +215,12 @@ fn step(word: &str, rest: &str) -> Result<Step, Problem> {
     })
 }
 
+/// Bytes in double quotes, with escapes.
+fn quoted(text: &str) -> Result<Vec<u8>, Problem> {
+    let inside = text.trim().strip_prefix('"').and_then(|text| text.strip_suffix('"'));
+    unescape(inside.ok_or(Problem::Expected("bytes in double quotes"))?)
+}
+
 /// `FIRST LAST TEXT`
 fn each(rest: &str) -> Result<Step, Problem> {
     const FORM: Problem = Problem::Expected("the first and the last number, then commands with #");
@@ -224,8 +228,7 @@ fn each(rest: &str) -> Result<Step, Problem> {
     let mut number = || words.next().and_then(|word| word.parse::<usize>().ok());
     let (first, last) = (number().ok_or(FORM)?, number().ok_or(FORM)?);
     let text = words.next().filter(|_| first <= last && last <= MAX_EACH).ok_or(FORM)?;
-    let lines = (first..=last).map(|n| text.replace("##", &(n + 1).to_string()).replace('#', &n.to_string()) + "\n");
-    Ok(Step::Send(lines.collect()))
+    Ok(Step::Each { first, last, text: format!("{text}\n") })
 }
 
 /// `[N [over M]]`
@@ -316,7 +319,7 @@ impl fmt::Display for Expected {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::case::with_number, *};
 
     fn one(text: &str) -> Result<Vec<Case>, String> {
         parse("f", text).map_err(|e| e.to_string())
@@ -363,7 +366,15 @@ mod tests {
     #[test]
     fn each_repeats_commands_with_a_number_and_the_next() {
         let case = one("section B\ncase a M x\neach 8 10 A# := INSTANCE OF A##;\nquiet\n").unwrap().remove(0);
-        assert_eq!(case.text(), "A8 := INSTANCE OF A9;\nA9 := INSTANCE OF A10;\nA10 := INSTANCE OF A11;\n");
+        let Step::Each { first: 8, last: 10, text } = &case.steps[0].1 else { panic!("{:?}", case.steps[0]) };
+        assert_eq!(with_number(text, 9), "A9 := INSTANCE OF A10;\n");
+        assert_eq!(case.text(), "A8 := INSTANCE OF A9;\n");
+    }
+
+    #[test]
+    fn a_case_may_be_long() {
+        assert!(one("section B\ncase a M x\nlong\nquiet\n").unwrap()[0].is_long);
+        assert!(!one("section B\ncase a M x\nquiet\n").unwrap()[0].is_long);
     }
 
     #[test]

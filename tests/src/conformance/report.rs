@@ -83,7 +83,18 @@ impl Report {
         })
     }
 
-    /// A table of the sections, and the failures.
+    /// Why cases were skipped, and how many for each reason.
+    fn reasons(&self) -> BTreeMap<&str, usize> {
+        let mut reasons = BTreeMap::new();
+        for outcome in &self.outcomes {
+            if let Verdict::Skipped(why) = &outcome.verdict {
+                *reasons.entry(why.as_str()).or_default() += 1;
+            }
+        }
+        reasons
+    }
+
+    /// The failures, a table of the sections, and why cases were skipped.
     pub fn text(&self) -> String {
         let mut out = String::new();
         for (case, failure) in self.failures() {
@@ -97,6 +108,9 @@ impl Report {
             row(&mut out, &section, tally);
         }
         row(&mut out, "all", self.tally());
+        for (why, count) in self.reasons() {
+            let _ = writeln!(out, "skipped {count}: {why}");
+        }
         out
     }
 
@@ -235,6 +249,7 @@ mod tests {
         assert_eq!(report().tally(), Tally { passed: 1, failed: 1, skipped: 1 });
         let text = report().text();
         assert!(text.contains("FAILED b [B.9 M]") && text.contains("all              1       1       1"), "{text}");
+        assert!(text.ends_with("skipped 1: nobody\n"), "{text}");
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! One case on one machine: attach, clear, play the steps, compare, leave.
 
 use super::{
-    case::{Case, Expected, Step, StrokeLine},
+    case::{Case, Expected, Step, StrokeLine, with_number},
     compare::{matches, strokes_differ},
     form::{Sender, Way, WayError},
     line::{Line, Place},
     person::{Operator, OrderFault},
+    strokes::{self, Rest, WritebackText},
 };
 use protocol::wire::MessageReader;
 use std::{
@@ -18,6 +19,10 @@ use std::{
 const TRANSCRIPT_LINES: usize = 30;
 /// Messages that may come without being asked for before a case is given up.
 const MAX_MESSAGES: usize = 20_000;
+/// Bytes of repeated commands that are sent at a time.
+const PIECE: usize = 64 << 10;
+/// Least tolerance of strokes that WRITEBACK tells, with seven digits.
+const WRITEBACK_TOLERANCE: f64 = 1e-5;
 
 /// What the cases are run against, and how.
 #[derive(Clone, Debug)]
@@ -159,6 +164,7 @@ impl<'s> Session<'s> {
     fn step(&mut self, step: &Step) -> Result<(), Stop> {
         match step {
             Step::Send(text) => self.commands(text, self.case.text_only)?,
+            Step::Each { first, last, text } => self.each(*first, *last, text)?,
             Step::Raw(bytes) => {
                 self.note(format!("> {}", bytes.escape_ascii()));
                 self.waiting.extend_from_slice(bytes);
@@ -192,6 +198,21 @@ impl<'s> Session<'s> {
     fn commands(&mut self, text: &str, text_only: bool) -> Result<(), Stop> {
         self.note(format!("> {}", text.trim_end()));
         Ok(self.sender.write(text.as_bytes(), text_only, &mut self.waiting)?)
+    }
+
+    /// Repeated commands go at once, so that a million of them need no room.
+    fn each(&mut self, first: usize, last: usize, text: &str) -> Result<(), Stop> {
+        self.note(format!("> {} (# is {first} to {last})", text.trim_end()));
+        let mut piece = String::new();
+        for number in first..=last {
+            piece.push_str(&with_number(text, number));
+            if piece.len() > PIECE || number == last {
+                self.sender.write(piece.as_bytes(), self.case.text_only, &mut self.waiting)?;
+                self.flush()?;
+                piece.clear();
+            }
+        }
+        Ok(())
     }
 
     /// Sends each message of an output to the host, printed, with a word before it if there is one.
@@ -350,23 +371,73 @@ impl<'s> Session<'s> {
     }
 
     fn strokes(&mut self, count: Option<usize>, frames: u64, lines: &[StrokeLine]) -> Result<(), Stop> {
-        let mut found = Vec::new();
-        for _ in 0..frames {
-            self.frames(1)?;
-            let reply = self.order("strokes")?;
-            let Some(drawn) = read_strokes(&reply) else {
-                return Err(Stop::Failed { expected: "strokes, one a line".into(), found: reply });
-            };
-            found.extend(drawn);
-        }
-        match strokes_differ(count, lines, &found, self.case.tolerance) {
+        let (found, tolerance) = if self.time_stands() {
+            (self.strokes_on_screen(frames)?, self.case.tolerance)
+        } else if frames == 1 {
+            (self.strokes_written_back()?, self.case.tolerance.max(WRITEBACK_TOLERANCE))
+        } else {
+            return Err(Stop::Skipped("frames that follow one another need the operator line of an emulator".into()));
+        };
+        match strokes_differ(count, lines, &found, tolerance) {
             None => Ok(()),
             Some(expected) => {
-                let some: Vec<String> = found.iter().take(12).map(stroke_text).collect();
+                let some: Vec<String> = found.iter().take(12).map(strokes::text).collect();
                 let found = format!("{} strokes: {}", found.len(), some.join(" | "));
                 Err(Stop::Failed { expected, found })
             }
         }
+    }
+
+    /// The strokes of so many frames, as the operator line tells them.
+    fn strokes_on_screen(&mut self, frames: u64) -> Result<Vec<StrokeLine>, Stop> {
+        let mut found = Vec::new();
+        for _ in 0..frames {
+            self.frames(1)?;
+            let reply = self.order("strokes")?;
+            let Some(drawn) = strokes::from_operator(&reply) else {
+                return Err(Stop::Failed { expected: "strokes, one a line".into(), found: reply });
+            };
+            found.extend(drawn);
+        }
+        Ok(found)
+    }
+
+    /// The strokes of the next update, over the host line: what WRITEBACK says of all that is displayed.
+    fn strokes_written_back(&mut self) -> Result<Vec<StrokeLine>, Stop> {
+        self.frames(1)?;
+        self.watched += 1;
+        let (n, mark) = (self.watched, strokes::MARK);
+        let ask = format!(
+            "WATCHC{n} := F:CCONCATENATE; SEND '{mark}' TO <1>WATCHC{n}; CONNECT WRITEBACK<2>:<2>WATCHC{n}; \
+             CONNECT WATCHC{n}<1>:<1>HOST_MESSAGE; SEND TRUE TO <1>WRITEBACK;\n"
+        );
+        self.commands(&ask, false)?;
+        self.flush()?;
+        let mut text = WritebackText::default();
+        let deadline = Instant::now() + self.target.patience;
+        loop {
+            let Some(message) = self.receive(deadline)? else {
+                return Err(Stop::Skipped("WRITEBACK tells no strokes".into()));
+            };
+            let Some(line) = message.strip_prefix(mark.as_bytes()) else {
+                self.arrived(message);
+                continue;
+            };
+            let line = String::from_utf8_lossy(line);
+            match text.line(&line) {
+                Some(Rest::Lines) => {}
+                Some(Rest::Nothing) => break,
+                Some(Rest::TooMany) => {
+                    return Err(Stop::Skipped("more strokes than WRITEBACK brings over the host line".into()));
+                }
+                None => {
+                    let expected = "the text of a vector list from WRITEBACK".into();
+                    return Err(Stop::Failed { expected, found: line.into_owned() });
+                }
+            }
+        }
+        self.commands(&format!("DISCONNECT WRITEBACK<2>:<2>WATCHC{n};\n"), false)?;
+        Ok(text.strokes)
     }
 
     fn note(&mut self, line: String) {
@@ -384,41 +455,4 @@ fn no_operator() -> Stop {
 fn failed(expected: String, message: Option<&[u8]>) -> Stop {
     let found = message.map_or("no message".into(), |m| format!("\"{}\"", m.escape_ascii()));
     Stop::Failed { expected, found }
-}
-
-/// The strokes in the reply to `strokes`: their number, then on each line x, y, x, y, two intensities, red, green, blue.
-fn read_strokes(reply: &str) -> Option<Vec<StrokeLine>> {
-    let mut lines = reply.lines();
-    let count: usize = lines.next()?.split(' ').next()?.parse().ok()?;
-    let read = |line: &str| -> Option<StrokeLine> {
-        let numbers: Result<Vec<f64>, _> = line.split([' ', ',']).filter(|w| !w.is_empty()).map(str::parse).collect();
-        let n: [f64; 9] = numbers.ok()?.try_into().ok()?;
-        let (intensity, color) = (Some([n[4], n[5]]), Some([n[6], n[7], n[8]]));
-        Some(StrokeLine { start: [n[0], n[1]], end: [n[2], n[3]], intensity, color })
-    };
-    let strokes: Option<Vec<StrokeLine>> = lines.map(read).collect();
-    strokes.filter(|s| s.len() == count)
-}
-
-fn stroke_text(stroke: &StrokeLine) -> String {
-    let StrokeLine { start, end, intensity, color } = stroke;
-    let list = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-    let more = [intensity.map(|i| list(&i)), color.map(|c| list(&c))];
-    let more: Vec<String> = more.into_iter().flatten().collect();
-    format!("{} {} {}", list(start), list(end), more.join(" "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn strokes_are_read_from_the_reply() {
-        let strokes = read_strokes("2 strokes\n0 0 1 0.5 1 0.25 1 1 1\n0,0,0,0,1,1,1,0,0").unwrap();
-        assert_eq!(strokes[0].end, [1.0, 0.5]);
-        assert_eq!(strokes[0].intensity, Some([1.0, 0.25]));
-        assert_eq!(strokes[1].color, Some([1.0, 0.0, 0.0]));
-        assert_eq!(read_strokes("2 strokes\n0 0 1 0.5 1 0.25 1 1 1"), None);
-        assert_eq!(read_strokes("none"), None);
-    }
 }

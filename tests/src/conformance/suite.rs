@@ -62,7 +62,7 @@ pub fn read_folder(folder: &Path) -> Result<Vec<Case>, SuiteError> {
 /// - `each`: is told what came of each case.
 ///
 /// # Errors
-/// If the machine cannot be reached.
+/// If the machine cannot be reached, or answers nothing at all.
 pub fn run<'c>(
     target: &Target,
     mut operator: Option<&mut dyn Operator>,
@@ -76,7 +76,8 @@ pub fn run<'c>(
             Some(operator) => Some(&mut **operator),
             None => None,
         };
-        let verdict = play(target, operator, case)?;
+        let is_first = report.outcomes.iter().all(|outcome| matches!(outcome.verdict, Verdict::Skipped(_)));
+        let verdict = play(target, operator, case, is_first)?;
         let outcome = Outcome { case: case.clone(), verdict, time: begin.elapsed() };
         each(&outcome);
         report.outcomes.push(outcome);
@@ -84,7 +85,12 @@ pub fn run<'c>(
     Ok(report)
 }
 
-fn play<'a>(target: &'a Target, operator: Option<&'a mut dyn Operator>, case: &'a Case) -> io::Result<Verdict> {
+fn play<'a>(
+    target: &'a Target,
+    operator: Option<&'a mut dyn Operator>,
+    case: &'a Case,
+    is_first: bool,
+) -> io::Result<Verdict> {
     if case.needs_operator() && operator.is_none() {
         return Ok(Verdict::Skipped("nobody is at the machine".into()));
     }
@@ -99,6 +105,10 @@ fn play<'a>(target: &'a Target, operator: Option<&'a mut dyn Operator>, case: &'
     };
     let mut session = match Session::begin(target, operator, case) {
         Ok(session) => session,
+        Err(Stop::Failed { expected, found }) if is_first => {
+            // Nobody there: the other cases would only find the same, one after the other.
+            return Err(io::Error::other(format!("expected {expected}, found {found}")));
+        }
         Err(stop) => return verdict(case.line, stop, Vec::new()),
     };
     let played = session.play();
