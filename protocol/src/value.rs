@@ -253,7 +253,7 @@ impl Value {
             Value::Vector4(v) => v.is_finite(),
             Value::Matrix2(m) => m.is_finite(),
             Value::Matrix3(m) => m.is_finite(),
-            Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => all_finite(m),
+            Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => is_finite(m),
             Value::Pick(pick) => {
                 pick.place.is_none_or(|place| place.point.is_finite() && place.parameter.is_none_or(f64::is_finite))
             }
@@ -291,9 +291,12 @@ impl fmt::Display for PickList {
     }
 }
 
-/// Whether every element is finite: then all of them times zero are zero, and so is the sum.
-fn all_finite(m: &DMat4) -> bool {
-    (m.x_axis * 0.0 + m.y_axis * 0.0) + (m.z_axis * 0.0 + m.w_axis * 0.0) == DVec4::ZERO
+/// Whether every element of a matrix is finite: no exponent has all bits set, so that none overflows into the sign.
+#[inline]
+pub fn is_finite(m: &DMat4) -> bool {
+    const EXPONENT: u64 = f64::INFINITY.to_bits();
+    const LAST: u64 = EXPONENT & EXPONENT.wrapping_neg();
+    m.to_cols_array().iter().fold(0, |any, number| any | ((number.to_bits() & EXPONENT) + LAST)) >> 63 == 0
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! a matrix is their product in row-vector order. Anything else is a fault.
 
 use super::algebra::{difference, product, quotient, sum};
-use super::{Example, FunctionRow, Source};
+use super::{Example, FunctionRow, Order, Source};
 use crate::{
     matrices::sine_and_cosine,
     port::{
@@ -14,7 +14,8 @@ use crate::{
         PortSpec, Problem,
     },
 };
-use protocol::Value;
+use glam::{DMat4, DVec4};
+use protocol::{Value, value::is_finite};
 
 /// What adds: numbers, vectors, square matrices.
 const ADDEND: KindSet = KindSet::NUMBER.or(KindSet::VECTOR).or(KindSet::SQUARE);
@@ -47,6 +48,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(ADDEND, 0, TERMS),
         outputs: &["sum"],
         behaviour: add,
+        in_place: Some(add_in_place),
         examples: &[
             Example::of(&[(1, I(2)), (2, I(3))], &[(1, I(5))]),
             Example::of(&[(1, I(i32::MAX)), (2, I(1))], &[(1, I(i32::MIN))]),
@@ -69,6 +71,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(ADDEND, 2, TERMS),
         outputs: &["sum"],
         behaviour: add,
+        in_place: Some(add_in_place),
         examples: &[
             Example::of(&[(2, I(1)), (1, I(0)), (1, I(8))], &[(1, I(1)), (1, I(9))]),
             Example::of(&[(2, I(1)), (1, V2([1.0, 1.0])), (1, I(1))], &[(1, I(2))]).faults(&[5]),
@@ -82,6 +85,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(ADDEND, 0, DIFFERENCE),
         outputs: &["<1> - <2>"],
         behaviour: subtract,
+        in_place: Some(subtract_in_place),
         examples: &[
             Example::of(&[(1, I(2)), (2, I(3))], &[(1, I(-1))]),
             Example::of(&[(1, I(i32::MIN)), (2, I(1))], &[(1, I(i32::MAX))]),
@@ -96,6 +100,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(ADDEND, 2, DIFFERENCE),
         outputs: &["<1> - <2>"],
         behaviour: subtract,
+        in_place: Some(subtract_in_place),
         examples: &[
             Example::of(&[(2, I(1)), (1, I(2))], &[(1, I(1))]),
             Example::of(&[(2, I(1)), (1, V2([1.0, 1.0])), (1, R(0.5))], &[(1, R(-0.5))]).faults(&[5]),
@@ -109,6 +114,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(ADDEND, 1, DIFFERENCE),
         outputs: &["<1> - <2>"],
         behaviour: subtract,
+        in_place: Some(subtract_in_place),
         examples: &[
             Example::of(&[(1, R(1.0)), (2, I(2))], &[(1, R(-1.0))]),
             Example::of(&[(1, V2([1.0, 1.0])), (2, V2([0.0, 2.0])), (2, V3([0.0; 3]))], &[(1, V2([1.0, -1.0]))])
@@ -125,6 +131,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(FACTOR, 0, FACTORS),
         outputs: &["<1> times <2>"],
         behaviour: multiply,
+        in_place: Some(multiply_in_place),
         examples: &[
             Example::of(&[(1, I(-3)), (2, I(4))], &[(1, I(-12))]),
             Example::of(&[(1, R(2.0)), (2, V3([1.0, 2.0, 3.0]))], &[(1, V3([2.0, 4.0, 6.0]))]),
@@ -155,6 +162,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(FACTOR, 2, FACTORS),
         outputs: &["<1> times <2>"],
         behaviour: multiply,
+        in_place: Some(multiply_in_place),
         examples: &[
             Example::of(&[(2, R(4.0)), (1, R(0.25))], &[(1, R(1.0))]),
             Example::of(&[(2, I(3)), (1, I(2)), (1, V3([1.0, 0.0, -1.0]))], &[(1, I(6)), (1, V3([3.0, 0.0, -3.0]))]),
@@ -168,6 +176,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &pair(FACTOR, 1, FACTORS),
         outputs: &["<1> times <2>"],
         behaviour: multiply,
+        in_place: Some(multiply_in_place),
         examples: &[
             Example::of(
                 &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M2([[0.0, 1.0], [1.0, 0.0]]))],
@@ -335,6 +344,47 @@ pub static ROWS: &[FunctionRow] = &[
         ..FunctionRow::PLAIN
     },
 ];
+
+fn add_in_place(message: &mut Value, constant: &Value, _: Order) -> bool {
+    real_in_place(message, constant, |m, c| m + c)
+}
+
+fn subtract_in_place(message: &mut Value, constant: &Value, order: Order) -> bool {
+    real_in_place(message, constant, |m, c| if order == Order::MessageFirst { m - c } else { c - m })
+}
+
+fn multiply_in_place(message: &mut Value, constant: &Value, order: Order) -> bool {
+    if let (Value::Matrix4(message), Value::Matrix4(constant)) = (&mut *message, constant) {
+        let product = match order {
+            Order::MessageFirst => matrix_product(message, constant),
+            Order::ConstantFirst => matrix_product(constant, message),
+        };
+        let finite = is_finite(&product);
+        if finite {
+            **message = product;
+        }
+        return finite;
+    }
+    real_in_place(message, constant, |m, c| m * c)
+}
+
+/// The product of glam's `b * a`, to the bit, without a call.
+#[inline(always)]
+fn matrix_product(a: &DMat4, b: &DMat4) -> DMat4 {
+    let column = |v: DVec4| b.x_axis * v.x + b.y_axis * v.y + b.z_axis * v.z + b.w_axis * v.w;
+    DMat4::from_cols(column(a.x_axis), column(a.y_axis), column(a.z_axis), column(a.w_axis))
+}
+
+/// Works out a real from two reals.
+#[inline(always)]
+fn real_in_place(message: &mut Value, constant: &Value, result: impl FnOnce(f64, f64) -> f64) -> bool {
+    let (Value::Real(message), Value::Real(constant)) = (message, constant) else { return false };
+    let result = result(*message, *constant);
+    if result.is_finite() {
+        *message = result;
+    }
+    result.is_finite()
+}
 
 fn add(f: &mut Firing) -> Result<(), Problem> {
     match f.reals() {

@@ -26,7 +26,10 @@ pub mod transformation;
 pub mod vectors;
 pub mod viewing;
 
-pub use row::{Behaviour, Clock, Confidence, Example, Family, FunctionRow, MAX_SIZE, Rule, Shape, SizeError, Source};
+pub use row::{
+    Behaviour, Clock, Confidence, Example, Family, FunctionRow, InPlace, MAX_SIZE, Order, Rule, Shape, SizeError,
+    Source,
+};
 
 use std::{collections::HashMap, sync::LazyLock};
 

@@ -1,12 +1,27 @@
 //! One row of the table of functions.
 
 use crate::port::{Elapsed, Firing, Literal, PortSpec, Problem};
+use protocol::Value;
 
 /// Largest n of a family such as ROUTE(n). Ours.
 pub const MAX_SIZE: u16 = 127;
 
 /// What a function does when it fires: reads its inputs, sends its results. On a problem nothing is sent.
 pub type Behaviour = fn(&mut Firing) -> Result<(), Problem>;
+
+/// What a behaviour with two inputs and one result does with the commonest values, worked out where the message lies.
+///
+/// Returns false, and changes nothing, if the values are others or the result is not finite.
+pub type InPlace = fn(message: &mut Value, constant: &Value, order: Order) -> bool;
+
+/// Which of two inputs is the queue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Input 1; input 2 is a constant.
+    MessageFirst,
+    /// Input 2; input 1 is a constant.
+    ConstantFirst,
+}
 
 /// What a clock does when time passes: returns how many outputs it left out.
 pub type Clock = fn(&mut Firing, &Elapsed) -> Result<u64, Problem>;
@@ -32,6 +47,8 @@ pub struct FunctionRow {
     pub memory: u8,
     /// What it does when it fires.
     pub behaviour: Behaviour,
+    /// The same in place, if it pays.
+    pub in_place: Option<InPlace>,
     /// What it does as time passes, if it is a clock.
     pub clock: Option<Clock>,
     /// Examples.
@@ -134,6 +151,7 @@ impl FunctionRow {
         rule: Rule::All,
         memory: 0,
         behaviour: idle,
+        in_place: None,
         clock: None,
         examples: &[],
     };

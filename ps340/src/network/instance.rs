@@ -2,7 +2,7 @@
 
 use super::{Destination, pool::Run};
 use crate::{
-    functions::{FunctionRow, Rule},
+    functions::{FunctionRow, Order, Rule},
     port::KindSet,
     port::Port,
 };
@@ -28,7 +28,9 @@ pub(super) struct Instance {
     /// Number of inputs among the ports.
     pub(super) inputs: u16,
     /// Number of inputs up to the last active one.
-    pub(super) active: u16,
+    pub(super) active: u8,
+    /// The inputs, if it has two, one queue and one constant, and a row that can work in place.
+    pub(super) in_place: Option<Order>,
     /// The n of a family.
     pub(super) size: u16,
     /// What it waits for: one for each active input without a message, much more for constants.
@@ -50,6 +52,7 @@ impl Instance {
         sole: None,
         inputs: 0,
         active: 0,
+        in_place: None,
         size: 0,
         missing: PASSIVE,
         slack: 0,
@@ -74,8 +77,8 @@ impl Instance {
 
     /// Notes that the first message, or the constant, has arrived at an input.
     #[inline]
-    pub(super) const fn note_arrival(&mut self, port: &Port) {
-        self.missing -= if port.is_active() { 1 } else { CONSTANT };
+    pub(super) const fn note_arrival(&mut self, is_active: bool) {
+        self.missing -= if is_active { 1 } else { CONSTANT };
     }
 
     /// Counts anew what it waits for.
@@ -84,7 +87,13 @@ impl Instance {
     pub(super) fn count(&mut self, inputs: &[Port]) {
         let active = inputs.iter().filter(|port| port.is_active());
         let wanting = inputs.iter().filter(|port| port.is_wanting());
-        self.active = inputs.iter().rposition(Port::is_active).map_or(0, |place| place as u16 + 1);
+        self.active = inputs.iter().rposition(Port::is_active).map_or(0, |place| place as u8 + 1);
+        self.in_place = match inputs {
+            _ if self.row.is_none_or(|row| row.in_place.is_none()) => None,
+            [first, second] if first.is_active() && !second.is_active() => Some(Order::MessageFirst),
+            [first, second] if second.is_active() && !first.is_active() => Some(Order::ConstantFirst),
+            _ => None,
+        };
         let queues = active.clone().count() as u16;
         let any = self.row.is_some_and(|row| row.rule == Rule::Any);
         self.missing = wanting.map(|port| if port.is_active() { 1 } else { CONSTANT }).sum();

@@ -15,6 +15,7 @@
 
 mod arcs;
 mod audit;
+mod in_place;
 mod instance;
 mod instruments;
 mod observe;

@@ -1,6 +1,6 @@
 //! Storage for short runs of equal things, one run an instance, close together in memory.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, ops::Range};
 
 /// Runs of items in one vector; a run that was given back serves the next one of its length.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ impl Run {
 
     /// The places of the items.
     #[inline]
-    pub(super) fn range(self) -> std::ops::Range<usize> {
+    pub(super) fn range(self) -> Range<usize> {
         let start = self.start as usize;
         start..start + usize::from(self.length)
     }
@@ -61,6 +61,12 @@ impl<T> Pool<T> {
     #[inline]
     pub(super) fn get(&self, run: Run) -> &[T] {
         &self.items[run.range()]
+    }
+
+    /// The items of all runs, at their places.
+    #[inline]
+    pub(super) fn items(&mut self) -> &mut [T] {
+        &mut self.items
     }
 
     /// The items of a run.

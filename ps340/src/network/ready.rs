@@ -44,6 +44,19 @@ impl Ready {
         self.length += 1;
     }
 
+    /// The first.
+    #[inline(always)]
+    pub(super) fn first(&self) -> Option<ObjectId> {
+        if self.length == 0 { None } else { self.places.get(self.first).copied() }
+    }
+
+    /// Drops the first, which must be there.
+    #[inline(always)]
+    pub(super) fn drop_first(&mut self) {
+        self.first = (self.first + 1) & (self.places.len() - 1);
+        self.length -= 1;
+    }
+
     /// Takes the first.
     #[inline(always)]
     pub(super) fn pop_front(&mut self) -> Option<ObjectId> {

@@ -112,6 +112,12 @@ impl Network {
         let mut outbox = self.outbox.take().unwrap_or_default();
         let (mut work, mut stopped) = (0, None);
         while work < budget {
+            if !O::LOOKS {
+                work += self.run_in_place(budget - work, effects);
+                if work == budget {
+                    break;
+                }
+            }
             let Some(object) = self.next_ready() else { break };
             if observer.stops_before(object) {
                 self.instances[object.index()].queued = true;
@@ -333,7 +339,7 @@ impl Network {
         match arrival {
             Arrival::Kept => {}
             Arrival::Awaited => {
-                instance.note_arrival(port);
+                instance.note_arrival(port.is_active());
                 if !instance.queued && instance.is_ready() {
                     instance.queued = true;
                     self.ready.push_back(to.object);
@@ -366,7 +372,7 @@ impl Network {
 
     /// Counts a lost message; reports the first, tenth, hundredth and so on, so that reports are no flood.
     #[cold]
-    fn lose(&mut self, object: ObjectId, input: u16, effects: &mut Vec<Effect>) -> Outcome {
+    pub(super) fn lose(&mut self, object: ObjectId, input: u16, effects: &mut Vec<Effect>) -> Outcome {
         self.counters.lost += 1;
         let lost = self.lost.entry((object, input)).or_default();
         *lost += 1;

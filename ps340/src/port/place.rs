@@ -5,6 +5,7 @@
 //! the number. So each kind moves for itself, and what is of no use any more stays where it is, unless it holds more
 //! memory than a 4x4 matrix.
 
+use glam::DMat4;
 use protocol::Value;
 
 /// What lies where a message was taken out.
@@ -17,6 +18,7 @@ pub(super) fn shift(from: &mut Value, to: &mut Value) {
         (Value::Real(new), Value::Real(old)) => *old = *new,
         // The memory of the old matrix goes the other way, to be used again.
         (Value::Matrix4(new), Value::Matrix4(old)) => std::mem::swap(new, old),
+        (Value::Matrix4(new), to) => shift_matrix(new, to),
         (from, to) => shift_any(from, to),
     }
 }
@@ -28,6 +30,12 @@ pub(super) fn put_real(number: f64, to: &mut Value) {
         Value::Real(old) => *old = number,
         to => *to = Value::Real(number),
     }
+}
+
+/// Moves a matrix to a place where none lay before. New memory stays behind, for the next one.
+#[cold]
+fn shift_matrix(from: &mut Box<DMat4>, to: &mut Value) {
+    *to = Value::Matrix4(std::mem::take(from));
 }
 
 /// Moves a message of any kind.

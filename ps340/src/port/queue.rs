@@ -166,7 +166,7 @@ impl Port {
 
     /// The first message of a queue, to be worked on and moved out.
     #[inline]
-    pub(super) fn first_mut(&mut self) -> Option<&mut Value> {
+    pub fn first_mut(&mut self) -> Option<&mut Value> {
         if self.state & (ACTIVE | FILLED) == ACTIVE | FILLED { Some(&mut self.value) } else { None }
     }
 
