@@ -17,7 +17,7 @@ mod text;
 mod transformation;
 mod viewing;
 
-pub use name_of::name_of;
+pub use name_of::{name_of, name_of_object, name_of_operate};
 pub use row::{CommandRow, Confidence, InputRow, OptionRow};
 
 use super::{spelling::nearest, words::Word};
