@@ -182,11 +182,7 @@ pub(super) fn node(content: Content, scope: Scope<'_>, memory: &mut MassMemory) 
 }
 
 /// The operation of an operate command.
-pub(super) fn operation(
-    operate: &Operate,
-    scope: Scope<'_>,
-    memory: &mut MassMemory,
-) -> Result<Operation, Message> {
+pub(super) fn operation(operate: &Operate, scope: Scope<'_>, memory: &mut MassMemory) -> Result<Operation, Message> {
     let font = match operate {
         Operate::CharacterFont(font) => Some(scope.object(font, memory)?),
         _ => None,

@@ -31,7 +31,10 @@ pub(super) fn include(name: &Name, into: &Name, memory: &mut MassMemory) -> Resu
     if memory.include(name, into)? {
         Ok(())
     } else {
-        Err(Message::Structure(format!("{into} is {} and cannot include {name}: only INSTANCE OF and structures can", kind(into, memory))))
+        Err(Message::Structure(format!(
+            "{into} is {} and cannot include {name}: only INSTANCE OF and structures can",
+            kind(into, memory)
+        )))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Commands about functions, arcs and messages.
 
-use super::Message;
+use super::{Message, message::inputs_of};
 use crate::{
     memory::{MassMemory, Refusal},
     network::Destination,
@@ -64,11 +64,7 @@ fn no_port(
     }
     let node = node(to).filter(|node| node.takes(destination.input).is_none())?;
     let (input, name) = (destination.input, &destination.name);
-    let hint = match node {
-        Node::Group(_) => format!("connect to a node named inside it, such as {name}.NODE"),
-        node => format!("it has {}", node.inputs()),
-    };
-    Some(format!("No such input {input} of {name}, a {}; {hint}", node.word()))
+    Some(format!("No such input {input} of {name}; {}", inputs_of(node, name.as_str())))
 }
 
 /// Makes the arcs that it can, and says which it cannot.

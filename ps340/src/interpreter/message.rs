@@ -4,8 +4,8 @@ use crate::{
     disk::DiskFault,
     functions::{self, Family},
     memory::{MassMemory, Refusal},
-    port::{Cause, Fault, KindSet, ObjectId},
-    structure::NodeFault,
+    port::{Cause, Fault, ObjectId},
+    structure::{Node, NodeFault},
     traversal::Trouble,
 };
 use protocol::{Name, command::CommandError, record::BinaryError};
@@ -48,8 +48,8 @@ pub enum Message {
         name: String,
         /// What is wrong.
         fault: NodeFault,
-        /// The kinds that it takes there, if it has such an input.
-        takes: Option<KindSet>,
+        /// What it takes, in words that follow the fault; may be empty.
+        hint: String,
     },
     /// E 6: numbers of a definition that go together to nothing, or are out of range.
     Range {
@@ -98,11 +98,13 @@ impl Message {
 
     /// A message that a node did not take.
     pub fn of_node(node: ObjectId, fault: NodeFault, memory: &MassMemory) -> Message {
-        let takes = match fault {
-            NodeFault::Kind { input, .. } => memory.structures.node(node).and_then(|node| node.takes(input)),
+        let name = memory.title(node);
+        let hint = memory.structures.node(node).and_then(|node| match fault {
+            NodeFault::Kind { input, .. } => node.takes(input).map(|takes| format!("it takes {takes}")),
+            NodeFault::NoSuchInput { .. } => Some(inputs_of(node, &name)),
             _ => None,
-        };
-        Message::Node { name: memory.title(node), fault, takes }
+        });
+        Message::Node { name, fault, hint: hint.map_or(String::new(), |hint| format!("; {hint}")) }
     }
 
     /// The name that was used and has no definition, of a function with `F:` before it.
@@ -157,10 +159,7 @@ impl std::fmt::Display for Message {
             Message::Redefined(name) => write!(f, "{name} redefined"),
             Message::Structure(text) | Message::NoPort(text) => f.write_str(text),
             Message::Function { .. } => Ok(()),
-            Message::Node { name, fault, takes } => {
-                f.write_str(&fault.text(name))?;
-                takes.map_or(Ok(()), |takes| write!(f, "; it takes {takes}"))
-            }
+            Message::Node { name, fault, hint } => write!(f, "{}{hint}", fault.text(name)),
             Message::Refused(refusal) => write!(f, "{refusal}"),
             Message::Update(trouble) => write!(f, "Picture incomplete: {trouble}"),
             Message::Line(text) => f.write_str(text),
@@ -168,6 +167,14 @@ impl std::fmt::Display for Message {
             Message::Raster(fault) => write!(f, "{fault}"),
             Message::Disk(fault) => write!(f, "{fault}"),
         }
+    }
+}
+
+/// Which inputs a node has, for somebody who asked for another.
+pub(super) fn inputs_of(node: &Node, name: &str) -> String {
+    match node {
+        Node::Group(_) => format!("a structure has no inputs, nodes that are named inside it do, such as {name}.NODE"),
+        node => format!("a {} has {}", node.word(), node.inputs()),
     }
 }
 

@@ -86,7 +86,8 @@ impl Interpreter {
     fn still_open(&self, name: &Name) -> Option<Message> {
         let draft = self.structure.as_ref()?;
         let full = draft.member(name)?;
-        let text = format!("{name} is inside {}, which is still open: say this after END_STRUCTURE, of {full}", draft.title());
+        let text =
+            format!("{name} is inside {}, which is still open: say this after END_STRUCTURE, of {full}", draft.title());
         Some(Message::Structure(text))
     }
 

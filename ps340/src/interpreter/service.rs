@@ -53,7 +53,8 @@ impl Interpreter {
         let levels = self.structure.as_ref().map(Draft::open).unwrap_or_default();
         let structure = levels.last().map(|path| format!("{} {path}", levels.len()));
         let font = self.font.as_ref().map(|_| "BEGIN_FONT".to_owned());
-        let begun = (self.begun > 0).then(|| if self.begun == 1 { "BEGIN".into() } else { format!("BEGIN {}", self.begun) });
+        let begun =
+            (self.begun > 0).then(|| if self.begun == 1 { "BEGIN".into() } else { format!("BEGIN {}", self.begun) });
         let open: Vec<String> = [begun, structure, font].into_iter().flatten().collect();
         (!open.is_empty()).then(|| open.join(", "))
     }

@@ -312,7 +312,8 @@ impl<'p> Flow<'p> {
     fn lasts(&self, input: &Arriving, lasting: &BTreeSet<&'p Name>) -> bool {
         input.arcs.iter().any(|arc| {
             let source = self.program.target(&self.program.arcs[*arc].source);
-            lasting.contains(source) || (!self.instances.contains_key(source) && ports::system(source, self.machine).is_some())
+            lasting.contains(source)
+                || (!self.instances.contains_key(source) && ports::system(source, self.machine).is_some())
         })
     }
 
