@@ -77,17 +77,27 @@ impl Listing {
         result
     }
 
-    /// Lists what is left of an unfinished packet.
+    /// Lists what is left of an unfinished packet, and says which command or message has no end.
     ///
     /// # Errors
     /// Those of `out`.
     pub fn finish(&mut self, out: &mut impl Write) -> fmt::Result {
-        let Some(frame) = self.frames.finish() else {
-            return Ok(());
-        };
         let mut rows = Rows { offset: self.offset, out, result: Ok(()) };
-        rows.frame(frame, &mut self.commands, &mut self.binary);
-        self.offset += frame.stream_length() as u64;
+        if let Some(frame) = self.frames.finish() {
+            rows.frame(frame, &mut self.commands, &mut self.binary);
+            self.offset += frame.stream_length() as u64;
+        }
+        if self.commands.is_unfinished() {
+            let begin = readable(self.commands.unfinished());
+            let missing = match self.commands.open() {
+                Some((problem, _)) => problem.to_string(),
+                None => "its ; is missing".into(),
+            };
+            rows.note(format_args!("unfinished: {begin}: {missing}"));
+        }
+        if !self.message.is_empty() {
+            rows.note(format_args!("unfinished message: {}", readable(&self.message)));
+        }
         rows.result
     }
 }
@@ -102,10 +112,7 @@ struct Rows<'o, W> {
 impl<W: Write> Rows<'_, W> {
     fn frame(&mut self, frame: Frame<'_>, commands: &mut CommandReader, binary: &mut BinaryDecoder) {
         match frame {
-            Frame::Text(text) => {
-                self.text(0, text);
-                self.commands(text, commands);
-            }
+            Frame::Text(text) => self.commands(&Body::plain(text), commands),
             Frame::Noise { bytes, reason } => self.field(0, bytes, format_args!("dropped: {reason}")),
             Frame::Empty(bytes) => {
                 self.field(0, bytes, format_args!("SYN SYN, empty escape packet: the end of the one before"))
@@ -144,10 +151,7 @@ impl<W: Write> Rows<'_, W> {
                     Err(error) => self.note(format_args!("error: {error}")),
                 }
             }
-            Route::Text => {
-                self.text(body.at(0), whole);
-                self.commands(body.payload, commands);
-            }
+            Route::Text => self.commands(body, commands),
             Route::Message => {
                 self.text(body.at(0), whole);
                 if let Some(form) = MessageForm::requested(body.payload) {
@@ -227,20 +231,31 @@ impl<W: Write> Rows<'_, W> {
             message.extend_from_slice(&line[..line.len().min(room)]);
             if line.ends_with(b"\n") {
                 let whole = std::mem::take(message);
-                let shown: String = whole.trim_ascii_end().escape_ascii().map(char::from).collect();
-                self.note(format_args!("message: {}", shorten(&shown)));
+                self.note(format_args!("message: {}", readable(&whole)));
             }
         }
     }
 
-    /// Lists the commands that end in a text.
-    fn commands(&mut self, text: &[u8], commands: &mut CommandReader) {
-        commands.push(text);
-        for item in commands {
+    /// Lists a text, with each command behind its bytes.
+    fn commands(&mut self, body: &Body<'_>, commands: &mut CommandReader) {
+        let before = commands.pushed();
+        commands.push(body.payload);
+        let mut listed = 0;
+        while let Some(item) = commands.next() {
+            // The statement with its `;`, of which all but the last part may have been listed before.
+            let end = CommandReader::position(commands) + commands.statement().len() as u64 + 1;
+            let end = usize::try_from(end.saturating_sub(before)).unwrap_or(usize::MAX).min(body.payload.len());
+            if end > listed {
+                self.text(body.at(listed), body.raw(listed..end));
+                listed = end;
+            }
             match item {
                 Ok(spanned) => self.note(format_args!("command: {}", shorten(&spanned.command.to_string()))),
                 Err(error) => self.note(format_args!("error: {error}")),
             }
+        }
+        if listed < body.payload.len() {
+            self.text(body.at(listed), body.raw(listed..body.payload.len()));
         }
     }
 
@@ -318,6 +333,11 @@ impl<'a> Body<'a> {
         Body { payload, packet, seen }
     }
 
+    /// Bytes outside packets.
+    fn plain(text: &'a [u8]) -> Body<'a> {
+        Body { payload: text, packet: text, seen: Seen::From(0) }
+    }
+
     /// Bytes that do not stand in the stream.
     fn unseen(payload: &'a [u8]) -> Body<'a> {
         Body { payload, packet: &[], seen: Seen::Nowhere }
@@ -349,6 +369,15 @@ impl Witness for Fields {
         self.end = self.end.max(place.end);
         self.rows.push((place, shorten(&format!("{label}: {meaning}"))));
     }
+}
+
+/// Bytes as text without blanks around it, up to a length.
+fn readable(bytes: &[u8]) -> String {
+    let character = |byte: &u8| match byte {
+        b' '..=b'~' => char::from(*byte).to_string(),
+        byte => byte.escape_ascii().to_string(),
+    };
+    shorten(&bytes.trim_ascii().iter().take(SHOWN + 1).map(character).collect::<String>())
 }
 
 /// The first line of a text, up to a length.
@@ -394,11 +423,33 @@ mod tests {
         let listing = list(b"DISPLAY A;\r\nDISPLAY 1;");
         assert_eq!(
             listing,
-            "00000000  44 49 53 50 4c 41 59 20 41 3b 0d 0a 44 49 53 50  \"DISPLAY A;\\r\\nDISP\"\n\
-             00000010  4c 41 59 20 31 3b                                \"LAY 1;\"\n\
+            "00000000  44 49 53 50 4c 41 59 20 41 3b                    \"DISPLAY A;\"\n\
              \x20                                                          command: DISPLAY A;\n\
-             \x20                                                          error: 1:9: expected a name, found `1`\n"
+             0000000a  0d 0a 44 49 53 50 4c 41 59 20 31 3b              \"\\r\\nDISPLAY 1;\"\n\
+             \x20                                                          error: 2:9: expected a name, found `1`\n"
         );
+    }
+
+    /// The rows without bytes.
+    fn notes(listing: &str) -> Vec<&str> {
+        listing.lines().filter(|row| row.starts_with(' ')).map(str::trim).collect()
+    }
+
+    #[test]
+    fn each_command_stands_behind_its_bytes_however_the_stream_is_cut() {
+        let stream = b"A := BEGIN_S R := ROT X 3; END_S;\nREMOVE A; DISP";
+        for cut in 0..stream.len() {
+            let (mut listing, mut text) = (Listing::default(), String::new());
+            listing.push(&stream[..cut], &mut text).unwrap();
+            listing.push(&stream[cut..], &mut text).unwrap();
+            listing.finish(&mut text).unwrap();
+            assert_eq!(bytes_of(&text), stream);
+            let rotate = text.find("command: R := ROTATE").unwrap();
+            let read = bytes_of(&text[..text[..rotate].rfind('\n').unwrap()]).len();
+            assert_eq!(read, 26, "{text}");
+            assert_eq!(notes(&text)[4], "unfinished: DISP: its ; is missing");
+        }
+        assert_eq!(notes(&list(b"SEND 'x TO <1>A;")), ["unfinished: SEND 'x TO <1>A;: the text has no closing quote"]);
     }
 
     #[test]
@@ -410,8 +461,10 @@ mod tests {
         }
         listing.finish(&mut text).unwrap();
         assert_eq!(bytes_of(&text), b"0.1\r\nE 1 *** no\n");
-        let notes: Vec<&str> = text.lines().filter(|row| row.starts_with(' ')).map(str::trim).collect();
-        assert_eq!(notes, ["message: 0.1", "message: E 1 *** no"]);
+        assert_eq!(notes(&text), ["message: 0.1", "message: E 1 *** no"]);
+        listing.push(b"half a line", &mut text).unwrap();
+        listing.finish(&mut text).unwrap();
+        assert_eq!(notes(&text).last(), Some(&"unfinished message: half a line"));
     }
 
     #[test]

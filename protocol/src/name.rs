@@ -25,7 +25,7 @@ pub enum NameError {
     #[error("a name begins with a letter")]
     FirstCharacter,
     /// A character that is not a letter, a digit, `_`, `$` or `.`.
-    #[error("{:?} cannot stand in a name", char::from(*.0))]
+    #[error("{:?} cannot stand in a name, which has letters, digits, _, $ and .", char::from(*.0))]
     BadCharacter(u8),
 }
 

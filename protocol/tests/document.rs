@@ -4,7 +4,7 @@
 
 use protocol::{
     command::{Command, binary::Opcode, parse},
-    listing::Listing,
+    listing::{Listing, Sender},
     raster::{LookupEntry, RasterCommand, RasterOpcode, Run},
     wire::{
         DataForm, MessageForm, MessageWriter, PacketForm, Route, Sending, write_commands, write_commands_as,
@@ -134,7 +134,9 @@ fn stream(name: &str) -> Option<Vec<u8>> {
 fn dump(name: &str) -> String {
     let stream = stream(name).unwrap_or_else(|| panic!("no dump is called {name}"));
     let mut text = String::new();
-    let mut listing = Listing::default();
+    // A request for packets is what a host sends.
+    let sender = if name.starts_with("messages as") { Sender::Machine } else { Sender::Host };
+    let mut listing = Listing::of(sender);
     listing.push(&stream, &mut text).expect("a string takes all text");
     listing.finish(&mut text).expect("a string takes all text");
     text

@@ -98,6 +98,16 @@ impl Objects {
         }
     }
 
+    /// Whether an object has a name.
+    pub fn has_name(&self, id: ObjectId) -> bool {
+        matches!(self.identities.get(id.index()), Some(Identity::Named(_)))
+    }
+
+    /// The names in a range, by name.
+    pub fn names<'o>(&'o self, range: (Bound<&'o str>, Bound<&'o str>)) -> impl Iterator<Item = &'o str> {
+        self.ids.range::<str, _>(range).map(|(name, _)| name.as_str())
+    }
+
     /// All objects so far belong to the system: INITIALIZE and wildcards spare them.
     pub fn seal_system(&mut self) {
         self.system = self.identities.len();

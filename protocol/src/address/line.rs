@@ -1,6 +1,6 @@
 //! Addresses of all lines of the workstation, with their conditions: `pty:,speed=9600,flow=xonxoff`.
 
-use super::Address;
+use super::{Address, AddressError};
 use std::{fmt, path::PathBuf, str::FromStr};
 
 /// Slowest line, in bits a second.
@@ -97,6 +97,16 @@ pub enum LineAddressError {
          parallel:HOST:PORT"
     )]
     NoLine(String),
+    /// A part that is missing or cannot be.
+    #[error("'{part}' in '{address}': give {expected}")]
+    Part {
+        /// The address as it was given.
+        address: String,
+        /// What is wrong in it.
+        part: String,
+        /// What should stand there.
+        expected: &'static str,
+    },
     /// An option with a value that it cannot have.
     #[error("'{option}' of a line: give {expected}")]
     Value {
@@ -138,16 +148,27 @@ impl FromStr for LineAddress {
             options.push((option, key, value, *expected));
         }
         let (kind, rest) = address.split_once(':').ok_or_else(none)?;
+        let part = |(part, expected): (&str, _)| LineAddressError::Part {
+            address: text.to_string(),
+            part: part.to_string(),
+            expected,
+        };
+        let socket = |error| match error {
+            AddressError::Part { part: wrong, expected, .. } => part((&wrong, expected)),
+            AddressError::NoAddress(_) => none(),
+        };
         let mut place = match (kind, rest) {
-            ("tcp" | "unix", _) => Place::Socket(address.parse().map_err(|_| none())?),
-            ("parallel", at) => match format!("tcp:{at}").parse() {
-                Ok(Address::Tcp(at)) => Place::Parallel(at),
-                _ => return Err(none()),
+            ("tcp" | "unix", _) => Place::Socket(address.parse().map_err(socket)?),
+            ("parallel", at) => match format!("tcp:{at}").parse().map_err(socket)? {
+                Address::Tcp(at) => Place::Parallel(at),
+                Address::Unix(_) => return Err(none()),
             },
             ("pty", path) => Place::Pty((!path.is_empty()).then(|| path.into())),
-            ("serial", device) => Place::Serial(serial(device).ok_or_else(none)?),
+            ("serial", device) => Place::Serial(serial(device).map_err(part)?),
             ("stdio", "") => Place::Stdio,
-            ("file", path) if !path.is_empty() => Place::File { path: path.into(), timed: false },
+            ("stdio", rest) => return Err(part((rest, "nothing behind 'stdio:'"))),
+            ("file", "") => return Err(part((text, "the path of a file"))),
+            ("file", path) => Place::File { path: path.into(), timed: false },
             _ => return Err(none()),
         };
         let mut conditions = Conditions::default();
@@ -173,22 +194,30 @@ impl FromStr for LineAddress {
     }
 }
 
-/// `DEVICE[,BAUD[,8N1]]`.
-fn serial(text: &str) -> Option<Serial> {
-    let mut parts = text.split(',');
-    let device = parts.next().filter(|device| !device.is_empty())?;
+/// `DEVICE[,BAUD[,8N1]]`. An error is the part that is wrong, and what it should be.
+fn serial(text: &str) -> Result<Serial, (&str, &'static str)> {
+    const FRAME: &str =
+        "8N1 or the like: 7 or 8 data bits, parity N (none), E (even) or O (odd), 1 or 2 stop bits; it stands last";
+    let mut parts = text.splitn(3, ',');
+    let device = parts.next().unwrap_or_default();
+    if device.is_empty() {
+        return Err((text, "a device before the speed, such as serial:/dev/ttyS0"));
+    }
     let baud = match parts.next() {
-        Some(baud) => baud.parse().ok().filter(|baud| (MIN_SPEED..=MAX_SPEED).contains(baud))?,
+        Some(baud) => {
+            let read = baud.parse().ok().filter(|baud| (MIN_SPEED..=MAX_SPEED).contains(baud));
+            read.ok_or((baud, "the speed in bits a second, 50 to 1000000000, such as 9600"))?
+        }
         None => DEFAULT_BAUD,
     };
-    let frame: Vec<char> = parts.next().unwrap_or("8N1").chars().collect();
-    let &[data_bits @ ('7' | '8'), parity, stop_bits @ ('1' | '2')] = frame.as_slice() else { return None };
-    let parity = Parity::LETTERS.iter().find(|row| row.1 == parity.to_ascii_uppercase())?.0;
-    if parts.next().is_some() {
-        return None;
-    }
+    let frame = parts.next().unwrap_or("8N1");
+    let characters: Vec<char> = frame.chars().collect();
+    let &[data_bits @ ('7' | '8'), parity, stop_bits @ ('1' | '2')] = characters.as_slice() else {
+        return Err((frame, FRAME));
+    };
+    let parity = Parity::LETTERS.iter().find(|row| row.1 == parity.to_ascii_uppercase()).ok_or((frame, FRAME))?.0;
     let digit = |c: char| c as u8 - b'0';
-    Some(Serial { device: device.into(), baud, data_bits: digit(data_bits), parity, stop_bits: digit(stop_bits) })
+    Ok(Serial { device: device.into(), baud, data_bits: digit(data_bits), parity, stop_bits: digit(stop_bits) })
 }
 
 impl fmt::Display for LineAddress {
@@ -252,9 +281,24 @@ mod tests {
 
     #[test]
     fn what_is_no_line_is_told() {
-        for text in ["", "x", "serial:", "serial:a,b", "serial:a,9600,9N1", "serial:a,9600,8N1,x", "stdio:x", "file:"] {
+        for text in ["", "x", "udp:a:1"] {
             let error = text.parse::<LineAddress>();
             assert_eq!(error, Err(LineAddressError::NoLine(text.into())), "{text}");
+        }
+        for (text, wrong, allowed) in [
+            ("serial:", "", "a device"),
+            ("serial:a,b", "b", "50 to 1000000000"),
+            ("serial:a,9600,9N1", "9N1", "7 or 8 data bits"),
+            ("serial:a,9600,8N1,x", "8N1,x", "it stands last"),
+            ("serial:a,9600,8X1,speed=300", "8X1", "parity N"),
+            ("stdio:x", "x", "nothing"),
+            ("file:", "file:", "path"),
+            ("tcp:a:70000", "70000", "a port from 0 to 65535"),
+            ("parallel:a", "a", "HOST:PORT"),
+        ] {
+            let error = text.parse::<LineAddress>().unwrap_err();
+            assert!(matches!(&error, LineAddressError::Part { part, .. } if part == wrong), "{text}: {error}");
+            assert!(error.to_string().contains(allowed), "{error}");
         }
         for option in ["speed=0", "speed=fast", "flow=rts", "bits=9"] {
             let error = format!("pty:,{option}").parse::<LineAddress>();

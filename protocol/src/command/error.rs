@@ -29,9 +29,17 @@ pub enum Problem {
     /// A number such as `1.2.3` or a sign without digits.
     #[error("this is not a number")]
     BadNumber,
-    /// A number that is too large or too small for its place.
+    /// A number that is too large to be kept.
     #[error("the number is out of range")]
     OutOfRange,
+    /// A whole number that cannot stand here.
+    #[error("the number must be {least} to {most}")]
+    Outside {
+        /// The least that can.
+        least: i64,
+        /// The largest.
+        most: i64,
+    },
     /// A text without its second quote.
     #[error("the text has no closing quote")]
     OpenString,
@@ -87,12 +95,12 @@ pub(super) struct Fault {
 /// An error in a command text.
 ///
 /// It displays as `line:column: problem, expected ..., found ...`; line and column count from 1 at the first character
-/// of the statement.
+/// of the text that was parsed: a command, or the whole stream of a [`CommandReader`](super::CommandReader).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CommandError {
     /// The offending bytes, as offsets into the statement.
     pub span: Range<usize>,
-    /// Line within the statement, from 1.
+    /// Line, from 1.
     pub line: usize,
     /// Column in bytes, from 1.
     pub column: usize,
@@ -122,6 +130,16 @@ impl CommandError {
         }
     }
 
+    /// The same error in a text that has `lines` lines before the statement, and `columns` bytes in the line in which
+    /// it begins.
+    pub(super) fn behind(mut self, lines: usize, columns: usize) -> CommandError {
+        if self.line == 1 {
+            self.column += columns;
+        }
+        self.line += lines;
+        self
+    }
+
     /// The message without the place.
     pub fn message(&self) -> String {
         let mut message = String::new();
@@ -139,7 +157,7 @@ impl CommandError {
             [first @ .., last] => message += &format!("expected {} or {last}, ", first.join(", ")),
         }
         if self.found.is_empty() {
-            message += "found the end";
+            message += "found the end of the command";
         } else {
             message += &format!("found `{}`", self.found);
         }
@@ -194,6 +212,15 @@ mod tests {
     fn a_fault_behind_the_text_is_at_its_end() {
         let error = CommandError::new(b"AB", Fault { span: 90..91, problem: Problem::BadNumber, expected: &[] });
         assert_eq!(error.span, 2..2);
-        assert_eq!(error.to_string(), "1:3: this is not a number, found the end");
+        assert_eq!(error.to_string(), "1:3: this is not a number, found the end of the command");
+    }
+
+    #[test]
+    fn an_error_moves_with_what_stands_before_its_statement() {
+        let error = |at: usize| {
+            CommandError::new(b"A\nB", Fault { span: at..at + 1, problem: Problem::Unexpected, expected: &[] })
+        };
+        assert_eq!(error(0).behind(4, 7).to_string(), "5:8: found `A`");
+        assert_eq!(error(2).behind(4, 7).to_string(), "6:1: found `B`");
     }
 }

@@ -40,8 +40,8 @@ enum Place {
 ///
 /// [`push`](Self::push) takes the bytes as they come, and the iterator gives the commands of all statements that are
 /// complete; it gives none when the next `;` is still to come, and goes on after more was pushed. After an error it
-/// resumes behind the next `;`. `!RESET`, at the beginning of a line also inside a text or a comment, drops what is
-/// unfinished before it.
+/// resumes behind the next `;`; lines and columns of errors count from the beginning of the stream. `!RESET`, at the
+/// beginning of a line also inside a text or a comment, drops what is unfinished before it.
 ///
 /// ```
 /// use protocol::command::CommandReader;
@@ -69,6 +69,12 @@ pub struct CommandReader {
     before: u8,
     /// Bytes of the stream before the buffer.
     passed: u64,
+    /// Where in the stream the text or the comment begins that `place` is in.
+    opened: u64,
+    /// How far lines were counted, as an offset into the buffer: line ends before, and bytes behind the last of them.
+    counted: usize,
+    lines: usize,
+    columns: usize,
 }
 
 impl Default for CommandReader {
@@ -83,6 +89,10 @@ impl Default for CommandReader {
             last: 0..0,
             before: b'\n',
             passed: 0,
+            opened: 0,
+            counted: 0,
+            lines: 0,
+            columns: 0,
         }
     }
 }
@@ -92,7 +102,9 @@ impl CommandReader {
     pub fn push(&mut self, bytes: &[u8]) {
         if self.start == self.buffer.len() || self.start > self.buffer.len() / 2 {
             self.before = self.byte_before(self.start);
+            self.count_lines_to(self.start);
             self.buffer.drain(..self.start);
+            self.counted = 0;
             self.passed += self.start as u64;
             self.scanned -= self.start;
             self.complete = self.complete.map(|end| end - self.start);
@@ -116,6 +128,16 @@ impl CommandReader {
         &self.buffer[self.start..]
     }
 
+    /// The text or the comment that was begun and has not ended, and where in the stream it begins; none if there is
+    /// none.
+    pub fn open(&self) -> Option<(Problem, u64)> {
+        match self.place {
+            Place::Text => Some((Problem::OpenString, self.opened)),
+            Place::Comment | Place::FirstComment => Some((Problem::OpenComment, self.opened)),
+            Place::Code | Place::Dropped => None,
+        }
+    }
+
     /// Forgets an unfinished statement and all that was not taken out.
     pub fn reset(&mut self) {
         *self = CommandReader::default();
@@ -130,6 +152,11 @@ impl CommandReader {
     /// Where [`statement`](Self::statement) begins in the stream, in bytes; the end of the last one if it is empty.
     pub fn position(&self) -> u64 {
         self.passed + self.last.start as u64
+    }
+
+    /// Bytes of the stream so far.
+    pub fn pushed(&self) -> u64 {
+        self.passed + self.buffer.len() as u64
     }
 
     /// Where in the stream the statement begins that has no `;` yet, or the next one.
@@ -176,6 +203,9 @@ impl CommandReader {
                 }
                 continue;
             }
+            if self.place == Place::Code {
+                self.opened = self.passed + at as u64;
+            }
             self.place = match (self.place, self.buffer[at]) {
                 (Place::Code, b'\'') => Place::Text,
                 (Place::Code, b'{') if at == self.start => Place::FirstComment,
@@ -200,6 +230,23 @@ impl CommandReader {
         (text.len() == RESET.len()).then_some(true)
     }
 
+    /// Counts the lines up to an offset of the buffer, which does not lie before the one of the latest call.
+    fn count_lines_to(&mut self, at: usize) {
+        let passed = &self.buffer[self.counted..at];
+        self.lines += line_ends(passed);
+        self.columns = match passed.iter().rposition(|byte| *byte == b'\n') {
+            Some(end) => passed.len() - 1 - end,
+            None => self.columns + passed.len(),
+        };
+        self.counted = at;
+    }
+
+    /// A fault in a statement that begins at the current start, with its place in the stream.
+    fn error(&mut self, end: usize, fault: Fault) -> CommandError {
+        self.count_lines_to(self.start);
+        CommandError::new(&self.buffer[self.start..end], fault).behind(self.lines, self.columns)
+    }
+
     fn byte_before(&self, at: usize) -> u8 {
         at.checked_sub(1).map_or(self.before, |before| self.buffer[before])
     }
@@ -207,7 +254,7 @@ impl CommandReader {
     /// Gives up a statement whose end is too far away.
     fn drop_long_statement(&mut self) -> CommandError {
         let fault = Fault { span: MAX_STATEMENT..MAX_STATEMENT + 1, problem: Problem::LongStatement, expected: &[] };
-        let error = CommandError::new(&self.buffer[self.start..], fault);
+        let error = self.error(self.buffer.len(), fault);
         self.last = 0..0;
         self.start += MAX_STATEMENT;
         self.scanned = self.start;
@@ -240,7 +287,7 @@ impl Iterator for CommandReader {
                     self.parsed = found.next;
                     return Some(Ok(Spanned { command: found.command, span: found.span }));
                 }
-                Some(Err(fault)) => Some(Err(CommandError::new(text, fault))),
+                Some(Err(fault)) => Some(Err(self.error(end, fault))),
                 None => None,
             };
             self.start = end + 1;
@@ -250,6 +297,12 @@ impl Iterator for CommandReader {
             }
         }
     }
+}
+
+/// How many line ends there are; in blocks whose counts fit in a byte, for vector instructions.
+fn line_ends(bytes: &[u8]) -> usize {
+    let of_block = |block: &[u8]| block.iter().fold(0u8, |sum, b| sum + u8::from(*b == b'\n'));
+    bytes.chunks(usize::from(u8::MAX)).map(|block| usize::from(of_block(block))).sum()
 }
 
 /// The offset of the first of four bytes.
@@ -285,7 +338,7 @@ mod tests {
         assert_eq!(all.len(), 4);
         assert_eq!(all.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, false, true, true]);
         let error = all[1].as_ref().unwrap_err();
-        assert_eq!(error.to_string(), "1:9: expected a name, found `'x;y'`");
+        assert_eq!(error.to_string(), "1:26: expected a name, found `'x;y'`");
     }
 
     #[test]
@@ -357,8 +410,41 @@ mod tests {
         reader.push(b"{ a comment\n");
         assert!(reader.next().is_none() && reader.is_unfinished());
         reader.push(b"of two lines ; }\n {and} DISPLAY 7;");
-        assert_eq!(reader.next().unwrap().unwrap_err().to_string(), "1:9: expected a name, found `7`");
+        assert_eq!(reader.next().unwrap().unwrap_err().to_string(), "3:16: expected a name, found `7`");
         assert_eq!(reader.statement(), b"DISPLAY 7");
+    }
+
+    #[test]
+    fn errors_have_their_place_in_the_stream_however_it_is_cut() {
+        let text = b"DISPLAY A;\n DISPLAY 7; DISPLAY\n  8;\n\n { a\n } REMOVE B; !RESET; DISPLAY\n{ }9;";
+        let places = |pieces: &[&[u8]]| -> Vec<(usize, usize)> {
+            read(pieces).into_iter().filter_map(Result::err).map(|error| (error.line, error.column)).collect()
+        };
+        assert_eq!(places(&[text]), [(2, 10), (3, 3), (7, 4)]);
+        for cut in 0..text.len() {
+            assert_eq!(places(&[&text[..cut], &text[cut..]]), places(&[text]), "{cut}");
+        }
+        assert_eq!(line_ends(&[b'\n'; 1000]), 1000);
+    }
+
+    #[test]
+    fn what_is_open_is_told_with_the_place_where_it_was_opened() {
+        for (text, open) in [
+            ("DISPLAY A; SEND 'x", Some((Problem::OpenString, 16))),
+            ("SEND 'it's' TO <1>A;", Some((Problem::OpenString, 10))),
+            ("A := { not 'closed';\n", Some((Problem::OpenComment, 5))),
+            ("DISPLAY A; { first", Some((Problem::OpenComment, 11))),
+            ("SEND 'x' {closed}", None),
+        ] {
+            for cut in 0..text.len() {
+                let mut reader = CommandReader::default();
+                for piece in [&text.as_bytes()[..cut], &text.as_bytes()[cut..]] {
+                    reader.push(piece);
+                    assert!(reader.by_ref().all(|item| item.is_ok()));
+                }
+                assert_eq!(reader.open(), open, "{text}");
+            }
+        }
     }
 
     #[test]

@@ -38,7 +38,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
     } else {
         say(&findings.iter().map(|finding| format!("{finding}\n")).collect::<String>())?;
         if errors + warnings > 0 {
-            eprintln!("{errors} errors, {warnings} warnings");
+            let plural = |n: usize| if n == 1 { "" } else { "s" };
+            eprintln!("{errors} error{}, {warnings} warning{}", plural(errors), plural(warnings));
         }
     }
     let fails = errors > 0 || (arguments.strict && warnings > 0);

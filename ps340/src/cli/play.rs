@@ -29,10 +29,11 @@ Lines that begin with '@' are directives, all others go to the machine:
   @ expect 'TEXT'            the next message to the host is TEXT
   @ expect /PATTERN*/        ... is as the pattern says, in which * is any text
   @ expect NUMBER [TOL]      ... is a number, TOL away at most
+  @ expect typed 'TEXT\\r'    the keyboard, in the terminal's mode, sends TEXT to the host
   @ expect error E 5 ...     the next error of the machine begins so (W and I: warnings, informations)
   @ expect none [FRAMES]     no message comes
   @ # ...                    a comment
-'within FRAMES' behind the first three changes how long they wait. Messages to the host go to standard output.
+'within FRAMES' behind the first four changes how long they wait. Messages to the host go to standard output.
 Exit codes: 0 all came as expected, 1 a step failed or an error came that no step expected, 2 usage, 130 interrupted.")]
 pub struct Arguments {
     /// Command files, played one after the other on one machine; '-' is the standard input.

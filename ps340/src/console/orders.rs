@@ -1,6 +1,6 @@
 //! Orders from the window to the machine.
 
-use crate::line::OperatorLine;
+use crate::line::{OperatorLine, Reply};
 use std::sync::mpsc;
 use tokio::sync::oneshot;
 
@@ -10,7 +10,7 @@ const MAX_WAITING: usize = 1024;
 /// Gives orders to the machine, and takes its replies.
 pub struct Orders {
     sender: mpsc::Sender<OperatorLine>,
-    waiting: Vec<(String, oneshot::Receiver<String>)>,
+    waiting: Vec<(String, oneshot::Receiver<Reply>)>,
     /// The latest reply that says that something went wrong, with its order.
     pub failure: Option<String>,
 }
@@ -36,7 +36,7 @@ impl Orders {
         let failure = &mut self.failure;
         self.waiting.retain_mut(|(order, answer)| match answer.try_recv() {
             Ok(reply) => {
-                if let Some(reason) = reply.strip_prefix("error") {
+                if let Some(reason) = reply.text.strip_prefix("error") {
                     *failure = Some(format!("{order}:{reason}"));
                 }
                 false

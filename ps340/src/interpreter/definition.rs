@@ -10,7 +10,10 @@ use crate::{
 use glam::DVec2;
 use protocol::{
     Name,
-    command::{FontCharacter, Fourth, Object, Operate, Polygon, PolygonVertex, VectorClass, VectorList},
+    command::{
+        FontCharacter, Fourth, Object, Operate, Polygon, PolygonVertex, VectorClass, VectorList,
+        reference::name_of_operate,
+    },
 };
 use std::collections::{BTreeMap, HashSet};
 
@@ -24,6 +27,8 @@ pub(super) enum Content {
     Object(Object),
     /// What stood between BEGIN_FONT and END_FONT.
     Font(BTreeMap<u8, FontCharacter>),
+    /// A node that needed nothing but its command: a curve.
+    Made(Box<Node>),
 }
 
 /// Where references are looked up.
@@ -37,7 +42,7 @@ pub(super) enum Scope<'a> {
 
 impl Scope<'_> {
     /// The full name that a reference means: what is named in the structure first, then in those around it.
-    fn full(self, reference: &Name) -> Name {
+    pub(super) fn full(self, reference: &Name) -> Name {
         let Scope::Inside { path, names } = self else { return reference.clone() };
         let mut scope = Some(path.as_str());
         while let Some(outer) = scope {
@@ -57,19 +62,47 @@ impl Scope<'_> {
 }
 
 impl Content {
+    /// What one command says, with its numbers looked at: in a structure too, a fault is found where it stands.
+    ///
+    /// - `of`: what to call it in messages.
+    ///
+    /// # Errors
+    /// Numbers that are out of range, or go together to nothing.
+    pub(super) fn checked(object: Object, of: impl Fn() -> String) -> Result<Content, Message> {
+        let range = |text: String| Message::Range { of: of(), text };
+        Ok(match object {
+            Object::Bspline(spline) => {
+                let expanded = curve::bspline(&spline).map_err(|e| range(e.to_string()))?;
+                Content::Made(Box::new(curve(expanded, spline.dimension)))
+            }
+            Object::Polynomial(polynomial) => {
+                let expanded = curve::polynomial(&polynomial).map_err(|e| range(e.to_string()))?;
+                Content::Made(Box::new(curve(expanded, polynomial.dimension)))
+            }
+            Object::Polygons(polygons) => {
+                check_polygons(&polygons).map_err(range)?;
+                Content::Object(Object::Polygons(polygons))
+            }
+            Object::Operate { operate, applied_to } => {
+                if !matches!(operate, Operate::CharacterFont(_)) {
+                    Operation::new(&operate, None, 0).map_err(|e| range(e.to_string()))?;
+                }
+                Content::Object(Object::Operate { operate, applied_to })
+            }
+            object => Content::Object(object),
+        })
+    }
+
     /// Bytes that it takes beside itself.
     pub(super) fn bytes(&self) -> usize {
         match self {
             Content::Font(font) => font.values().map(font_bytes).sum(),
+            Content::Made(node) => node.bytes(),
             Content::Object(object) => match object {
                 Object::VectorList(list) => size_of_val(list.points.as_slice()) + list.lines.len(),
                 Object::Characters(characters) => characters.text.len(),
                 Object::Instance(names) => size_of_val(names.as_slice()),
                 Object::Polygons(all) => all.iter().map(polygon_bytes).sum(),
-                Object::Bspline(b) => {
-                    size_of_val(b.vertices.as_slice()) + b.knots.as_ref().map_or(0, |k| size_of_val(k.as_slice()))
-                }
-                Object::Polynomial(p) => size_of_val(p.coefficients.as_slice()),
                 Object::Labels(l) => {
                     size_of_val(l.labels.as_slice()) + l.labels.iter().map(|l| l.text.len()).sum::<usize>()
                 }
@@ -100,24 +133,17 @@ pub(super) fn define(
         let target = scope.object(target, memory)?;
         return Ok(memory.define_alias(name, target)?);
     }
-    let node = node(Some(name), content, scope, memory)?;
+    let node = node(content, scope, memory)?;
     Ok(memory.define_node(name, node)?)
 }
 
-/// The node of a definition.
-///
-/// - `name`: of what, for messages.
-pub(super) fn node(
-    name: Option<&Name>,
-    content: Content,
-    scope: Scope<'_>,
-    memory: &mut MassMemory,
-) -> Result<Node, Message> {
+/// The node of a definition that was [checked](Content::checked).
+pub(super) fn node(content: Content, scope: Scope<'_>, memory: &mut MassMemory) -> Result<Node, Message> {
     let object = match content {
         Content::Font(font) => return Ok(Node::Font(Box::new(font))),
+        Content::Made(node) => return Ok(*node),
         Content::Object(object) => object,
     };
-    let range = |text: String| Message::Range { name: name.cloned(), text };
     Ok(match object {
         Object::Nil => Node::Nil,
         Object::Instance(names) => {
@@ -131,21 +157,13 @@ pub(super) fn node(
             step: DVec2::X,
         })),
         Object::Operate { operate, applied_to } => Node::Operate {
-            operation: operation(name, &operate, scope, memory)?,
+            operation: operation(&operate, scope, memory)?,
             descendant: applied_to.map(|below| scope.object(&below, memory)).transpose()?,
         },
-        Object::Polygons(polygons) => Node::Polygons(Box::new(self::polygons(polygons, scope, memory, range)?)),
+        Object::Polygons(polygons) => Node::Polygons(Box::new(self::polygons(polygons, scope, memory)?)),
         Object::Attributes(attributes) => Node::Attributes(attributes),
         Object::Illumination(light) => Node::Illumination(light),
         Object::Pattern(pattern) => Node::Pattern(pattern),
-        Object::Bspline(spline) => {
-            let dimension = spline.dimension;
-            curve(curve::bspline(&spline).map_err(|e| range(e.to_string()))?, dimension)
-        }
-        Object::Polynomial(polynomial) => {
-            let dimension = polynomial.dimension;
-            curve(curve::polynomial(&polynomial).map_err(|e| range(e.to_string()))?, dimension)
-        }
         Object::RawBlock(bytes)
             if bytes > MAX_RAWBLOCK || memory.bytes() + bytes as usize > crate::memory::MASS_MEMORY =>
         {
@@ -153,47 +171,45 @@ pub(super) fn node(
         }
         Object::RawBlock(bytes) => Node::RawBlock(vec![0; bytes as usize]),
         Object::Copy { source, start, count } => copy(&scope.full(&source), start, count, memory)?,
-        Object::BeginStructure | Object::BeginFont | Object::Function { .. } => {
+        Object::BeginStructure
+        | Object::BeginFont
+        | Object::Function { .. }
+        | Object::Bspline(_)
+        | Object::Polynomial(_) => {
             return Err(Message::Structure("this object cannot stand here".into()));
         }
     })
 }
 
 /// The operation of an operate command.
-///
-/// - `name`: of what, for messages.
-pub(super) fn operation(
-    name: Option<&Name>,
-    operate: &Operate,
-    scope: Scope<'_>,
-    memory: &mut MassMemory,
-) -> Result<Operation, Message> {
+pub(super) fn operation(operate: &Operate, scope: Scope<'_>, memory: &mut MassMemory) -> Result<Operation, Message> {
     let font = match operate {
         Operate::CharacterFont(font) => Some(scope.object(font, memory)?),
         _ => None,
     };
     let made = Operation::new(operate, font, memory.structures.frame());
-    made.map_err(|e| Message::Range { name: name.cloned(), text: e.to_string() })
+    made.map_err(|e| Message::Range { of: name_of_operate(operate).into(), text: e.to_string() })
 }
 
-/// The polygons with the objects that their attributes are; those hold until others are named.
-fn polygons(
-    polygons: Vec<Polygon>,
-    scope: Scope<'_>,
-    memory: &mut MassMemory,
-    range: impl Fn(String) -> Message,
-) -> Result<Polygons, Message> {
-    let mut at_hand = None;
-    let mut attributes = Vec::with_capacity(polygons.len());
-    for (number, polygon) in (1..).zip(&polygons) {
+fn check_polygons(polygons: &[Polygon]) -> Result<(), String> {
+    for (number, polygon) in (1..).zip(polygons) {
         let vertices = polygon.vertices.len();
         if !(3..=Polygon::MAX_VERTICES).contains(&vertices) {
-            return Err(range(format!("polygon {number} has {vertices} vertices, not 3 to {}", Polygon::MAX_VERTICES)));
+            return Err(format!("polygon {number} has {vertices} vertices, not 3 to {}", Polygon::MAX_VERTICES));
         }
         let normals = polygon.vertices.iter().filter(|v| v.normal.is_some()).count();
         if normals != 0 && normals != vertices {
-            return Err(range(format!("polygon {number} has a normal at {normals} of its {vertices} vertices")));
+            return Err(format!("polygon {number} has a normal at {normals} of its {vertices} vertices"));
         }
+    }
+    Ok(())
+}
+
+/// The polygons with the objects that their attributes are; those hold until others are named.
+fn polygons(polygons: Vec<Polygon>, scope: Scope<'_>, memory: &mut MassMemory) -> Result<Polygons, Message> {
+    let mut at_hand = None;
+    let mut attributes = Vec::with_capacity(polygons.len());
+    for polygon in &polygons {
         if let Some(name) = &polygon.attributes {
             at_hand = Some(scope.object(name, memory)?);
         }

@@ -55,6 +55,14 @@ impl Draft {
         self.open.first().map_or_else(String::new, Name::to_string)
     }
 
+    /// The full name of something that was named inside and not made yet: `name` as it stands, or as it would be read
+    /// in the innermost open structure.
+    pub(super) fn member(&self, name: &Name) -> Option<Name> {
+        let path = self.open.last()?;
+        let full = Scope::Inside { path, names: &self.names }.full(name);
+        self.names.contains(&full).then_some(full)
+    }
+
     /// Bytes that it takes.
     pub(super) fn bytes(&self) -> usize {
         self.bytes
@@ -136,7 +144,7 @@ impl Draft {
                             }
                             id
                         }
-                        None => node(None, content, scope, memory).map(Member::Unnamed),
+                        None => node(content, scope, memory).map(Member::Unnamed),
                     }
                 }
                 Step::End => {

@@ -31,8 +31,19 @@ pub(super) fn include(name: &Name, into: &Name, memory: &mut MassMemory) -> Resu
     if memory.include(name, into)? {
         Ok(())
     } else {
-        Err(Message::Structure(format!("{into} is no instance that could include {name}")))
+        Err(Message::Structure(format!(
+            "{into} is {} and cannot include {name}: only INSTANCE OF and structures can",
+            kind(into, memory)
+        )))
     }
+}
+
+/// What a name stands for, such as `a VECTOR_LIST`.
+fn kind(name: &Name, memory: &MassMemory) -> String {
+    let id = memory.target(name);
+    let function = id.and_then(|id| memory.network.function(id)).map(|row| format!("F:{}", row.name));
+    let node = || id.and_then(|id| memory.structures.node(id)).map(|node| format!("a {}", node.word()));
+    function.or_else(node).unwrap_or_else(|| "not defined".into())
 }
 
 /// Removing what is not there is normal for the clients of the time.
@@ -89,17 +100,17 @@ pub(super) fn forget_unit(unit: &Name, memory: &mut MassMemory) -> Result<(), Me
 }
 
 /// The operation of a PREFIX or FOLLOW, whose references are full names.
-fn operation(name: &Name, operate: &Operate, memory: &mut MassMemory) -> Result<Operation, Message> {
-    definition::operation(Some(name), operate, Scope::Outside, memory)
+fn operation(operate: &Operate, memory: &mut MassMemory) -> Result<Operation, Message> {
+    definition::operation(operate, Scope::Outside, memory)
 }
 
 pub(super) fn prefix(name: &Name, operate: &Operate, memory: &mut MassMemory) -> Result<(), Message> {
-    let operation = operation(name, operate, memory)?;
+    let operation = operation(operate, memory)?;
     Ok(memory.prefix(name, operation)?)
 }
 
 pub(super) fn follow(name: &Name, operate: &Operate, memory: &mut MassMemory) -> Result<(), Message> {
-    let operation = operation(name, operate, memory)?;
+    let operation = operation(operate, memory)?;
     Ok(memory.follow(name, operation)?)
 }
 
@@ -119,7 +130,7 @@ pub(super) fn pattern_with(name: &Name, pattern: &Name, memory: &mut MassMemory)
         return Err(Refusal::Full.into());
     }
     memory.structures.set_pattern(list, applied).map_err(|fault| match fault {
-        Some(fault) => Message::Range { name: Some(name.clone()), text: fault.to_string() },
+        Some(fault) => Message::Range { of: name.to_string(), text: fault.to_string() },
         None => Refusal::Misfit(name.clone(), "no vector list or curve").into(),
     })
 }

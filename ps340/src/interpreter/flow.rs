@@ -1,11 +1,11 @@
 //! Commands about functions, arcs and messages.
 
-use super::Message;
+use super::{Message, message::inputs_of};
 use crate::{
     memory::{MassMemory, Refusal},
     network::Destination,
     port::{Cause, ObjectId},
-    structure::{Node, NodeFault},
+    structure::Node,
 };
 use protocol::{Name, Value, command};
 
@@ -31,6 +31,7 @@ fn endpoint(name: &Name, memory: &mut MassMemory) -> Result<ObjectId, Refusal> {
     Ok(memory.structures.follow(id))
 }
 
+/// Makes an arc. The message about a display node without such a port is a warning; the arc is there all the same.
 pub(super) fn connect(
     source: &Name,
     output: u16,
@@ -42,7 +43,28 @@ pub(super) fn connect(
     connected.map_err(|fault| {
         let blamed = if let Cause::NoSuchInput(_) = fault.cause { &destination.name } else { source };
         Message::Function { name: blamed.to_string(), fault }
-    })
+    })?;
+    match no_port(source, from, destination, to, memory) {
+        Some(text) => Err(Message::NoPort(text)),
+        None => Ok(()),
+    }
+}
+
+/// What is odd about an arc that begins or ends at a display node. It stays: the name may get another definition.
+fn no_port(
+    source: &Name,
+    from: ObjectId,
+    destination: &command::Destination,
+    to: ObjectId,
+    memory: &MassMemory,
+) -> Option<String> {
+    let node = |id| memory.structures.node(id).filter(|_| memory.network.function(id).is_none());
+    if let Some(node) = node(from).filter(|node| !node.has_output()) {
+        return Some(format!("{source} is a {} and sends no messages", node.word()));
+    }
+    let node = node(to).filter(|node| node.takes(destination.input).is_none())?;
+    let (input, name) = (destination.input, &destination.name);
+    Some(format!("No such input {input} of {name}; {}", inputs_of(node, name.as_str())))
 }
 
 /// Makes the arcs that it can, and says which it cannot.
@@ -84,13 +106,9 @@ fn receiver(name: &Name, memory: &MassMemory) -> Result<ObjectId, Message> {
     id.ok_or_else(|| Refusal::NotFound(name.clone()).into())
 }
 
-fn at(name: &Name) -> impl Fn(NodeFault) -> Message {
-    move |fault| Message::Node { name: name.to_string(), fault }
-}
-
 pub(super) fn send(value: Value, destination: &command::Destination, memory: &mut MassMemory) -> Result<(), Message> {
     let to = receiver(&destination.name, memory)?;
-    memory.send(to, destination.input, value).map_err(at(&destination.name))
+    memory.send(to, destination.input, value).map_err(|fault| Message::of_node(to, fault, memory))
 }
 
 pub(super) fn send_variable(
@@ -117,7 +135,7 @@ pub(super) fn send_vectors(
     if memory.is_full() {
         return Err(Refusal::Full.into());
     }
-    memory.structures.overwrite(to, destination.input, &source).map_err(at(&destination.name))
+    memory.structures.overwrite(to, destination.input, &source).map_err(|fault| Message::of_node(to, fault, memory))
 }
 
 /// SEND number*P or number*L.
@@ -128,7 +146,7 @@ pub(super) fn send_marks(
     memory: &mut MassMemory,
 ) -> Result<(), Message> {
     let to = receiver(&destination.name, memory)?;
-    memory.structures.mark(to, destination.input, count, lines).map_err(at(&destination.name))
+    memory.structures.mark(to, destination.input, count, lines).map_err(|fault| Message::of_node(to, fault, memory))
 }
 
 /// SETUP CNESS.

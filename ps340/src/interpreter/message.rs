@@ -1,6 +1,13 @@
 //! The numbered messages of the machine.
 
-use crate::{disk::DiskFault, memory::Refusal, port::Fault, structure::NodeFault, traversal::Trouble};
+use crate::{
+    disk::DiskFault,
+    functions::{self, Family},
+    memory::{MassMemory, Refusal},
+    port::{Cause, Fault, ObjectId},
+    structure::{Node, NodeFault},
+    traversal::Trouble,
+};
 use protocol::{Name, command::CommandError, record::BinaryError};
 
 /// Which of the three instances ERROR, WARNING and INFORMATION passes a message on.
@@ -41,14 +48,25 @@ pub enum Message {
         name: String,
         /// What is wrong.
         fault: NodeFault,
+        /// What it takes, in words that follow the fault; may be empty.
+        hint: String,
     },
     /// E 6: numbers of a definition that go together to nothing, or are out of range.
     Range {
-        /// Of which name, if it has one.
-        name: Option<Name>,
+        /// Of what: a name, or `a SET RATE inside ROBOT`.
+        of: String,
         /// What is wrong.
         text: String,
     },
+    /// W 6: numbers of a definition that are taken, and are probably not meant.
+    Doubtful {
+        /// Of what: a name, or `a SET COLOR inside ROBOT`.
+        of: String,
+        /// What becomes of them.
+        text: String,
+    },
+    /// W 9: an arc with an end that the node there does not have; it is kept for another definition of the name.
+    NoPort(String),
     /// E 2, E 4, E 6, E 8, E 9: an operation on the mass memory that was refused.
     Refused(Refusal),
     /// I 11: an answer to COMMAND STATUS, SHOW INTERFACE and the like.
@@ -69,12 +87,33 @@ impl Message {
     /// Error, warning or information.
     pub fn class(&self) -> Class {
         match self {
-            Message::Redefined(_) | Message::Line(_) => Class::Warning,
+            Message::Redefined(_) | Message::Doubtful { .. } | Message::NoPort(_) | Message::Line(_) => Class::Warning,
             Message::Function { fault, .. } if fault.class() == 'W' => Class::Warning,
             Message::Node { fault, .. } if fault.is_warning() => Class::Warning,
             Message::Raster(fault) if fault.is_warning() => Class::Warning,
             Message::Diagnostic(_) | Message::Information(_) => Class::Information,
             _ => Class::Error,
+        }
+    }
+
+    /// A message that a node did not take.
+    pub fn of_node(node: ObjectId, fault: NodeFault, memory: &MassMemory) -> Message {
+        let name = memory.title(node);
+        let hint = memory.structures.node(node).and_then(|node| match fault {
+            NodeFault::Kind { input, .. } => node.takes(input).map(|takes| format!("it takes {takes}")),
+            NodeFault::NoSuchInput { .. } => Some(inputs_of(node, &name)),
+            _ => None,
+        });
+        Message::Node { name, fault, hint: hint.map_or(String::new(), |hint| format!("; {hint}")) }
+    }
+
+    /// The name that was used and has no definition, of a function with `F:` before it.
+    pub fn unknown(&self) -> Option<String> {
+        match self {
+            Message::Refused(Refusal::NotFound(name)) => Some(name.to_string()),
+            Message::Refused(Refusal::NoFunction(name)) => Some(format!("F:{name}")),
+            Message::Node { name, fault: NodeFault::Undefined { .. }, .. } => Some(name.clone()),
+            _ => None,
         }
     }
 
@@ -86,7 +125,8 @@ impl Message {
             Message::Structure(_) => 4,
             Message::Function { fault, .. } => fault.number(),
             Message::Node { fault, .. } => fault.number(),
-            Message::Range { .. } => 6,
+            Message::Range { .. } | Message::Doubtful { .. } => 6,
+            Message::NoPort(_) => 9,
             Message::Refused(refusal) => refusal.number(),
             Message::Update(_) => 8,
             Message::Information(_) => 11,
@@ -101,7 +141,7 @@ impl Message {
 impl std::fmt::Display for Message {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if let Message::Function { name, fault } = self {
-            return f.write_str(&fault.text(name));
+            return write!(f, "{}{}", fault.text(name), expected(fault));
         }
         let letter = match self.class() {
             Class::Error => 'E',
@@ -112,13 +152,14 @@ impl std::fmt::Display for Message {
         match self {
             Message::Syntax(error) => write!(f, "{error}"),
             Message::Binary(error) => write!(f, "{error}"),
-            Message::Range { name: Some(name), text } => write!(f, "Value out of range in {name}: {text}"),
-            Message::Range { name: None, text } => write!(f, "Value out of range: {text}"),
+            Message::Range { of, text } | Message::Doubtful { of, text } => {
+                write!(f, "Value out of range in {of}: {text}")
+            }
             Message::Information(text) => f.write_str(text),
             Message::Redefined(name) => write!(f, "{name} redefined"),
-            Message::Structure(text) => f.write_str(text),
+            Message::Structure(text) | Message::NoPort(text) => f.write_str(text),
             Message::Function { .. } => Ok(()),
-            Message::Node { name, fault } => f.write_str(&fault.text(name)),
+            Message::Node { name, fault, hint } => write!(f, "{}{hint}", fault.text(name)),
             Message::Refused(refusal) => write!(f, "{refusal}"),
             Message::Update(trouble) => write!(f, "Picture incomplete: {trouble}"),
             Message::Line(text) => f.write_str(text),
@@ -126,6 +167,41 @@ impl std::fmt::Display for Message {
             Message::Raster(fault) => write!(f, "{fault}"),
             Message::Disk(fault) => write!(f, "{fault}"),
         }
+    }
+}
+
+/// Which inputs a node has, for somebody who asked for another.
+pub(super) fn inputs_of(node: &Node, name: &str) -> String {
+    match node {
+        Node::Group(_) => format!("a structure has no inputs, nodes that are named inside it do, such as {name}.NODE"),
+        node => format!("a {} has {}", node.word(), node.inputs()),
+    }
+}
+
+/// What a function expects at the input where the fault is, as its row says; empty where that is no help.
+fn expected(fault: &Fault) -> String {
+    let Some(row) = functions::find(fault.function) else { return String::new() };
+    let spec = |input: u16| match row.family {
+        Family::Inputs | Family::Channels => row.inputs.first().filter(|_| row.inputs.len() == 1),
+        _ => row.inputs.get(usize::from(input).wrapping_sub(1)),
+    };
+    match fault.cause {
+        Cause::Kind { input, kind } => spec(input).map_or(String::new(), |spec| match spec.kinds.contains(kind) {
+            true => ", which does not go with the other inputs".into(),
+            false => format!("; it takes {}", spec.kinds),
+        }),
+        Cause::Range { input } => spec(input).map_or(String::new(), |spec| format!(" ({})", spec.summary)),
+        Cause::NoSuchInput(_) if row.family == Family::Single => match row.inputs.len() {
+            0 => "; it has no inputs".into(),
+            1 => "; its only input is <1>".into(),
+            n => format!("; its inputs are <1> to <{n}>"),
+        },
+        Cause::NoSuchOutput(_) if row.family == Family::Single => match row.outputs.len() {
+            0 => "; it has no outputs".into(),
+            1 => "; its only output is <1>".into(),
+            n => format!("; its outputs are <1> to <{n}>"),
+        },
+        _ => String::new(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod message;
 mod definition;
+mod doubt;
 mod draft;
 mod edit;
 mod flow;
@@ -19,7 +20,7 @@ use definition::{Content, Scope};
 use draft::Draft;
 use protocol::{
     Name,
-    command::{Command, FontCharacter, Initialize, Object},
+    command::{Command, FontCharacter, Initialize, Object, Operate, reference::name_of_object},
 };
 use std::collections::BTreeMap;
 
@@ -37,6 +38,11 @@ pub struct Interpreter {
     optimizing: bool,
     /// Between CONFIGURE and FINISH CONFIGURATION.
     privileged: bool,
+}
+
+/// The warning about numbers of an operate command that are probably not meant.
+fn doubtful(operate: &Operate, of: impl Fn() -> String) -> Option<Message> {
+    doubt::doubt(operate).map(|text| Message::Doubtful { of: of(), text })
 }
 
 /// A font between BEGIN_FONT and END_FONT.
@@ -63,9 +69,33 @@ impl Interpreter {
     pub fn execute(&mut self, command: Command, memory: &mut MassMemory, messages: &mut Vec<Message>) {
         memory.privileged = self.privileged;
         if let Err(message) = self.try_execute(command, memory, messages) {
-            messages.push(message);
+            messages.push(self.explain(message));
         }
         memory.privileged = false;
+    }
+
+    /// Says of a name that is not found, if it is in the structure that is open, when it will be.
+    fn explain(&self, message: Message) -> Message {
+        match &message {
+            Message::Refused(Refusal::NotFound(name)) => self.still_open(name).unwrap_or(message),
+            _ => message,
+        }
+    }
+
+    /// The message about a name of a node that is inside the open structure, and so not made yet.
+    fn still_open(&self, name: &Name) -> Option<Message> {
+        let draft = self.structure.as_ref()?;
+        let full = draft.member(name)?;
+        let text =
+            format!("{name} is inside {}, which is still open: say this after END_STRUCTURE, of {full}", draft.title());
+        Some(Message::Structure(text))
+    }
+
+    /// INCLUDE acts at once, so it cannot reach into the structure that is open; it would make other nodes instead.
+    fn include(&self, name: &Name, into: &Name, memory: &mut MassMemory) -> Result<(), Message> {
+        let defined = |name: &Name| memory.target(name).is_some_and(|id| memory.is_defined(id));
+        let inside = [name, into].into_iter().filter(|name| !defined(name)).find_map(|name| self.still_open(name));
+        inside.map_or_else(|| edit::include(name, into, memory), Err)
     }
 
     fn try_execute(
@@ -83,13 +113,19 @@ impl Interpreter {
             Command::End => self.end(memory)?,
             Command::Display(name) => edit::display(&name, memory)?,
             Command::Remove(name) => edit::remove(&name, memory),
-            Command::Include { name, into } => edit::include(&name, &into, memory)?,
+            Command::Include { name, into } => self.include(&name, &into, memory)?,
             Command::RemoveFrom { name, from } => edit::remove_from(&name, &from, memory),
             Command::Delete(patterns) => edit::delete(&patterns, memory, messages),
             Command::Forget(name) => edit::forget(&name, memory)?,
             Command::ForgetUnit(unit) => edit::forget_unit(&unit, memory)?,
-            Command::Prefix { name, operate } => edit::prefix(&name, &operate, memory)?,
-            Command::Follow { name, operate } => edit::follow(&name, &operate, memory)?,
+            Command::Prefix { name, operate } => {
+                edit::prefix(&name, &operate, memory)?;
+                messages.extend(doubtful(&operate, || format!("PREFIX {name}")));
+            }
+            Command::Follow { name, operate } => {
+                edit::follow(&name, &operate, memory)?;
+                messages.extend(doubtful(&operate, || format!("FOLLOW {name}")));
+            }
             Command::RemovePrefix(name) => memory.remove_prefix(&name)?,
             Command::RemoveFollower(name) => memory.remove_follower(&name)?,
             Command::PatternWith { name, pattern } => edit::pattern_with(&name, &pattern, memory)?,
@@ -149,7 +185,30 @@ impl Interpreter {
                 let name = name.ok_or_else(|| Message::Structure("a function needs a name".into()))?;
                 flow::instance(name, &function, size, memory, messages)
             }
-            object => self.add(name, Content::Object(object), memory, messages),
+            object => {
+                let of = self.title(name.as_ref(), &object);
+                let doubt = match &object {
+                    Object::Operate { operate, .. } => doubtful(operate, &of),
+                    _ => None,
+                };
+                let content = Content::checked(object, of)?;
+                self.add(name, content, memory, messages)?;
+                messages.extend(doubt);
+                Ok(())
+            }
+        }
+    }
+
+    /// What to call an object in messages: its full name, or what it is and where.
+    fn title(&self, name: Option<&Name>, object: &Object) -> impl Fn() -> String + use<> {
+        let path = self.structure.as_ref().and_then(|draft| draft.open().last()).cloned();
+        let name = name.cloned();
+        let word = name_of_object(object);
+        move || match (&name, &path) {
+            (Some(name), Some(path)) => format!("{path}.{name}"),
+            (Some(name), None) => name.to_string(),
+            (None, Some(path)) => format!("a {word} inside {path}"),
+            (None, None) => format!("a {word}"),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Commands about the machine itself: status, password, configuration, interfaces.
 
-use super::{Interpreter, Message};
+use super::{Draft, Interpreter, Message};
 use crate::{
     memory::{MASS_MEMORY, MassMemory, Refusal},
     port::Effect,
@@ -24,7 +24,7 @@ impl Interpreter {
         let users = memory.objects.len().saturating_sub(memory.objects.system_len());
         let lines = [
             structures,
-            format!("{} BEGIN open", self.begun),
+            self.held(memory),
             format!("{} BEGIN_FONT open", u32::from(self.font.is_some())),
             format!("OPTIMIZE STRUCTURE {}", on(self.optimizing)),
             format!("configure mode {}", on(self.privileged)),
@@ -34,6 +34,29 @@ impl Interpreter {
             format!("{} bytes of working storage", memory.system.working_storage),
         ];
         messages.extend(lines.into_iter().map(Message::Information));
+    }
+
+    /// How many BEGIN are open on this line, and who keeps the picture from changing.
+    fn held(&self, memory: &MassMemory) -> String {
+        let others = memory.structures.holds().saturating_sub(u32::from(self.begun > 0));
+        let who = match (self.begun > 0, others) {
+            (false, 0) => return "0 BEGIN open".into(),
+            (true, 0) => "until END".into(),
+            (true, n) => format!("until END, and that of {n} other lines"),
+            (false, n) => format!("until END on {n} other lines"),
+        };
+        format!("{} BEGIN open; the picture stands still {who}", self.begun)
+    }
+
+    /// What is open on this line, for a prompt: `2 ROBOT.ARM` for structures, `BEGIN`; none if nothing is.
+    pub fn open(&self) -> Option<String> {
+        let levels = self.structure.as_ref().map(Draft::open).unwrap_or_default();
+        let structure = levels.last().map(|path| format!("{} {path}", levels.len()));
+        let font = self.font.as_ref().map(|_| "BEGIN_FONT".to_owned());
+        let begun =
+            (self.begun > 0).then(|| if self.begun == 1 { "BEGIN".into() } else { format!("BEGIN {}", self.begun) });
+        let open: Vec<String> = [begun, structure, font].into_iter().flatten().collect();
+        (!open.is_empty()).then(|| open.join(", "))
     }
 
     /// CONFIGURE: this line may change what belongs to the system.

@@ -16,8 +16,23 @@ const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
 pub struct OperatorLine {
     /// The line without its end.
     pub text: String,
-    /// Takes the reply line, without its end.
-    pub reply: oneshot::Sender<String>,
+    /// Takes the reply.
+    pub reply: oneshot::Sender<Reply>,
+}
+
+/// The reply to an order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reply {
+    /// The line, without its end.
+    pub text: String,
+    /// Whether this and later replies of the line are for people, with line ends as they are; none for as before.
+    pub lines: Option<bool>,
+}
+
+impl From<String> for Reply {
+    fn from(text: String) -> Reply {
+        Reply { text, lines: None }
+    }
 }
 
 /// Takes operators in from a listener until the machine's thread is gone.
@@ -38,6 +53,7 @@ pub async fn serve_operators(listener: Listener, events: Events) {
 async fn serve(stream: Box<dyn Stream>, events: Events) {
     let (read, mut write) = tokio::io::split(stream);
     let mut read = BufReader::new(read);
+    let mut people = false;
     loop {
         let mut line = Vec::new();
         match (&mut read).take(MAX_ORDER as u64).read_until(b'\n', &mut line).await {
@@ -60,7 +76,9 @@ async fn serve(stream: Box<dyn Stream>, events: Events) {
             return;
         }
         let Ok(answer) = answer.await else { return };
-        if write.write_all(format!("{answer}\n").as_bytes()).await.is_err() {
+        people = answer.lines.unwrap_or(people);
+        let text = if people { for_people(&answer.text) } else { answer.text };
+        if write.write_all(format!("{text}\n").as_bytes()).await.is_err() {
             return;
         }
     }
@@ -99,7 +117,7 @@ fn for_people(reply: &str) -> String {
 /// Takes orders from standard input, and replies on standard output; on a terminal, a reply has lines. Blocks until the
 /// end of the input.
 pub fn serve_stdio(events: &Events) {
-    let people = std::io::stdout().is_terminal();
+    let mut people = std::io::stdout().is_terminal();
     for line in std::io::stdin().lock().split(b'\n') {
         let Ok(line) = line else { break };
         let text = String::from_utf8_lossy(&line).trim().to_string();
@@ -112,8 +130,9 @@ pub fn serve_stdio(events: &Events) {
         }
         let Ok(answer) = answer.blocking_recv() else { return };
         let mut out = std::io::stdout().lock();
-        let answer = if people { for_people(&answer) } else { answer };
-        if writeln!(out, "{answer}").and_then(|()| out.flush()).is_err() {
+        people = answer.lines.unwrap_or(people);
+        let text = if people { for_people(&answer.text) } else { answer.text };
+        if writeln!(out, "{text}").and_then(|()| out.flush()).is_err() {
             break;
         }
     }
@@ -132,7 +151,36 @@ pub fn serve_window(orders: std::sync::mpsc::Receiver<OperatorLine>, events: &Ev
 
 #[cfg(test)]
 mod tests {
-    use super::for_people;
+    use super::*;
+
+    /// Answers every order with two lines; `lines on` and `lines off` as the machine does.
+    async fn answer(mut orders: tokio::sync::mpsc::Receiver<LineEvent>) {
+        while let Some(LineEvent::Operator(order)) = orders.recv().await {
+            let lines = match order.text.as_str() {
+                "lines on" => Some(true),
+                "lines off" => Some(false),
+                _ => None,
+            };
+            let _ = order.reply.send(Reply { text: r"ok a\nb".into(), lines });
+        }
+    }
+
+    #[test]
+    fn an_operator_may_ask_for_replies_with_line_ends() {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        let said = runtime.block_on(async {
+            let (near, far) = tokio::io::duplex(1024);
+            let (events, orders) = tokio::sync::mpsc::channel(4);
+            tokio::spawn(answer(orders));
+            tokio::spawn(serve(Box::new(far), events));
+            let (mut read, mut write) = tokio::io::split(near);
+            write.write_all(b"top\nlines on\ntop\nlines off\ntop\n").await.unwrap();
+            let mut said = vec![0; 40];
+            read.read_exact(&mut said).await.unwrap();
+            String::from_utf8(said).unwrap()
+        });
+        assert_eq!(said, "ok a\\nb\nok a\nb\nok a\nb\nok a\\nb\nok a\\nb\n");
+    }
 
     #[test]
     fn people_read_lines() {

@@ -9,7 +9,7 @@ use super::{
     trial::{self, Trials},
 };
 use crate::{
-    functions::Rule,
+    functions::{self, Rule},
     machine::Machine,
     port::{Cause, KindSet, Role},
 };
@@ -38,6 +38,10 @@ struct Arriving {
     values: Vec<Value>,
     /// Kinds of what commands send that are not kept as values.
     kinds: BTreeSet<Kind>,
+    /// Messages that commands send.
+    sends: usize,
+    /// Whether SETUP CNESS has made it another kind of input.
+    set_up: bool,
     /// Whether something arrives of which nothing is known.
     unknown: bool,
 }
@@ -63,10 +67,12 @@ struct Flow<'p> {
 pub(super) fn check(program: &Program, machine: &Machine) -> Findings {
     let mut flow = Flow { program, machine, instances: BTreeMap::new(), tried: HashMap::new() };
     flow.collect();
+    flow.collect_set_up();
     flow.spread();
     let mut findings = Findings::default();
     flow.clashes(&mut findings);
     flow.functions(&mut findings);
+    flow.fed_once(&mut findings);
     findings
 }
 
@@ -87,11 +93,21 @@ impl<'p> Flow<'p> {
         }
         for sent in &program.sends {
             let Some(input) = self.input_mut(&sent.to, sent.input) else { continue };
+            input.sends += 1;
             match &sent.value {
                 None => input.unknown = true,
                 Some(value) if input.values.contains(value) => {}
                 Some(value) if input.values.len() < KEPT_VALUES => input.values.push(value.clone()),
                 Some(value) => drop(input.kinds.insert(value.kind())),
+            }
+        }
+    }
+
+    /// Marks the inputs that SETUP CNESS has changed.
+    fn collect_set_up(&mut self) {
+        for (name, input) in &self.program.set_up {
+            if let Some(input) = self.input_mut(name, *input) {
+                input.set_up = true;
             }
         }
     }
@@ -104,10 +120,7 @@ impl<'p> Flow<'p> {
 
     /// Lets kinds spread until nothing new comes.
     fn spread(&mut self) {
-        let mut followers: BTreeMap<&Name, BTreeSet<&Name>> = BTreeMap::new();
-        for arc in &self.program.arcs {
-            followers.entry(self.program.target(&arc.source)).or_default().insert(self.program.target(&arc.to));
-        }
+        let followers = self.followers();
         let mut waiting: BTreeSet<&Name> = self.instances.keys().copied().collect();
         while let Some(name) = waiting.pop_first() {
             let Some(trials) = self.evaluate(name) else { continue };
@@ -234,6 +247,76 @@ impl<'p> Flow<'p> {
         }
     }
 
+    /// Functions that stop when the messages of SEND are used up, although another input is fed again and again.
+    fn fed_once(&self, findings: &mut Findings) {
+        let lasting = self.lasting();
+        for (name, instance) in &self.instances {
+            let Some(definition) = self.program.definitions.get(*name) else { continue };
+            if instance.trials.is_none() || instance.function.row.rule != Rule::All {
+                continue;
+            }
+            let active = || active(instance);
+            let Some((fed, _)) = active().find(|(_, input)| self.lasts(input, &lasting)) else { continue };
+            let once = |(_, input): &(u16, &Arriving)| input.arcs.is_empty() && input.sends > 0 && !input.unknown;
+            let Some((number, input)) = active().find(once) else { continue };
+            let row = instance.function.row;
+            let keeping = functions::find(&format!("{}C", row.name)).filter(|other| {
+                let spec = row.shape(None).ok().and_then(|_| other.inputs.get(usize::from(number) - 1));
+                spec.is_some_and(|spec| spec.role == Role::Constant)
+            });
+            let hint = match keeping {
+                Some(other) => format!("F:{} keeps it", other.name),
+                None => format!("SETUP CNESS TRUE <{number}>{name} keeps it"),
+            };
+            let times = if input.sends == 1 { "once".into() } else { format!("{} times", input.sends) };
+            let text = format!(
+                "{name} (F:{}) fires {times} only: <{fed}> is fed again and again, but <{number}> gets no more than what \
+                 SEND gives it; {hint}",
+                row.name
+            );
+            findings.notes.push(Note { place: definition.place, level: Level::Warning, text });
+        }
+    }
+
+    /// The functions that fire again and again: clocks, and those that such functions and devices feed.
+    fn lasting(&self) -> BTreeSet<&'p Name> {
+        let followers = self.followers();
+        let mut lasting: BTreeSet<&Name> = BTreeSet::new();
+        let mut waiting: BTreeSet<&Name> = self.instances.keys().copied().collect();
+        while let Some(name) = waiting.pop_first() {
+            let Some(instance) = self.instances.get(name).filter(|_| !lasting.contains(name)) else { continue };
+            let row = instance.function.row;
+            let mut inputs = active(instance).map(|(_, input)| self.lasts(input, &lasting)).peekable();
+            let fires = match row.rule {
+                Rule::All => inputs.peek().is_some() && inputs.all(|lasts| lasts),
+                Rule::Any => inputs.any(|lasts| lasts),
+            };
+            if fires || row.clock.is_some() {
+                lasting.insert(name);
+                waiting.extend(followers.get(name).into_iter().flatten());
+            }
+        }
+        lasting
+    }
+
+    /// The ends of the arcs that leave each name.
+    fn followers(&self) -> BTreeMap<&'p Name, BTreeSet<&'p Name>> {
+        let mut followers: BTreeMap<&Name, BTreeSet<&Name>> = BTreeMap::new();
+        for arc in &self.program.arcs {
+            followers.entry(self.program.target(&arc.source)).or_default().insert(self.program.target(&arc.to));
+        }
+        followers
+    }
+
+    /// Whether an input is fed again and again.
+    fn lasts(&self, input: &Arriving, lasting: &BTreeSet<&'p Name>) -> bool {
+        input.arcs.iter().any(|arc| {
+            let source = self.program.target(&self.program.arcs[*arc].source);
+            lasting.contains(source)
+                || (!self.instances.contains_key(source) && ports::system(source, self.machine).is_some())
+        })
+    }
+
     /// Why a function never fires; none if that was told at another place.
     fn why_silent(&self, name: &Name, instance: &Instance<'_>) -> Option<String> {
         let function = instance.function;
@@ -260,6 +343,16 @@ impl<'p> Flow<'p> {
         let why = if waits.is_empty() { return None } else { waits.join(", ") };
         Some(format!("{name} never fires: {why}, which never sends"))
     }
+}
+
+/// The inputs of a function that take a message for each firing, with their numbers.
+fn active<'i>(instance: &'i Instance<'_>) -> impl Iterator<Item = (u16, &'i Arriving)> {
+    let function = instance.function;
+    let is_active = move |(number, input): &(u16, &Arriving)| {
+        let spec = function.row.input(function.shape, *number);
+        !input.set_up && spec.is_some_and(|spec| spec.role == Role::Active)
+    };
+    (1..).zip(&instance.inputs).filter(is_active)
 }
 
 /// Whether a fault of all trials holds for all messages: a range, only if the value is known.

@@ -3,13 +3,10 @@
 use super::{
     Level, Note,
     program::{Arc, Program, What},
-    trial,
 };
 use crate::{functions::FunctionRow, machine::Machine, port::KindSet, structure::Node};
 use protocol::{Name, command::Input};
 
-/// Characters of the description of a node that a message shows.
-const SHOWN: usize = 80;
 /// Nodes of a structure that a message names.
 const NAMED: usize = 3;
 
@@ -29,6 +26,11 @@ fn source(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> {
         Some(What::Function(function)) => (function.row, function.shape.outputs),
         Some(What::Structure) => {
             let text = format!("{name} is a structure; it sends no messages");
+            return Some(Note { place: arc.place, level: Level::Error, text });
+        }
+        Some(What::Node) => {
+            let node = node(name, machine).filter(|node| !node.has_output())?;
+            let text = format!("{name} is a {}; it sends no messages", node.word());
             return Some(Note { place: arc.place, level: Level::Error, text });
         }
         Some(_) => return None,
@@ -65,7 +67,10 @@ fn destination(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> 
         Some(What::Function(function)) => no_input(function.row, function.shape.inputs),
         Some(What::Structure) => error(format!("{name} takes no messages{}", inside(program, name))),
         Some(What::Node) => match accepted(arc, program, machine)? {
-            KindSet::NONE => error(format!("{name} has no input {}{}", arc.input, what_node(name, machine))),
+            KindSet::NONE => {
+                let node = node(name, machine)?;
+                error(format!("{name} is a {} and has no input {}; it has {}", node.word(), arc.input, node.inputs()))
+            }
             _ => None,
         },
         Some(_) => None,
@@ -85,10 +90,7 @@ pub(super) fn accepted(arc: &Arc, program: &Program, machine: &Machine) -> Optio
     };
     match program.definitions.get(name).map(|d| &d.what) {
         Some(What::Function(function)) => function.row.input(function.shape, input?).map(|spec| spec.kinds),
-        Some(What::Node) => {
-            let memory = machine.memory();
-            trial::accepted(memory.structures.node(memory.target(name)?)?, arc.input)
-        }
+        Some(What::Node) => Some(node(name, machine)?.takes(arc.input).unwrap_or(KindSet::NONE)),
         Some(_) => None,
         None => system(name, machine)?.inputs.get(usize::from(input?).checked_sub(1)?).map(|spec| spec.kinds),
     }
@@ -126,17 +128,8 @@ fn inside(program: &Program, name: &Name) -> String {
     }
 }
 
-/// What a node is, for the text about an input that it does not have.
-fn what_node(name: &Name, machine: &Machine) -> String {
+/// The node of a name.
+fn node<'m>(name: &Name, machine: &'m Machine) -> Option<&'m Node> {
     let memory = machine.memory();
-    let node = memory.target(name).and_then(|id| memory.structures.node(id));
-    match node {
-        Some(Node::Vectors(_)) => " (a vector list: <1> and up, <last>, <append>, <delete>, <clear>)".into(),
-        Some(_) => {
-            let text = machine.describe(name.as_str()).unwrap_or_default();
-            let short: String = text.chars().take(SHOWN).collect();
-            format!(" ({short})")
-        }
-        None => String::new(),
-    }
+    memory.target(name).and_then(|id| memory.structures.node(id))
 }

@@ -20,6 +20,8 @@ pub(super) struct Program {
     pub(super) sends: Vec<Sent>,
     /// Names that were defined again, and where.
     pub(super) again: Vec<(Name, Place, Place)>,
+    /// Inputs about which SETUP CNESS said something.
+    pub(super) set_up: Vec<(Name, Input)>,
     /// Functions of a type that does not exist, and the place of the type.
     pub(super) no_functions: Vec<(Name, Place)>,
     /// Structures that are open: full name and place of the BEGIN.
@@ -144,7 +146,8 @@ impl Program {
                 self.sent(destination, None, last(&destination.name));
             }
             Command::SetupCness { destination, .. } => {
-                self.used(&destination.name, "SETUP CNESS", last(&destination.name))
+                self.used(&destination.name, "SETUP CNESS", last(&destination.name));
+                self.set_up.push((destination.name.clone(), destination.input));
             }
             Command::Variable(names) => {
                 for name in names {
@@ -245,6 +248,7 @@ impl Program {
                 // A new instance has no connections of its own, and nothing was sent to it.
                 self.arcs.retain(|arc| arc.source != *name);
                 self.sends.retain(|sent| sent.to != *name);
+                self.set_up.retain(|(to, _)| to != name);
                 return self.set(name.clone(), Definition { place, what });
             }
             _ => What::Node,

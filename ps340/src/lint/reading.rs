@@ -9,7 +9,10 @@ use crate::{
     line::LineId,
     machine::{Input, Machine, Settings},
 };
-use protocol::command::{Command, CommandReader, Initialize, Object, print};
+use protocol::{
+    command::{Command, CommandReader, Initialize, Object, print},
+    name::is_name_character,
+};
 
 const LINE: LineId = LineId(1);
 
@@ -69,6 +72,8 @@ struct Said {
     text: String,
     /// Whether the command is a CONNECT or a definition, about which more is known at the end.
     known: bool,
+    /// The input that the command itself sends to, as `<1>NAME`.
+    sent_to: Option<String>,
 }
 
 impl Reading<'_> {
@@ -91,7 +96,9 @@ impl Reading<'_> {
                 }
             }
         }
-        if reader.is_unfinished() {
+        if let Some((problem, at)) = reader.open() {
+            self.note(Place { file, at: at as usize }, Level::Error, problem.to_string());
+        } else if reader.is_unfinished() {
             let at = reader.unfinished_position() as usize;
             self.note(Place { file, at }, Level::Error, "the last statement has no ;".into());
         }
@@ -115,8 +122,15 @@ impl Reading<'_> {
             }
             _ => false,
         };
+        let sent_to = match command {
+            Command::Send { destination, .. }
+            | Command::SendVariable { destination, .. }
+            | Command::SendVectors { destination, .. }
+            | Command::SendMarks { destination, .. } => Some(format!("{}{}", destination.input, destination.name)),
+            _ => None,
+        };
         for text in self.tell_command(command) {
-            self.said_by.push(Said { place, text, known });
+            self.said_by.push(Said { place, text, known, sent_to: sent_to.clone() });
         }
     }
 
@@ -158,18 +172,21 @@ impl Reading<'_> {
         notes.extend(ports::check(&program, &self.machine));
         let flow = flow::check(&program, &self.machine);
         for said in std::mem::take(&mut self.said_by) {
+            let (text, _) = said.text.split_once("; did you mean ").unwrap_or((&said.text, ""));
             let undefined =
-                notes.iter().any(|note| note.text.contains("never defined") && said.text.ends_with(note_name(note)));
+                notes.iter().any(|note| note.text.contains("never defined") && text.ends_with(note_name(note)));
             // What is said to a function that could not be made follows from that.
-            let unmade = said.text.starts_with("E 2 ") && program.is_unmade(said.text.rsplit(' ').next().unwrap_or(""));
-            let clashes = flow.clashes.iter().any(|input| said.text.contains(input.as_str()));
+            let unmade = text.starts_with("E 2 ") && program.is_unmade(text.rsplit(' ').next().unwrap_or(""));
+            // What comes along an arc that clashes is told of the arc; what the command itself sends there is not.
+            let follows = |input: &String| mentions(text, input) && said.sent_to.as_ref() != Some(input);
+            let clashes = flow.clashes.iter().any(follows);
             if said.known || undefined || unmade || clashes {
                 continue;
             }
             let level = match said.text.as_bytes() {
                 // Redefinitions are told with the place of the first definition.
                 [b'I', ..] | [b'W', b' ', b'3', b' ', ..] => continue,
-                [b'W', b' ', b'9', b' ', ..] | [b'E', ..] => Level::Error,
+                [b'E', ..] => Level::Error,
                 _ => Level::Warning,
             };
             notes.push(Note { place: said.place, level, text: readable(&said.text) });
@@ -181,6 +198,14 @@ impl Reading<'_> {
     fn note(&mut self, place: Place, level: Level, text: String) {
         self.notes.push(Note { place, level, text });
     }
+}
+
+/// Whether a text speaks of an input, given as `<1>NAME`, and not of one whose name only begins so.
+fn mentions(text: &str, input: &str) -> bool {
+    text.match_indices(input).any(|(at, _)| {
+        let next = text.as_bytes().get(at + input.len());
+        next.is_none_or(|byte| !is_name_character(*byte))
+    })
 }
 
 /// The name at the beginning of a note about one.

@@ -1,4 +1,4 @@
-//! What a function sends, and what a node takes: found by trying.
+//! What a function sends: found by trying.
 //!
 //! A new instance gets messages in all combinations of the samples of its inputs; what leaves it is what it can send. A
 //! kind that no trial shows is not held against anybody: an output that was silent in all trials may send anything.
@@ -6,12 +6,10 @@
 use super::program::Function;
 use crate::{
     functions::FunctionRow,
-    memory::MassMemory,
     network::Network,
     port::{Cause, Effect, Fault, KindSet, Literal, ObjectId, PickLiteral, Role},
-    structure::{Node, NodeFault, Operation},
 };
-use protocol::{Kind, Name, Value, command::Input};
+use protocol::{Kind, Value, command::Input};
 
 /// Most combinations of samples that are tried with one function.
 const COMBINATIONS: usize = 400;
@@ -157,33 +155,64 @@ pub(super) fn samples(kind: Kind) -> Vec<Value> {
     literals.iter().map(Literal::value).collect()
 }
 
-/// The kinds that a node takes at an input; [`KindSet::NONE`] if it has no such input, none if that is not known.
-pub(super) fn accepted(node: &Node, input: Input) -> Option<KindSet> {
-    // What these take goes beyond the node.
-    if let Node::Operate { operation: Operation::Rendering { .. } | Operation::WriteBack, .. } | Node::RawBlock(_) =
-        node
-    {
-        return None;
-    }
-    let name = Name::new("NODE").ok()?;
-    let mut kinds = KindSet::NONE;
-    let mut exists = false;
-    for kind in Kind::ALL {
-        for value in samples(kind) {
-            let mut memory = MassMemory::default();
-            let id = memory.define_node(&name, node.clone()).ok()?;
-            match memory.accept(id, input, value) {
-                Err(NodeFault::NoSuchInput { .. }) => {}
-                Err(NodeFault::Kind { .. }) => exists = true,
-                _ => kinds = kinds.or(KindSet::of(&[kind])),
-            }
-        }
-    }
-    // An input that takes nothing of what was tried is none of which much is known.
-    if kinds == KindSet::NONE && exists { None } else { Some(kinds) }
-}
-
 /// Whether a function needs a message at an input before it fires.
 pub(super) fn is_required(row: &FunctionRow, function: &Function, input: u16) -> bool {
     row.input(function.shape, input).is_some_and(|spec| matches!(spec.role, Role::Active | Role::Constant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::samples;
+    use crate::{
+        line::LineId,
+        machine::{Input as Event, Machine, Settings},
+        memory::MassMemory,
+        structure::{Node, NodeFault},
+    };
+    use protocol::{
+        Kind, Name,
+        command::{Input, reference},
+    };
+
+    /// Gives samples of all kinds to an input; returns the kinds that it took, none if there is no such input.
+    fn taken(node: &Node, input: Input) -> Option<Vec<Kind>> {
+        let mut exists = false;
+        let takes = |kind: &Kind| {
+            samples(*kind).into_iter().any(|value| {
+                let mut memory = MassMemory::default();
+                let id = memory.define_node(&Name::new("NODE").unwrap(), node.clone()).unwrap();
+                let took = memory.accept(id, input, value);
+                exists |= !matches!(took, Err(NodeFault::NoSuchInput { .. }));
+                !matches!(took, Err(NodeFault::Kind { .. } | NodeFault::NoSuchInput { .. }))
+            })
+        };
+        let kinds: Vec<Kind> = Kind::ALL.iter().copied().filter(takes).collect();
+        exists.then_some(kinds)
+    }
+
+    #[test]
+    fn nodes_take_what_they_say_that_they_take() {
+        let mut machine = Machine::new(Settings::default());
+        let line = LineId(1);
+        let mut text = String::from("S := BEGIN_STRUCTURE\n");
+        for row in reference::rows().filter(|row| !row.example.contains("BEGIN") && !row.example.contains("INIT")) {
+            for statement in row.example.split_inclusive(';') {
+                text.push_str(&format!("N{}.X := {}\n", text.len(), statement.rsplit(":=").next().unwrap_or_default()));
+            }
+        }
+        text.push_str("END_STRUCTURE; VARIABLE V;\n");
+        machine.step([Event::Attach(line), Event::Bytes(line, text.into_bytes())], 0);
+        let words = Input::WORDS.iter().map(|row| row.0);
+        let inputs: Vec<Input> = (1..=5).map(Input::Number).chain(words).collect();
+        let structures = &machine.memory().structures;
+        let nodes = (0..structures.extent()).filter_map(|id| structures.node(crate::port::ObjectId::new(id)));
+        let mut seen = std::collections::BTreeSet::new();
+        for node in nodes.filter(|node| seen.insert(node.word())) {
+            for input in &inputs {
+                let says = node.takes(*input).map(|kinds| kinds.iter().collect::<Vec<_>>());
+                assert_eq!(says, taken(node, *input), "{} {input}", node.word());
+            }
+        }
+        assert!(seen.len() > 40, "{seen:?}");
+    }
 }

@@ -19,7 +19,7 @@ impl Machine {
         match effect {
             Effect::Deliver { object, input, value } => self.deliver(object, input, value),
             Effect::Fault { object, fault } => {
-                let name = self.memory.objects.name(object).to_string();
+                let name = self.memory.title(object);
                 self.messages.push(Message::Function { name, fault });
             }
             Effect::RequestTransform { function, node, destination, first, count } => {
@@ -78,8 +78,7 @@ impl Machine {
 
     fn deliver(&mut self, object: ObjectId, input: command::Input, value: Value) {
         if let Err(fault) = self.memory.accept(object, input, value) {
-            let name = self.memory.objects.name(object).to_string();
-            self.messages.push(Message::Node { name, fault });
+            self.messages.push(Message::of_node(object, fault, &self.memory));
         }
     }
 
@@ -87,7 +86,7 @@ impl Machine {
     fn lose_without(&mut self, room: bool, function: ObjectId, row: &'static str) {
         if !room {
             let fault = Fault { function: row, cause: Cause::Flood { input: 1, lost: 1 } };
-            let name = self.memory.objects.name(function).to_string();
+            let name = self.memory.title(function);
             self.messages.push(Message::Function { name, fault });
         }
     }
@@ -100,7 +99,7 @@ impl Machine {
             }
             Ok(None) => {
                 let text = "the variable has no value yet".into();
-                self.messages.push(Message::Range { name: Some(name.clone()), text });
+                self.messages.push(Message::Range { of: name.to_string(), text });
             }
             Err(refusal) => self.messages.push(refusal.into()),
         }
@@ -116,7 +115,7 @@ impl Machine {
         let place = usize::try_from(index).ok().and_then(|index| index.checked_sub(1));
         let Some((label, shown)) = place.and_then(|place| block.labels.get(place)) else {
             let text = format!("there is no label {index}");
-            return self.messages.push(Message::Range { name: Some(name), text });
+            return self.messages.push(Message::Range { of: name.to_string(), text });
         };
         let parts = [Value::String(label.text.clone()), Value::Vector3(label.position), Value::Boolean(*shown)];
         for (output, part) in (1..).zip(parts) {

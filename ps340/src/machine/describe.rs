@@ -97,8 +97,8 @@ fn group(memory: &MassMemory, members: &[Member]) -> String {
     for member in members.iter().take(SHOWN) {
         let _ = match member {
             Member::Named(id) if memory.objects.is_anonymous(*id) => write!(text, " {}", of_descendant(memory, *id)),
-            Member::Named(id) | Member::Included(id) => write!(text, " {}", memory.objects.name(*id)),
-            Member::Unnamed(Node::Operate { operation, .. }) => write!(text, " ({})", word(operation)),
+            Member::Named(id) | Member::Included(id) => write!(text, " {}", memory.title(*id)),
+            Member::Unnamed(Node::Operate { operation, .. }) => write!(text, " ({})", operation.word()),
             Member::Unnamed(_) => write!(text, " (data)"),
         };
     }
@@ -109,7 +109,7 @@ fn group(memory: &MassMemory, members: &[Member]) -> String {
 fn of_descendant(memory: &MassMemory, id: ObjectId) -> String {
     match memory.structures.node(id) {
         Some(node) if memory.objects.is_anonymous(id) => match node {
-            Node::Operate { operation, .. } => format!("({})", word(operation)),
+            Node::Operate { operation, .. } => format!("({})", operation.word()),
             Node::Group(_) => "(structure)".into(),
             _ => "(data)".into(),
         },
@@ -118,54 +118,7 @@ fn of_descendant(memory: &MassMemory, id: ObjectId) -> String {
 }
 
 fn names(memory: &MassMemory, ids: &[ObjectId]) -> String {
-    ids.iter().take(SHOWN).map(|id| memory.objects.name(*id)).collect::<Vec<_>>().join(", ")
-}
-
-fn word(operation: &Operation) -> &'static str {
-    match operation {
-        Operation::Character(_) => "MATRIX_2X2",
-        Operation::Linear(_) => "MATRIX_3X3",
-        Operation::Translate(_) => "TRANSLATE",
-        Operation::Affine(_) => "MATRIX_4X3",
-        Operation::Projective(_) => "MATRIX_4X4",
-        Operation::Viewport { .. } => "VIEWPORT",
-        Operation::LoadViewport { .. } => "LOAD VIEWPORT",
-        Operation::TextSize(_) => "TEXT SIZE",
-        Operation::Font(Some(_)) => "CHARACTER FONT",
-        Operation::Font(None) => "STANDARD FONT",
-        Operation::Color { .. } => "SET COLOR",
-        Operation::ColorBlending(_) => "SET COLOR BLENDING",
-        Operation::Intensity { .. } => "SET INTENSITY",
-        Operation::Contrast(_) => "SET CONTRAST TO",
-        Operation::Csm(_) => "SET CSM",
-        Operation::DepthClipping(_) => "SET DEPTH_CLIPPING",
-        Operation::Displays { .. } => "SET DISPLAY",
-        Operation::Orientation(_) => "SET CHARACTERS",
-        Operation::Picking(_) => "SET PICKING",
-        Operation::PickIdentifier(_) => "SET PICKING IDENTIFIER =",
-        Operation::PickLocation { .. } => "SET PICKING LOCATION =",
-        Operation::LevelOfDetail(_) => "SET LEVEL_OF_DETAIL TO",
-        Operation::ChangeLevelOfDetail(1..) => "INCREMENT LEVEL_OF_DETAIL",
-        Operation::ChangeLevelOfDetail(_) => "DECREMENT LEVEL_OF_DETAIL",
-        Operation::ConditionalBit { .. } => "SET CONDITIONAL_BIT",
-        Operation::Rate { .. } => "SET RATE",
-        Operation::ExternalRate(_) => "SET RATE EXTERNAL",
-        Operation::Blinking(_) => "SET BLINKING",
-        Operation::BlinkRate(_) => "SET BLINK RATE",
-        Operation::Plotter(_) => "SET PLOTTER",
-        Operation::Priority(_) => "SET PRIORITY",
-        Operation::LineTexture { .. } => "SET LINE_TEXTURE",
-        Operation::IfBit { .. } => "IF CONDITIONAL_BIT",
-        Operation::IfLevel { .. } => "IF LEVEL_OF_DETAIL",
-        Operation::IfPhase(_) => "IF PHASE IS",
-        Operation::XformMatrix => "XFORM MATRIX",
-        Operation::XformVector => "XFORM VECTOR",
-        Operation::CancelXform => "CANCEL XFORM",
-        Operation::WriteBack => "WRITEBACK",
-        Operation::Rendering { solid: false, .. } => "SURFACE_RENDERING",
-        Operation::Rendering { solid: true, .. } => "SOLID_RENDERING",
-        Operation::SectioningPlane => "SECTIONING_PLANE",
-    }
+    ids.iter().take(SHOWN).map(|id| memory.title(*id)).collect::<Vec<_>>().join(", ")
 }
 
 /// The word of an operation with its values.
@@ -174,7 +127,7 @@ fn of_operation(memory: &MassMemory, operation: &Operation) -> String {
         Operation::Font(Some(font)) => memory.objects.name(*font).to_owned(),
         operation => values(operation),
     };
-    let word = word(operation);
+    let word = operation.word();
     if values.is_empty() { word.into() } else { format!("{word} {values}") }
 }
 

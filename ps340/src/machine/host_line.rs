@@ -73,6 +73,13 @@ impl HostLine {
         self.decoders.interpreter = Interpreter::default();
     }
 
+    /// What is open, for a prompt; `...` behind it for a command without its `;`.
+    pub(super) fn open(&self) -> String {
+        let open = self.decoders.interpreter.open().unwrap_or_default();
+        let unfinished = if self.decoders.text.is_unfinished() { "..." } else { "" };
+        format!("{open}{unfinished}")
+    }
+
     /// Gives up what is open. Returns what that was.
     pub(super) fn abandon(&mut self, memory: &mut MassMemory) -> Option<String> {
         let Decoders { text, interpreter, .. } = &mut self.decoders;

@@ -1,7 +1,7 @@
 //! The keyboard: its three modes, its keys, and the command line of its command mode.
 //!
 //! # Source
-//! Three modes, the prompt `@@`, KEYBOARD, SPECKEYS and the names of the keys are remembered; KBHANDLER `<4>` with one
+//! Three modes, the prompt `@@` and that what is open shows in it, KEYBOARD, SPECKEYS and the names of the keys are remembered; KBHANDLER `<4>` with one
 //! character a message is confirmed. Ours: HOST, COMMAND and LOCAL choose the terminal's, the command and the
 //! interactive mode. The machine starts in interactive mode, in which KBHANDLER `<4>` speaks as clients expect; with
 //! `--plain-text terminal` it starts as a terminal, where a connected KBHANDLER `<4>` takes the characters from the line.
@@ -87,11 +87,14 @@ impl Key {
 /// The line of the machine's own command interpreter, which no host has.
 pub(super) const LOCAL: LineId = LineId(u64::MAX);
 
-const PROMPT: &str = "@@ ";
+/// The prompt; what is open is said behind it.
+const PROMPT: &str = "@@";
 /// Longest command line, in characters.
 const MAX_COMMAND: usize = 1000;
 /// Command lines that the arrows bring back.
 const MAX_REMEMBERED: usize = 50;
+/// Most bytes to the host that are kept for whoever looks on; those after them are not.
+const MAX_TYPED: usize = 4096;
 const BS: u8 = 8;
 const CONTROL_U: u8 = 21;
 const DEL: u8 = 127;
@@ -110,6 +113,8 @@ pub(super) struct Keyboard {
     prompted: bool,
     /// The host that spoke to the terminal last.
     host: Option<LineId>,
+    /// What the terminal sent to its host, for whoever looks on.
+    typed: Vec<u8>,
 }
 
 /// What a typed character does to the command line.
@@ -296,7 +301,9 @@ impl Machine {
         if self.keyboard.mode == KeyboardMode::Command {
             self.keyboard.prompted = true;
             // CAN ends a sequence that somebody else has begun on the terminal.
-            let line = [b"\x18", PROMPT.as_bytes(), self.keyboard.line.as_slice()].concat();
+            let open = self.lines.get(&LOCAL).map_or(String::new(), HostLine::open);
+            let blank = if open.is_empty() { " " } else { "> " };
+            let line = [b"\x18", PROMPT.as_bytes(), open.as_bytes(), blank.as_bytes(), &self.keyboard.line].concat();
             self.terminal.feed(&line);
         }
     }
@@ -335,7 +342,20 @@ impl Machine {
         let host = self.keyboard.host.filter(|line| self.writers.contains_key(line));
         let host = host.or_else(|| self.writers.keys().next().copied());
         if let (Some(line), false) = (host, bytes.is_empty()) {
+            let room = MAX_TYPED.saturating_sub(self.keyboard.typed.len());
+            self.keyboard.typed.extend_from_slice(&bytes[..bytes.len().min(room)]);
             self.outputs.push(super::Output { line, bytes });
         }
+    }
+
+    /// The bytes that the terminal sent to its host and nobody took yet, 4096 at most.
+    pub fn typed(&self) -> &[u8] {
+        &self.keyboard.typed
+    }
+
+    /// Takes the first `count` of these bytes.
+    pub fn take_typed(&mut self, count: usize) {
+        let count = count.min(self.keyboard.typed.len());
+        self.keyboard.typed.drain(..count);
     }
 }

@@ -253,6 +253,7 @@ impl Machine {
     fn emit(&mut self, emissions: Vec<devices::Emission>) {
         for (instance, output, value) in emissions {
             if let Some(id) = self.memory.objects.find(instance) {
+                self.memory.network.note_speech(id);
                 self.memory.network.emit(id, output, value, &mut self.memory.effects);
             }
         }

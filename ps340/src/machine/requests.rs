@@ -100,8 +100,8 @@ impl Machine {
             return; // between BEGIN and END
         }
         for (id, fault) in self.memory.structures.renew_dashes() {
-            let name = Name::new(self.memory.objects.name(id)).ok();
-            self.report(Message::Range { name, text: format!("the pattern is given up: {fault}") });
+            let of = self.memory.title(id);
+            self.report(Message::Range { of, text: format!("the pattern is given up: {fault}") });
         }
         let version = self.memory.structures.version();
         let stays = self.update.next_change.is_none_or(|change| self.frame < change);
@@ -144,8 +144,8 @@ impl Machine {
     fn say_trouble(&mut self, update: &Update) {
         match update.trouble.filter(|trouble| self.update.trouble != Some(*trouble)) {
             Some(Trouble::ContainsItself(id)) => {
-                let name = self.memory.objects.name(id).to_owned();
-                self.report(Message::Structure(format!("{name} contains itself")));
+                let name = self.memory.title(id);
+                self.report(Message::Structure(format!("{name} contains itself; it is drawn once")));
             }
             Some(trouble) => self.report(Message::Update(trouble)),
             None => {}

@@ -37,9 +37,14 @@ impl Machine {
         }
     }
 
-    /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION.
+    /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION. Of a name that is not known, the one
+    /// that was probably meant is told, as long as it is no flood of messages.
     pub(super) fn report(&mut self, message: Message) {
-        let text = message.to_string();
+        let unknown = message.unknown().filter(|_| self.reported < LOGGED_PER_FRAME);
+        let text = match unknown.and_then(|name| self.memory.meant(&name)) {
+            Some(meant) => format!("{message}; did you mean {meant}?"),
+            None => message.to_string(),
+        };
         let instance = match message.class() {
             Class::Error => "ERROR",
             Class::Warning => "WARNING",

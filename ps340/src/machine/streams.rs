@@ -67,7 +67,7 @@ impl Machine {
             self.streams.lost += 1;
             let lost = self.streams.lost;
             let type_name = self.memory.network.function(function).map_or("CI", |row| row.name);
-            let name = self.memory.objects.name(function).to_string();
+            let name = self.memory.title(function);
             let fault = Fault { function: type_name, cause: Cause::Flood { input: 1, lost } };
             return self.report(Message::Function { name, fault });
         }

@@ -418,3 +418,36 @@ fn an_initial_structure_that_is_restored_has_no_prefix() {
     tell(&mut machine, "REMOVE PREFIX OF PICK_LOCATION;");
     assert_eq!(errors(&machine), ["E 4 *** PICK_LOCATION is a name without a prefix"]);
 }
+
+#[test]
+fn a_host_that_leaves_ends_the_begin_that_holds_the_picture_for_all() {
+    let mut machine = Machine::new(Settings::default());
+    let (first, second) = (LineId(1), LineId(2));
+    machine.step([Input::Attach(first), Input::Attach(second)], 0);
+    let say = |machine: &mut Machine, line, text: &str| {
+        machine.step([Input::Bytes(line, text.as_bytes().to_vec())], 0);
+        machine.next_frame();
+    };
+    say(&mut machine, first, "BEGIN");
+    say(&mut machine, first, " V := VECTOR_LIST DOTS 0,0; DISPLAY V; BEGIN V := NIL;");
+    say(&mut machine, second, "W := VECTOR_LIST DOTS 0,0 0.5,0; DISPLAY W; COMMAND STATUS;");
+    assert!(machine.latest_update().strokes.is_empty());
+    let status = "I 11 *** 0 BEGIN open; the picture stands still until END on 1 other lines";
+    assert!(machine.log().any(|line| line == status), "{:?}", machine.log().collect::<Vec<_>>());
+    machine.step([Input::Detach(first)], 0);
+    machine.next_frame();
+    assert_eq!(machine.latest_update().strokes.len(), 2);
+    assert!(machine.log().any(|line| line.contains("the line closed while BEGIN was open")));
+}
+
+#[test]
+fn a_name_that_is_not_known_is_told_with_the_one_that_was_meant() {
+    let mut machine = attached();
+    let said = tell(&mut machine, "CUBE := NIL; SEND 1 TO <1>CUEB; X := F:ADDD; DELETE DAILS;");
+    let expected = [
+        "E 2 *** Name not found: CUEB; did you mean CUBE?",
+        "E 2 *** Name not found: F:ADDD; did you mean F:ADD?",
+        "E 2 *** Name not found: DAILS; did you mean DIALS?",
+    ];
+    assert_eq!(said, expected);
+}

@@ -6,6 +6,7 @@ mod initial;
 mod physical;
 mod insertion;
 mod rendering;
+mod title;
 
 pub use refusal::Refusal;
 pub use system::{MAX_INTERFACE_ENTRIES, System};

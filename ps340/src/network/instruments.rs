@@ -17,7 +17,7 @@ pub const TRACED_BYTES: usize = 256;
 /// What a function did since its counters were started, or since it was instanced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Activity {
-    /// Firings, those that ended in a fault included.
+    /// Firings, those that ended in a fault included; of a clock or a device, how often it spoke.
     pub firings: u64,
     /// Firings that ended in a fault, and faults of a clock.
     pub faults: u64,
@@ -93,6 +93,13 @@ impl Network {
     pub fn activity(&self, id: ObjectId) -> Option<Activity> {
         let counted = self.instruments.as_ref()?.activity.as_ref()?;
         self.function(id).map(|_| counted.get(id.index()).copied().unwrap_or_default())
+    }
+
+    /// Counts that a device speaks, if functions are counted.
+    pub fn note_speech(&mut self, id: ObjectId) {
+        if let Some(instruments) = &mut self.instruments {
+            instruments.speaks(id);
+        }
     }
 
     /// Chooses which messages are traced from now on. What was traced before stays until it is taken.
@@ -205,6 +212,12 @@ impl Observer for Instruments {
 
     fn fires(&mut self, object: ObjectId) {
         self.firings += 1;
+        if let Some(activity) = self.of(object) {
+            activity.firings += 1;
+        }
+    }
+
+    fn speaks(&mut self, object: ObjectId) {
         if let Some(activity) = self.of(object) {
             activity.firings += 1;
         }

@@ -40,6 +40,9 @@ pub(super) trait Observer {
     /// A function fires.
     fn fires(&mut self, object: ObjectId);
 
+    /// A clock or a device sends, which no message made fire.
+    fn speaks(&mut self, object: ObjectId);
+
     /// A function has a fault.
     fn fails(&mut self, object: ObjectId);
 
@@ -61,6 +64,8 @@ impl Observer for Nobody {
     }
 
     fn fires(&mut self, _: ObjectId) {}
+
+    fn speaks(&mut self, _: ObjectId) {}
 
     fn fails(&mut self, _: ObjectId) {}
 

@@ -166,6 +166,9 @@ impl Network {
                     self.fail(object, problem, effects, observer);
                 }
             }
+            if outbox.first().is_some() {
+                observer.speaks(object);
+            }
             self.deliver_results(object, &mut outbox, effects, observer);
         }
         self.outbox = Some(outbox);

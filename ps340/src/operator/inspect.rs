@@ -96,7 +96,7 @@ pub(super) const ROWS: &[OrderRow] = &[
     },
 ];
 
-fn on_or_off(words: &mut Words<'_>) -> Result<bool, OrderError> {
+pub(super) fn on_or_off(words: &mut Words<'_>) -> Result<bool, OrderError> {
     match words.next() {
         None | Some("on") => Ok(true),
         Some("off") => Ok(false),
@@ -123,11 +123,16 @@ fn read_graph(words: &mut Words<'_>) -> Result<Order, OrderError> {
         "structure" => Subject::Structure,
         other => return Err(OrderError::Bad { found: other.into(), expected: "'network' or 'structure'" }),
     };
+    let expected = "'dot', 'json' or the name of a file, with a point in it";
     let rest = std::mem::take(&mut words.rest);
     let (language, file) = match rest.split_once(char::is_whitespace).unwrap_or((rest, "")) {
         ("dot", file) => (Language::Dot, file),
         ("json", file) => (Language::Json, file),
         _ if rest.ends_with(".json") => (Language::Json, rest),
+        // A word that is nearly a language must not become a file.
+        _ if !rest.is_empty() && !rest.contains(['.', '/']) => {
+            return Err(OrderError::Bad { found: rest.into(), expected });
+        }
         _ => (Language::Dot, rest),
     };
     let file = Some(file.trim()).filter(|file| !file.is_empty()).map(str::to_owned);

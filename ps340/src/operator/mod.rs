@@ -9,7 +9,7 @@ mod perform;
 
 pub use graph::{Language, Subject, title};
 pub use inspect::Inspection;
-pub use order::{Order, OrderError, OrderRow, Screen, parse, rows};
+pub use order::{Order, OrderError, OrderRow, Screen, parse, rows, unescape};
 pub use perform::{Outcome, Wait, perform};
 
 /// The reply line for a result: `ok`, `ok TEXT` or `error TEXT`, without the line end.

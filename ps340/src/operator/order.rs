@@ -4,7 +4,7 @@ use super::inspect::{self, Inspection};
 use crate::machine::{Key, KeyboardMode};
 use clap::ValueEnum;
 
-/// One row of the table of orders, from which `help` is made.
+/// One row of the table of orders, from which `help` is made. Rows are the same if their words are.
 #[derive(Clone, Copy, Debug)]
 pub struct OrderRow {
     /// The first word.
@@ -14,6 +14,12 @@ pub struct OrderRow {
     /// What it does.
     pub summary: &'static str,
     pub(super) read: fn(&mut Words<'_>) -> Result<Order, OrderError>,
+}
+
+impl PartialEq for OrderRow {
+    fn eq(&self, other: &OrderRow) -> bool {
+        self.word == other.word
+    }
 }
 
 /// Which of the two screens.
@@ -60,7 +66,16 @@ pub enum Order {
     /// Waits until nothing is left to do, for so many frames at most.
     Idle(u64),
     /// Waits for a message to the host, for so many frames at most.
-    Message(u64),
+    Message {
+        /// Whether messages that came before the order do not count.
+        fresh: bool,
+        /// For how many frames at most.
+        frames: u64,
+    },
+    /// The messages to the host that nobody took yet.
+    Messages,
+    /// How replies look on this operator line: with line ends as they are, or as `\n`.
+    Lines(bool),
     /// Writes a picture of a screen.
     Picture {
         /// Which.
@@ -86,8 +101,8 @@ pub enum Order {
     Inspect(Inspection),
     /// The latest numbered messages of the machine.
     Log,
-    /// Lists the orders.
-    Help,
+    /// Lists the orders, or says all about one.
+    Help(Option<&'static OrderRow>),
     /// Ends the machine.
     Quit,
 }
@@ -110,7 +125,9 @@ impl Order {
             | Order::Mode(None)
             | Order::Frames(_)
             | Order::Idle(_)
-            | Order::Message(_)
+            | Order::Message { .. }
+            | Order::Messages
+            | Order::Lines(_)
             | Order::Picture { .. }
             | Order::Show(_)
             | Order::Strokes(_)
@@ -120,7 +137,7 @@ impl Order {
             | Order::Terminal
             | Order::Inspect(_)
             | Order::Log
-            | Order::Help
+            | Order::Help(_)
             | Order::Quit => false,
         }
     }
@@ -170,7 +187,7 @@ const ORDERS: &[OrderRow] = &[
     OrderRow {
         word: "dial",
         arguments: "1..8 TURNS",
-        summary: "turn a dial; the machine sees it at the next frame",
+        summary: "turn a dial; the machine reads it at the next frame, see 'frames'",
         read: dial,
     },
     OrderRow {
@@ -214,9 +231,15 @@ const ORDERS: &[OrderRow] = &[
     },
     OrderRow {
         word: "message",
-        arguments: "[N]",
-        summary: "wait for the next message to the host, N frames at most",
-        read: |w| Ok(Order::Message(w.optional("a number of frames")?.unwrap_or(PATIENCE))),
+        arguments: "[new] [N]",
+        summary: "the oldest message to the host that nobody took; wait N frames at most. new: one that is still to come",
+        read: message,
+    },
+    OrderRow {
+        word: "messages",
+        arguments: "",
+        summary: "all messages to the host that nobody took yet",
+        read: |_| Ok(Order::Messages),
     },
     OrderRow {
         word: "picture",
@@ -263,7 +286,13 @@ const ORDERS: &[OrderRow] = &[
         read: |_| Ok(Order::Terminal),
     },
     OrderRow { word: "log", arguments: "", summary: "the latest messages of the machine", read: |_| Ok(Order::Log) },
-    OrderRow { word: "help", arguments: "", summary: "this list", read: |_| Ok(Order::Help) },
+    OrderRow {
+        word: "lines",
+        arguments: "[on|off]",
+        summary: "replies on this operator line as lines of text, and no longer with \\n in one line",
+        read: |words| Ok(Order::Lines(inspect::on_or_off(words)?)),
+    },
+    OrderRow { word: "help", arguments: "[ORDER]", summary: "this list, or one order", read: help },
     OrderRow { word: "quit", arguments: "", summary: "end the machine", read: |_| Ok(Order::Quit) },
 ];
 
@@ -274,9 +303,25 @@ const ORDERS: &[OrderRow] = &[
 pub fn parse(line: &str) -> Result<Order, OrderError> {
     let mut words = Words { rest: line.trim() };
     let word = words.required("an order")?;
-    let row = rows().find(|r| r.word.eq_ignore_ascii_case(word));
-    let order = (row.ok_or_else(|| OrderError::Unknown(word.into()))?.read)(&mut words)?;
+    let order = (row(word)?.read)(&mut words)?;
     if words.rest.is_empty() { Ok(order) } else { Err(OrderError::TooMuch(words.rest.into())) }
+}
+
+/// The row of an order.
+fn row(word: &str) -> Result<&'static OrderRow, OrderError> {
+    rows().find(|row| row.word.eq_ignore_ascii_case(word)).ok_or_else(|| OrderError::Unknown(word.into()))
+}
+
+fn help(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    Ok(Order::Help(words.next().map(row).transpose()?))
+}
+
+fn message(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let fresh = words.rest.split_whitespace().next() == Some("new");
+    if fresh {
+        words.next();
+    }
+    Ok(Order::Message { fresh, frames: words.optional("'new' or a number of frames")?.unwrap_or(PATIENCE) })
 }
 
 /// What is left of the line.
@@ -385,8 +430,9 @@ fn type_text(words: &mut Words<'_>) -> Result<Order, OrderError> {
     Ok(Order::Type(unescape(text)))
 }
 
-/// The characters that a text with backslashes stands for; a backslash before anything else stands for itself.
-fn unescape(text: &str) -> Vec<u8> {
+/// The characters that a text with backslashes stands for, as in `type`; a backslash before anything else stands for
+/// itself.
+pub fn unescape(text: &str) -> Vec<u8> {
     let mut typed = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
     while let [first, after @ ..] = rest {

@@ -1,6 +1,6 @@
 //! Carrying out an order on a machine.
 
-use super::{Order, Screen, inspect::inspect, rows};
+use super::{Order, OrderRow, Screen, inspect::inspect, rows};
 use crate::{
     calligraphic::Beam,
     machine::{Event, Key, Machine, TabletEvent},
@@ -64,7 +64,14 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         Order::Type(text) => Event::Type(text.clone()),
         Order::Frames(n) => return Outcome::Waiting(Wait::Frame(frame.saturating_add(*n))),
         Order::Idle(n) => return Outcome::Waiting(Wait::Idle(frame.saturating_add(*n))),
-        Order::Message(n) => return Outcome::Waiting(Wait::Message(frame.saturating_add(*n))),
+        Order::Message { fresh, frames } => {
+            if *fresh {
+                while machine.take_message().is_some() {}
+            }
+            return Outcome::Waiting(Wait::Message(frame.saturating_add(*frames)));
+        }
+        Order::Messages => return Outcome::Done(Ok(messages(machine))),
+        Order::Lines(_) => return Outcome::Done(Ok(String::new())),
         Order::Picture { screen, file, size } => return Outcome::Done(picture(machine, *screen, file, *size)),
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
         Order::Strokes(most) => {
@@ -79,7 +86,8 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         }
         Order::Terminal => return Outcome::Done(Ok(machine.terminal().text())),
         Order::Log => return Outcome::Done(Ok(machine.log().collect::<Vec<_>>().join("\n"))),
-        Order::Help => return Outcome::Done(Ok(help())),
+        Order::Help(None) => return Outcome::Done(Ok(help())),
+        Order::Help(Some(row)) => return Outcome::Done(Ok(help_on(row))),
         Order::Quit => return Outcome::Quit,
     };
     machine.event(event);
@@ -87,8 +95,18 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
 }
 
 fn help() -> String {
-    let lines = rows().map(|r| format!("{:<50} {}", format!("{} {}", r.word, r.arguments), r.summary));
-    lines.collect::<Vec<_>>().join("\n")
+    rows().map(help_on).collect::<Vec<_>>().join("\n")
+}
+
+fn help_on(row: &OrderRow) -> String {
+    format!("{:<50} {}", format!("{} {}", row.word, row.arguments), row.summary)
+}
+
+/// The messages to the host that nobody took, one a line.
+fn messages(machine: &mut Machine) -> String {
+    let taken = std::iter::from_fn(|| machine.take_message());
+    let lines: Vec<String> = taken.map(|message| String::from_utf8_lossy(&message).into_owned()).collect();
+    if lines.is_empty() { "no message to the host".into() } else { lines.join("\n") }
 }
 
 /// The number of strokes, then on each line x and y of start and end, the intensities there, red, green and blue.

@@ -24,6 +24,9 @@ fn orders_read_back() {
     assert_eq!(parse("key setup"), Ok(Order::Press(Key::Setup)));
     assert_eq!(parse("mode command"), Ok(Order::Mode(Some(KeyboardMode::Command))));
     assert_eq!(parse("mode"), Ok(Order::Mode(None)));
+    assert_eq!(parse("message"), Ok(Order::Message { fresh: false, frames: 600 }));
+    assert_eq!(parse("message new 3"), Ok(Order::Message { fresh: true, frames: 3 }));
+    assert_eq!(parse("lines"), Ok(Order::Lines(true)));
     assert_eq!(parse("stylus down"), Ok(Order::PuckPress(1)));
     assert_eq!(parse("stylus move 1 0.5"), Ok(Order::PuckMove([1.0, 0.5])));
     let file = "my picture.png".to_string();
@@ -48,6 +51,10 @@ fn bad_orders_name_the_word_that_is_wrong() {
         parse("stylus press"),
         Err(OrderError::Bad { found: "press".into(), expected: "'move', 'down', 'up' or 'away'" })
     );
+    let expected = "'dot', 'json' or the name of a file, with a point in it";
+    assert_eq!(parse("graph network jsno"), Err(OrderError::Bad { found: "jsno".into(), expected }));
+    assert!(parse("graph network a.dot").is_ok() && parse("graph network json").is_ok());
+    assert_eq!(parse("help dail"), Err(OrderError::Unknown("dail".into())));
     assert_eq!(parse("button 3 4"), Err(OrderError::TooMuch("4".into())));
 }
 
@@ -124,6 +131,24 @@ fn functions_count_what_they_did() {
 }
 
 #[test]
+fn clocks_and_devices_count_how_often_they_spoke() {
+    let clock =
+        "C := F:CLFRAMES; SEND FIX(2) TO <1>C; SEND FIX(1) TO <2>C; SEND TRUE TO <6>C; CONNECT C<1>:<1>DLABEL2;";
+    let text = format!("{CHAIN}{clock}");
+    let said =
+        replies(&text, &["count on", "dial 1 1", "frames 4", "dial 1 1", "frames 1", "counters dials", "counters c"]);
+    assert!(said[5].starts_with("ok firings=2 ") && said[5].contains("sent=2"), "{}", said[5]);
+    assert!(!said[6].starts_with("ok firings=0 "), "{}", said[6]);
+}
+
+#[test]
+fn messages_are_taken_one_by_one_or_all_or_only_new_ones() {
+    let text = "SEND 'A' TO <1>HOST_MESSAGE; SEND 'B' TO <1>HOST_MESSAGE; SEND 'C' TO <1>HOST_MESSAGE;";
+    assert_eq!(replies(text, &["message", "messages", "messages"]), ["ok A", "ok B\\nC", "ok no message to the host"]);
+    assert_eq!(replies(text, &["message new 2", "message 2"]), ["error no message to the host"; 2]);
+}
+
+#[test]
 fn graphs_show_functions_arcs_and_nodes() {
     let text =
         format!("{CHAIN} L := INSTANCE OF T; DISPLAY L; CONNECT A<1>:<1>T; FONTS := CHARACTER FONT NONE THEN L;");
@@ -159,6 +184,8 @@ fn help_lists_every_order_and_keys_every_key() {
     for row in rows() {
         assert!(help.lines().any(|line| line.starts_with(row.word) && line.ends_with(row.summary)), "{}", row.word);
     }
+    let dial = performed(&mut machine, "help DIAL");
+    assert!(help.lines().any(|line| line == dial) && dial.starts_with("dial 1..8 TURNS "), "{dial}");
     for key in performed(&mut machine, "keys").split(' ') {
         assert!(parse(&format!("key {key}")).is_ok(), "{key}");
     }
@@ -174,6 +201,23 @@ fn a_person_works_at_the_terminal_by_orders() {
     let panel = performed(&mut machine, "panel");
     assert!(panel.starts_with("key 2: HELLO\n") && panel.contains("keyboard: command"), "{panel}");
     assert_eq!(performed(&mut machine, "mode"), "command");
+}
+
+#[test]
+fn the_prompt_says_what_is_open() {
+    let mut machine = Machine::new(Settings::default());
+    performed(&mut machine, "key command");
+    let mut prompt = |typed: &str| {
+        performed(&mut machine, &format!("type {typed}\\r"));
+        performed(&mut machine, "terminal").lines().last().unwrap_or_default().to_owned()
+    };
+    assert_eq!(prompt("DISPLAY"), "@@...>");
+    assert_eq!(prompt("A;"), "@@");
+    assert_eq!(prompt("ROBOT := BEGIN_STRUCTURE"), "@@...>");
+    assert_eq!(prompt("ARM := BEGIN_STRUCTURE NIL;"), "@@2 ROBOT.ARM>");
+    assert_eq!(prompt("END_STRUCTURE;"), "@@1 ROBOT>");
+    assert_eq!(prompt("END_STRUCTURE; BEGIN NIL"), "@@BEGIN...>");
+    assert_eq!(prompt("!RESET;"), "@@");
 }
 
 #[test]

@@ -85,6 +85,8 @@ pub struct Player {
     partial: Vec<u8>,
     failures: Vec<Failure>,
     steps: u64,
+    /// Lines of the files that the machine has not got: directives.
+    unsent: usize,
 }
 
 impl Player {
@@ -102,6 +104,7 @@ impl Player {
             partial: Vec::new(),
             failures: Vec::new(),
             steps: 0,
+            unsent: 0,
         }
     }
 
@@ -113,13 +116,17 @@ impl Player {
             if watcher.stops(&self.file, self.line, self.machine.frame()) {
                 return End::Stopped;
             }
+            self.unsent += 1;
             let end = match step {
                 Step::Nothing => None,
                 Step::Text(text) => {
+                    // Directives count as empty lines, so that the lines that the machine counts are those of the file.
+                    let mut bytes = vec![b'\n'; std::mem::take(&mut self.unsent) - 1];
+                    bytes.extend_from_slice(text);
                     if !text.trim_ascii().is_empty() {
                         watcher.heard('>', text.trim_ascii_end());
                     }
-                    self.step([Input::Bytes(LINE, text.clone())], 0, watcher);
+                    self.step([Input::Bytes(LINE, bytes)], 0, watcher);
                     None
                 }
                 Step::Order(order, text) => {
@@ -214,6 +221,17 @@ impl Player {
                             return None;
                         }
                         return self.fail(format!("expected {expected}, got {}", message.text));
+                    }
+                }
+                Expected::Typed(characters) => {
+                    let typed = self.machine.typed();
+                    if typed.starts_with(characters) {
+                        self.machine.take_typed(characters.len());
+                        return None;
+                    }
+                    if !characters.starts_with(typed) {
+                        let came = typed.escape_ascii().to_string();
+                        return self.fail(format!("expected {expected}, got '{came}'"));
                     }
                 }
                 _ => {

@@ -1,7 +1,7 @@
 //! The lines of a command file that is played.
 
 use super::pattern::matches;
-use crate::operator::{self, Order, OrderError};
+use crate::operator::{self, Order, OrderError, unescape};
 
 /// A command file, line by line.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,6 +55,8 @@ pub enum Expected {
     },
     /// The next message of the machine of this class begins as the pattern says, such as `E 5 *** Bad`.
     Error(Vec<u8>),
+    /// The terminal sends these characters to the host, as its keyboard was typed on.
+    Typed(Vec<u8>),
     /// No message comes to the host.
     None,
 }
@@ -79,7 +81,8 @@ pub enum ScriptProblem {
     Order(#[from] OrderError),
     /// What it waits for cannot be read.
     #[error(
-        "'{0}' is nothing to expect; write 'TEXT', /PATTERN*/, NUMBER [TOLERANCE], error E 5 ..., or none [FRAMES]"
+        "'{0}' is nothing to expect; write 'TEXT', /PATTERN*/, NUMBER [TOLERANCE], typed 'TEXT', error E 5 ..., or none \
+         [FRAMES]"
     )]
     Expected(String),
     /// No number of frames behind `within`.
@@ -140,13 +143,16 @@ fn read_expected(text: &str) -> Result<Step, ScriptProblem> {
         class.ok_or_else(bad)?;
         return Ok(Step::Expect { expected: Expected::Error(rest.into()), within: None });
     }
+    let typed = word("typed");
     for (quote, pattern) in [('\'', false), ('/', true)] {
-        let Some(inner) = text.strip_prefix(quote) else { continue };
+        let Some(inner) = typed.filter(|_| !pattern).unwrap_or(text).strip_prefix(quote) else { continue };
         let end = inner.rfind(quote).ok_or_else(bad)?;
         let (inside, rest) = (&inner[..end], inner[end + 1..].trim());
-        let expected = match pattern {
-            true => Expected::Pattern(inside.into()),
-            false => Expected::Text(inside.replace("''", "'").into()),
+        let plain = inside.replace("''", "'");
+        let expected = match (pattern, typed) {
+            (true, _) => Expected::Pattern(inside.into()),
+            (false, Some(_)) => Expected::Typed(unescape(&plain)),
+            (false, None) => Expected::Text(plain.into()),
         };
         return Ok(Step::Expect { expected, within: read_within(rest, bad)? });
     }
@@ -183,7 +189,7 @@ impl Expected {
                 let read = std::str::from_utf8(message).ok().and_then(|text| text.trim().parse::<f64>().ok());
                 read.is_some_and(|number| (number - value).abs() <= *tolerance)
             }
-            Expected::Error(_) | Expected::None => false,
+            Expected::Error(_) | Expected::Typed(_) | Expected::None => false,
         }
     }
 
@@ -204,6 +210,7 @@ impl std::fmt::Display for Expected {
             Expected::Number { value, tolerance } if *tolerance == 0.0 => write!(f, "{value}"),
             Expected::Number { value, tolerance } => write!(f, "{value} within {tolerance}"),
             Expected::Error(pattern) => write!(f, "error {}", text(pattern)),
+            Expected::Typed(characters) => write!(f, "typed '{}'", characters.escape_ascii()),
             Expected::None => f.write_str("no message"),
         }
     }

@@ -58,6 +58,22 @@ fn a_failed_step_says_what_was_expected_and_what_came() {
 }
 
 #[test]
+fn what_the_keyboard_sends_to_the_host_can_be_expected() {
+    let text =
+        "@ mode terminal\n@ type ab\\r\n@ expect typed 'ab\\r'\n@ type cd\n@ expect typed 'c'\n@ expect typed 'x'\n";
+    let (_, failures, _) = run(text);
+    assert_eq!(failures, ["a.ps300:6: expected typed 'x', got 'd'"]);
+    let (_, failures, _) = run("@ expect typed 'a' within 3\n");
+    assert_eq!(failures, ["a.ps300:1: expected typed 'a', got nothing in 3 frames"]);
+}
+
+#[test]
+fn lines_of_the_machines_errors_are_those_of_the_file() {
+    let (_, failures, _) = run("@ frames 1\nA := NIL;\n@ # a comment\n\n  DISPLAY 7;\n");
+    assert_eq!(failures, ["a.ps300:5: unexpected: E 1 *** 5:11: expected a name, found `7`"]);
+}
+
+#[test]
 fn errors_fail_a_run_unless_a_step_expects_them() {
     let nonsense = "DISPLAY 7;\nSEND 1 TO <1>NOBODY;\n";
     let (end, failures, _) = run(nonsense);

@@ -2,9 +2,9 @@
 
 use super::{Clock, End, Mirror, Operator, Options, WAITING_EVENTS};
 use crate::{
-    line::{Capture, Interface, LineEvent, LineId, Writer},
+    line::{Capture, Interface, LineEvent, LineId, OperatorLine, Reply, Writer},
     machine::{Input, Machine, Micros, time_of_frame},
-    operator::{Outcome, Wait, parse, perform, reply},
+    operator::{Order, Outcome, Wait, parse, perform, reply},
 };
 use std::{
     collections::{BTreeMap, HashMap},
@@ -31,7 +31,7 @@ pub(super) struct Turns {
     /// Wall-clock time of machine time 0.
     epoch: Instant,
     writers: BTreeMap<LineId, (String, Writer)>,
-    waits: Vec<(Wait, oneshot::Sender<String>)>,
+    waits: Vec<(Wait, oneshot::Sender<Reply>)>,
     /// Hosts that have closed their side, and the frame at which they are let go at the latest.
     leaving: Vec<(LineId, u64)>,
     /// Messages lost since the latest frame, by line.
@@ -155,29 +155,43 @@ impl Turns {
                 self.leaving.push((line, self.machine.frame() + GRACE_FRAMES));
             }
             LineEvent::Operator(order) => {
-                let outcome = match parse(&order.text) {
-                    Ok(parsed) => {
-                        if let Some(capture) = self.capture.as_ref().filter(|_| parsed.is_action()) {
-                            capture.record_order(&order.text);
-                        }
-                        perform(&parsed, &mut self.machine)
-                    }
-                    Err(error) => Outcome::Done(Err(error.to_string())),
-                };
-                // What an order made the machine say leaves before its reply.
-                self.step(None, 0);
-                match outcome {
-                    Outcome::Done(result) => drop(order.reply.send(reply(&result))),
-                    Outcome::Waiting(wait) => self.waits.push((wait, order.reply)),
-                    Outcome::Quit => {
-                        let _ = order.reply.send(reply(&Ok("quit".into())));
-                        return Some(End::Quit);
-                    }
-                }
+                return self.order(order);
             }
             LineEvent::SourceEnded => self.sources = self.sources.saturating_sub(1),
             LineEvent::OperatorGone => return Some(End::Quit),
             LineEvent::Interrupted => return Some(End::Interrupted),
+        }
+        None
+    }
+
+    /// Carries out an order of an operator.
+    fn order(&mut self, OperatorLine { text, reply: answer }: OperatorLine) -> Option<End> {
+        let parsed = parse(&text);
+        let mut outcome = match &parsed {
+            Ok(order) => {
+                if let Some(capture) = self.capture.as_ref().filter(|_| order.is_action()) {
+                    capture.record_order(&text);
+                }
+                perform(order, &mut self.machine)
+            }
+            Err(error) => Outcome::Done(Err(error.to_string())),
+        };
+        // What an order made the machine say leaves before its reply.
+        self.step(None, 0);
+        if let (Ok(Order::Dial { .. }), Outcome::Done(Ok(said))) = (&parsed, &mut outcome) {
+            *said = match self.clock {
+                Clock::Real => "the machine reads it at the next frame".into(),
+                Clock::Virtual => "the machine reads it at the next frame; 'frames 1' lets one pass".into(),
+            };
+        }
+        let lines = if let Ok(Order::Lines(on)) = parsed { Some(on) } else { None };
+        match outcome {
+            Outcome::Done(result) => drop(answer.send(Reply { text: reply(&result), lines })),
+            Outcome::Waiting(wait) => self.waits.push((wait, answer)),
+            Outcome::Quit => {
+                let _ = answer.send(reply(&Ok("quit".into())).into());
+                return Some(End::Quit);
+            }
         }
         None
     }
@@ -221,7 +235,7 @@ impl Turns {
     fn poll_waits(&mut self) {
         for (wait, reply_to) in std::mem::take(&mut self.waits) {
             match wait.poll(&mut self.machine) {
-                Some(result) => drop(reply_to.send(reply(&result))),
+                Some(result) => drop(reply_to.send(reply(&result).into())),
                 None => self.waits.push((wait, reply_to)),
             }
         }

@@ -6,6 +6,7 @@ mod fault;
 mod inputs;
 mod copy;
 mod physical;
+mod word;
 
 pub use copy::{CopyFault, copy};
 pub use fault::{NodeFault, RenderingFault};
@@ -352,6 +353,11 @@ impl Structures {
     /// Whether changes are not to be shown yet.
     pub fn is_held(&self) -> bool {
         self.holds > 0
+    }
+
+    /// How many lines are between BEGIN and END.
+    pub fn holds(&self) -> u32 {
+        self.holds
     }
 
     /// The frame of the display.

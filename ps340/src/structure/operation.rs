@@ -242,10 +242,10 @@ fn viewing(operate: &Operate) -> Result<Option<Operation>, Degenerate> {
 /// The operations that set or test something other than a matrix.
 fn attribute(operate: &Operate) -> Result<Operation, Degenerate> {
     Ok(match operate {
-        Operate::SetColor { hue, saturation } => Operation::Color { hue: *hue, saturation: *saturation },
-        Operate::SetColorBlending(saturation) => Operation::ColorBlending(*saturation),
+        Operate::SetColor { hue, saturation } => Operation::Color { hue: *hue, saturation: saturation.clamp(0.0, 1.0) },
+        Operate::SetColorBlending(saturation) => Operation::ColorBlending(saturation.clamp(0.0, 1.0)),
         Operate::SetIntensity { on, range } => Operation::Intensity { on: *on, range: *range },
-        Operate::SetContrast(contrast) => Operation::Contrast(*contrast),
+        Operate::SetContrast(contrast) => Operation::Contrast(contrast.clamp(0.0, 1.0)),
         Operate::SetCsm(on) => Operation::Csm(*on),
         Operate::SetDepthClipping(on) => Operation::DepthClipping(*on),
         Operate::SetDisplays { scopes, on } => {

@@ -38,7 +38,8 @@ impl Missed {
         let words = || self.lists[..self.count].iter().copied().flatten().copied();
         let begins = |word: &Word| {
             let form = word.form().as_bytes();
-            text.len() < word.shortest() && form[..text.len()].eq_ignore_ascii_case(text)
+            // One letter is rather a name than the beginning of a word.
+            (2..word.shortest()).contains(&text.len()) && form[..text.len()].eq_ignore_ascii_case(text)
         };
         if let Some(word) = words().filter(begins).min_by_key(|word| word.shortest()) {
             return Problem::TooShort(word);

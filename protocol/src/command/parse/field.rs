@@ -173,7 +173,7 @@ impl Parser<'_> {
                 self.advance();
                 Ok(integer)
             }
-            None => Err(self.refuse(Problem::OutOfRange)),
+            None => Err(self.refuse(Problem::Outside { least: range.start, most: range.end - 1 })),
         }
     }
 
@@ -197,7 +197,7 @@ impl Parser<'_> {
     pub(super) fn input(&mut self) -> Result<Input, Fault> {
         const EXPECTED: &[&str] =
             &["the number of an input", "append, delete, clear, step, position, last, substitute"];
-        self.expect(TokenKind::Less, &["`<`"])?;
+        self.expect(TokenKind::Less, &["an input such as `<1>`"])?;
         let input = match self.token.kind {
             TokenKind::Number(_) => Input::Number(self.integer(1..NUMBERS)? as u32),
             TokenKind::Name => {

@@ -29,7 +29,7 @@ impl Parser<'_> {
 
     /// `<i>`, an output.
     fn output(&mut self) -> Result<u16, Fault> {
-        self.expect(TokenKind::Less, &["`<`"])?;
+        self.expect(TokenKind::Less, &["an output such as `<1>`"])?;
         let output = self.integer(1..NUMBERS)? as u16;
         self.expect(TokenKind::Greater, &["`>`"])?;
         Ok(output)
@@ -65,7 +65,7 @@ impl Parser<'_> {
         } else if self.token.kind == TokenKind::Less {
             Some(self.destination()?)
         } else {
-            return Err(self.fail(&["`<`", "ALL"]));
+            return Err(self.fail(&["an input such as `<1>`", "ALL"]));
         };
         Ok(Command::Disconnect { source, output, destination })
     }
@@ -109,9 +109,8 @@ impl Parser<'_> {
 
     /// `[TO] <j>name`
     fn destination_after_to(&mut self) -> Result<Destination, Fault> {
-        self.accept_word(Word::To);
-        if self.token.kind != TokenKind::Less {
-            return Err(self.fail(&["TO", "`<`"]));
+        if !self.accept_word(Word::To) && self.token.kind != TokenKind::Less {
+            return Err(self.fail(&["TO", "an input such as `<1>`"]));
         }
         self.destination()
     }

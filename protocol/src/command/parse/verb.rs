@@ -1,16 +1,44 @@
 //! Commands that define nothing: display, editing of structures, names.
 
 use super::Parser;
-use crate::command::{
-    error::Fault,
-    syntax::{Command, Initialize, NamePattern, Object},
-    token::TokenKind,
-    words::{self, Word},
+use crate::{
+    Name,
+    command::{
+        error::{Fault, Problem},
+        syntax::{Command, Initialize, NamePattern, Object},
+        token::{Lexer, Token, TokenKind},
+        words::{self, Word},
+    },
 };
 
 impl Parser<'_> {
     /// One command, up to its `;` or to what follows a word such as BEGIN_STRUCTURE.
     pub(super) fn command(&mut self) -> Result<Command, Fault> {
+        let first = self.token;
+        self.any_command().map_err(|fault| self.misnamed(first, &fault).unwrap_or(fault))
+    }
+
+    /// What is wrong with a definition whose name cannot be one (`A-B := ...`), or whose sign is not `:=`; none if the
+    /// statement is no such definition.
+    ///
+    /// - `first`: the first token.
+    /// - `fault`: what was found to be wrong.
+    fn misnamed(&mut self, first: Token, fault: &Fault) -> Option<Fault> {
+        self.jump(first.start);
+        let rest = &self.lexer.text()[first.start..];
+        let ends = |at: &usize| rest[*at] <= b' ' || rest[*at..].starts_with(b":=") || b"';{".contains(&rest[*at]);
+        let length = (0..rest.len()).find(ends).unwrap_or(rest.len());
+        let assigned = Lexer::new(rest, length).token().kind == TokenKind::Assign;
+        if let Some(why) = Name::new(&rest[..length]).err().filter(|_| assigned) {
+            return Some(Fault { span: first.start..first.start + length, problem: why.into(), expected: &[] });
+        }
+        let next = self.ahead();
+        let unread = fault.span == first.span() && first.kind == TokenKind::Name;
+        let nearly = unread && matches!(next.kind, TokenKind::Equal | TokenKind::Colon);
+        nearly.then(|| Fault { span: next.span(), problem: Problem::Unexpected, expected: &["`:=`"] })
+    }
+
+    fn any_command(&mut self) -> Result<Command, Fault> {
         match (self.token.kind, self.ahead().kind) {
             (TokenKind::Name, TokenKind::Assign) => {
                 let name = self.name()?;

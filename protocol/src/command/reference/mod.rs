@@ -17,7 +17,7 @@ mod text;
 mod transformation;
 mod viewing;
 
-pub use name_of::name_of;
+pub use name_of::{name_of, name_of_object, name_of_operate};
 pub use row::{CommandRow, Confidence, InputRow, OptionRow};
 
 use super::{spelling::nearest, words::Word};
@@ -54,35 +54,40 @@ pub struct UnknownCommand {
 }
 
 /// The rows that `name` may mean: the row of that name; else those whose words begin with the words of `name`, which
-/// may be abbreviated; else those that contain a keyword of that name.
+/// may be abbreviated; else those that contain a keyword of that name. A blank may stand for an underscore.
 ///
 /// # Errors
 /// [`UnknownCommand`] if there are none.
 pub fn find(name: &str) -> Result<Vec<&'static CommandRow>, UnknownCommand> {
-    let asked: Vec<String> = name.split_whitespace().map(str::to_ascii_uppercase).collect();
+    let asked: Vec<String> = words(name).map(str::to_ascii_uppercase).collect();
     let whole = asked.join(" ");
-    let same: Vec<_> = rows().filter(|row| row.name == whole).collect();
+    let keyword = asked.join("_");
+    let same: Vec<_> = rows().filter(|row| words(row.name).eq(asked.iter().map(String::as_str))).collect();
     let begins = |row: &&CommandRow| {
-        let words: Vec<&str> = row.name.split(' ').collect();
+        let words: Vec<&str> = words(row.name).collect();
         !asked.is_empty()
             && words.len() >= asked.len()
             && words.iter().zip(&asked).all(|(word, asked)| word.starts_with(asked.as_str()))
     };
     let beginning: Vec<_> = rows().filter(begins).collect();
-    let mentioning: Vec<_> = rows().filter(|row| row.words().any(|word| word.accepts(whole.as_bytes()))).collect();
+    let mentioning: Vec<_> = rows().filter(|row| row.words().any(|word| word.accepts(keyword.as_bytes()))).collect();
     for found in [same, beginning, mentioning] {
         if !found.is_empty() {
             return Ok(found);
         }
     }
-    let words = Word::ALL.iter().map(|word| (word.upper(), *word));
     let word = nearest(&whole, rows().map(|row| row.name)).or_else(|| {
-        let upper: Vec<(String, Word)> = words.collect();
-        let near = nearest(&whole, upper.iter().map(|pair| pair.0.as_str()))?;
+        let upper: Vec<(String, Word)> = Word::ALL.iter().map(|word| (word.upper(), *word)).collect();
+        let near = nearest(&keyword, upper.iter().map(|pair| pair.0.as_str()))?;
         let word = upper.iter().find(|pair| pair.0 == near)?.1;
         rows().find(|row| row.words().any(|w| w == word)).map(|row| row.name)
     });
     Err(UnknownCommand { asked: name.to_owned(), nearest: word })
+}
+
+/// The parts of a name between blanks and underscores.
+fn words(name: &str) -> impl Iterator<Item = &str> {
+    name.split(|c: char| c == '_' || c.is_whitespace()).filter(|word| !word.is_empty())
 }
 
 /// The list of all commands: name and summary, group by group.

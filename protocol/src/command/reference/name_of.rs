@@ -5,7 +5,7 @@ use crate::command::syntax::{Command, Object, Operate};
 /// The name of the row that describes a command.
 pub const fn name_of(command: &Command) -> &'static str {
     match command {
-        Command::Define { object, .. } => object_name(object),
+        Command::Define { object, .. } => name_of_object(object),
         Command::EndStructure => "BEGIN_STRUCTURE",
         Command::Display(_) => "DISPLAY",
         Command::Remove(_) => "REMOVE",
@@ -45,14 +45,15 @@ pub const fn name_of(command: &Command) -> &'static str {
     }
 }
 
-const fn object_name(object: &Object) -> &'static str {
+/// The name of the row of the command that makes an object.
+pub const fn name_of_object(object: &Object) -> &'static str {
     match object {
         Object::Nil => "NIL",
         Object::BeginStructure => "BEGIN_STRUCTURE",
         Object::Instance(_) => "INSTANCE OF",
         Object::VectorList(_) => "VECTOR_LIST",
         Object::Characters(_) => "CHARACTERS",
-        Object::Operate { operate, .. } => operate_name(operate),
+        Object::Operate { operate, .. } => name_of_operate(operate),
         Object::Function { .. } => "F:",
         Object::Alias(_) => "ALIAS",
         Object::Polygons(_) => "POLYGON",
@@ -68,7 +69,8 @@ const fn object_name(object: &Object) -> &'static str {
     }
 }
 
-const fn operate_name(operate: &Operate) -> &'static str {
+/// The name of the row of an operate command.
+pub const fn name_of_operate(operate: &Operate) -> &'static str {
     match operate {
         Operate::Rotate { .. } => "ROTATE",
         Operate::Scale(_) => "SCALE",

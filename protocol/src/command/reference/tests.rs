@@ -66,6 +66,9 @@ fn a_row_is_found_by_its_name_its_beginning_or_a_keyword() {
     assert_eq!(names("set  pick id"), Ok(vec!["SET PICKING IDENTIFIER"]));
     assert_eq!(names("if").map(|rows| rows.len()), Ok(3));
     assert_eq!(names("store"), Ok(vec!["SEND"]));
+    assert_eq!(names("begin structure"), Ok(vec!["BEGIN_STRUCTURE"]));
+    assert_eq!(names("END STRUC"), Ok(vec!["BEGIN_STRUCTURE"]));
+    assert_eq!(names("set level of detail"), Ok(vec!["SET LEVEL_OF_DETAIL"]));
     let error = find("ROTTATE").unwrap_err();
     assert_eq!(error.to_string(), "there is no command ROTTATE; did you mean ROTATE?");
     assert_eq!(find("STROE").unwrap_err().nearest, Some("SEND"));

@@ -112,3 +112,23 @@ fn include_and_remove_edit_instances_structures_and_what_is_not_there_yet() {
     assert_eq!(desk.picture(), [[0.5, 0.0]]);
     assert_eq!(desk.tell("INCLUDE A IN D;"), ["E 4 *** D is no instance that could include A"]);
 }
+
+#[test]
+fn members_of_the_open_structure_are_told_to_be_out_of_reach() {
+    let mut desk = told("ROBOT := BEGIN_STRUCTURE ARM := ROTATE IN X 20; D := VECTOR_LIST DOTS 0,0;");
+    for command in
+        ["PREFIX ARM WITH SCALE 2;", "FOLLOW ARM WITH SCALE 2;", "SEND 1 TO <1>ROBOT.ARM;", "INCLUDE X IN ARM;"]
+    {
+        let said = desk.tell(command);
+        assert!(
+            said.len() == 1 && said[0].starts_with("E 4 *** ") && said[0].ends_with("of ROBOT.ARM"),
+            "{command}: {said:?}"
+        );
+    }
+    assert_eq!(
+        desk.tell("INCLUDE D IN PICTURE;"),
+        ["E 4 *** D is inside ROBOT, which is still open: say this after END_STRUCTURE, of ROBOT.D"]
+    );
+    assert!(desk.tell("INCLUDE ROBOT.D IN PICTURE;").is_empty(), "a full name is known later");
+    assert!(desk.tell("END_STRUCTURE; PREFIX ROBOT.ARM WITH SCALE 2;").is_empty());
+}

@@ -11,7 +11,7 @@ fn a_variable_gives_what_was_stored_in_it() {
     assert_eq!(desk.picture(), [[0.75, 0.0]]);
     assert_eq!(desk.tell("SEND VALUE(A) TO <1>A;"), ["E 4 *** A is no variable"]);
     assert_eq!(desk.tell("SEND VALUE(X) TO <1>A;"), ["E 2 *** Name not found: X"]);
-    assert_eq!(desk.tell("SEND 1 TO <2>V;"), ["W 9 *** No such input <2> of V"]);
+    assert_eq!(desk.tell("SEND 1 TO <2>V;"), ["W 9 *** No such input <2> of V; a VARIABLE has <1>"]);
     assert_eq!(desk.tell("VARIABLE V;"), ["W 3 *** V redefined"]);
     assert_eq!(desk.memory.variable(&protocol::Name::new("V").unwrap()), Ok(None));
 }
@@ -84,4 +84,53 @@ fn a_rendering_that_fails_says_so_and_sends_false() {
 fn one_command_makes_several_arcs() {
     let mut desk = told("F := F:NOP; VARIABLE V, W; CONNECT F<1>:<1>V, <1>W; SEND 2 TO <1>F;");
     assert_eq!(desk.delivered(), [Value::Real(2.0), Value::Real(2.0)]);
+}
+
+#[test]
+fn numbers_that_are_probably_not_meant_are_taken_with_a_warning() {
+    let mut desk = told(DOT);
+    assert_eq!(
+        desk.tell("C := SET COLOR 500,3 APPLIED TO D; PREFIX D WITH SET RATE 0 0;"),
+        [
+            "W 6 *** Value out of range in C: hue 500 counts as 140, saturation 3 counts as 1",
+            "W 6 *** Value out of range in PREFIX D: both phases last 0 frames, so the phase is always ON",
+        ]
+    );
+    assert_eq!(
+        desk.tell(
+            "S := BEGIN_STRUCTURE VIEWPORT HORIZONTAL 1:-1 VERTICAL -1:1; INSTANCE OF D; END_STRUCTURE; DISPLAY S;"
+        ),
+        ["W 6 *** Value out of range in a VIEWPORT inside S: HORIZONTAL 1:-1 is reversed, so the picture is mirrored"]
+    );
+    assert_eq!(desk.picture(), [[-0.5, 0.0]]);
+}
+
+#[test]
+fn a_fault_inside_a_structure_is_told_where_it_stands() {
+    let mut desk = told("S := BEGIN_STRUCTURE");
+    let said = desk.tell("FIELD_OF_VIEW 200;");
+    assert!(
+        said.len() == 1 && said[0].starts_with("E 6 *** Value out of range in a FIELD_OF_VIEW inside S: "),
+        "{said:?}"
+    );
+    let said = desk.tell("B := BSPLINE ORDER 3 0,0 1,1 CHORDS 4;");
+    assert!(said.len() == 1 && said[0].starts_with("E 6 *** Value out of range in S.B: "), "{said:?}");
+    assert!(desk.tell("NIL; END_STRUCTURE;").is_empty());
+}
+
+#[test]
+fn arcs_of_display_nodes_without_such_a_port_are_warned_about_and_stay() {
+    let mut desk =
+        told("T := TRANSLATE BY 0,0; S := BEGIN_STRUCTURE NIL; END_STRUCTURE; N := F:NOP; CONNECT N<1>:<9>LATER;");
+    assert_eq!(desk.tell("CONNECT N<1>:<2>T;"), ["W 9 *** No such input <2> of T; a TRANSLATE has <1>"]);
+    let said = desk.tell("CONNECT N<1>:<1>S;");
+    assert!(
+        said.len() == 1 && said[0].starts_with("W 9 *** No such input <1> of S; a structure has no inputs"),
+        "{said:?}"
+    );
+    assert_eq!(desk.tell("CONNECT T<1>:<1>N;"), ["W 9 *** T is a TRANSLATE and sends no messages"]);
+    assert!(desk.tell("CONNECT N<1>:<1>T;").is_empty());
+    assert!(desk.tell("R := SURFACE_RENDERING APPLIED TO T; CONNECT R<1>:<1>N;").is_empty());
+    let id = desk.id("N");
+    assert_eq!(desk.memory.network.arcs(id).count(), 4, "a later definition may have the inputs");
 }

@@ -2,6 +2,7 @@
 
 mod labels;
 mod operate;
+mod takes;
 mod text;
 mod vectors;
 

@@ -99,7 +99,7 @@ fn attributes_have_two_sides_and_defaults() {
     assert_eq!(both.back, Some(back));
     let Object::Attributes(plain) = object("M := ATTRIBUTES;") else { panic!("ATTRIBUTES") };
     assert_eq!((plain.front, plain.back), (SurfaceColor::default(), None));
-    assert_eq!(message("ATTRIBUTES SPECULAR 11;"), "1:21: the number is out of range, found `11`");
+    assert_eq!(message("ATTRIBUTES SPECULAR 11;"), "1:21: the number must be 0 to 10, found `11`");
 }
 
 #[test]
@@ -134,8 +134,8 @@ fn what_is_missing_in_a_curve_is_named() {
     assert_eq!(message("BSPLINE 1,0 0,1 CHORDS 3;"), "1:25: expected ORDER, found `;`");
     assert_eq!(message("BSPLINE ORDER 3 CHORDS 3;"), "1:25: expected VERTICES, found `;`");
     assert_eq!(message("BSPLINE ORDER 3 1,0 0,1;"), "1:24: expected CHORDS, found `;`");
-    assert_eq!(message("BSPLINE ORDER 11;"), "1:15: the number is out of range, found `11`");
-    assert_eq!(message("BSPLINE ORDER 3 1,0 0,1 CHORDS 0;"), "1:32: the number is out of range, found `0`");
+    assert_eq!(message("BSPLINE ORDER 11;"), "1:15: the number must be 1 to 10, found `11`");
+    assert_eq!(message("BSPLINE ORDER 3 1,0 0,1 CHORDS 0;"), "1:32: the number must be 1 to 1048576, found `0`");
     assert!(message("BSPLINE ORDER 3 1 0 0 1 CHORDS 3;").starts_with("1:19: put commas between the components"));
     assert!(message("BSPLINE ORDER 3 CHORD 3;").ends_with("found `CHORD`, too short for CHORDS, which needs CHORDS"));
 }
@@ -183,7 +183,7 @@ fn characters_of_a_font_are_itemized_lists_in_the_plane() {
     // The first is a position whatever its mark.
     assert_eq!(character.points, [([0.0, 0.0], false), ([0.5, 1.0], true), ([1.0, 0.0], false)]);
     assert!(matches!(parse(b"c[0]:;"), Ok(Command::FontCharacter(empty)) if empty.points.is_empty()));
-    assert_eq!(message("C[128]: P 0,0;"), "1:3: the number is out of range, found `128`");
+    assert_eq!(message("C[128]: P 0,0;"), "1:3: the number must be 0 to 127, found `128`");
     assert_eq!(message("C[1]: P 0,0 I=1;"), "1:13: expected P, L or `;`, found `I`");
     assert!(matches!(parse(b"C := BEGIN_F;"), Ok(Command::Define { object: Object::BeginFont, .. })));
 }
@@ -208,6 +208,6 @@ fn a_copy_says_where_it_starts_and_how_much_it_takes() {
     same("A := COPY B START = 2 COUNT = 3;", "A := copy b 2, 3;");
     same("A := COPY START START = 2 COUNT = 3;", "A := COPY START 2 3;");
     assert_eq!(object("COPY B 1 5;"), Object::Copy { source: name("B"), start: 1, count: 5 });
-    assert_eq!(message("COPY B 0 5;"), "1:8: the number is out of range, found `0`");
+    assert_eq!(message("COPY B 0 5;"), "1:8: the number must be 1 to 4294967295, found `0`");
     assert_eq!(object("R := RAWBLOCK 1000;"), Object::RawBlock(1000));
 }

@@ -115,9 +115,9 @@ fn every_attribute_is_read() {
     ] {
         assert_eq!(operate(text), expected, "{text}");
     }
-    assert_eq!(message("SET LEVEL TO 32768;"), "1:14: the number is out of range, found `32768`");
-    assert_eq!(message("SET CONDITIONAL_BIT 15 ON;"), "1:21: the number is out of range, found `15`");
-    assert_eq!(message("SET DISPLAY 4 ON;"), "1:13: the number is out of range, found `4`");
+    assert_eq!(message("SET LEVEL TO 32768;"), "1:14: the number must be 0 to 32767, found `32768`");
+    assert_eq!(message("SET CONDITIONAL_BIT 15 ON;"), "1:21: the number must be 0 to 14, found `15`");
+    assert_eq!(message("SET DISPLAY 4 ON;"), "1:13: the number must be 0 to 3, found `4`");
     assert!(message("SET DISPLAY ON;").starts_with("1:13: expected ALL or the number of a screen"));
 }
 
@@ -143,7 +143,7 @@ fn every_condition_is_read() {
         assert_eq!(operate(&format!("IF LEV{}3;", comparison.sign())), expected);
     }
     assert!(message("IF LEVEL 3;").starts_with("1:10: expected `<`, `<=`, `=`, `<>`, `>=` or `>`"));
-    assert!(message("IF COND 15 IS ON;").starts_with("1:9: the number is out of range"));
+    assert!(message("IF COND 15 IS ON;").starts_with("1:9: the number must be 0 to 14"));
 }
 
 #[test]

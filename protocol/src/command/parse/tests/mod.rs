@@ -120,6 +120,26 @@ fn a_misspelt_word_suggests_the_nearest() {
 }
 
 #[test]
+fn a_name_that_cannot_be_one_and_a_sign_that_is_not_the_right_one_are_told_as_such() {
+    for (text, told) in [
+        ("A-B := NIL;", "1:1: '-' cannot stand in a name, which has letters, digits, _, $ and ., found `A-B`"),
+        ("1A:=NIL;", "1:1: a name begins with a letter, found `1A`"),
+        (
+            "DISPLAY-2 := NIL;",
+            "1:1: '-' cannot stand in a name, which has letters, digits, _, $ and ., found `DISPLAY-2`",
+        ),
+        ("Q = F:PRINT;", "1:3: expected `:=`, found `=`"),
+        ("R: = NIL;", "1:2: expected `:=`, found `:`"),
+        ("A B := NIL;", "1:1: expected a command or `name :=`, found `A`"),
+        ("SEND 1 A;", "1:8: expected TO or an input such as `<1>`, found `A`"),
+        ("SEND 1 TO A;", "1:11: expected an input such as `<1>`, found `A`"),
+        ("CONNECT A:B;", "1:10: expected an output such as `<1>`, found `:`"),
+    ] {
+        assert_eq!(message(text), told);
+    }
+}
+
+#[test]
 fn look_takes_its_points_in_both_orders() {
     same("LOOK AT 0,0,0 FROM 0,0,-10;", "LOOK FROM 0,0,-10 AT 0,0,0;");
     let Operate::Look { at, from, up } = operate("LOOK AT 1,2,3 FROM 4,5,6 UP 7,8,9;") else { panic!("LOOK") };
@@ -172,7 +192,7 @@ fn bad_vectors_say_what_is_missing() {
     assert_eq!(message("VEC ITEM P 1,2 LINE 3,4;"), "1:16: expected P, L or `;`, found `LINE`");
     assert_eq!(message("VEC 1,2 1E39,1;"), "1:9: the number is out of range, found `1E39`");
     assert_eq!(message("VEC 1,2 3,;"), "1:11: expected a number, found `;`");
-    assert_eq!(message("VEC 1,2 3"), "1:10: expected a number, found the end");
+    assert_eq!(message("VEC 1,2 3"), "1:10: expected a number, found the end of the command");
     assert_eq!(message("VEC 5;"), "1:6: expected the y component, found `;`");
     assert_eq!(message("VEC 1,2 {"), "1:9: the comment has no closing brace, expected a vector or `;`, found `{`");
 }
@@ -193,7 +213,7 @@ fn every_form_of_a_value_is_read() {
     let Value::Matrix2(m) = value("M2D(1,2 3,4)") else { panic!("M2D") };
     assert_eq!(m.to_cols_array(), [1.0, 2.0, 3.0, 4.0]);
     assert_eq!(message("SEND FIX(1.5) TO <1>A;"), "1:10: expected a whole number, found `1.5`");
-    assert_eq!(message("SEND CHAR(256) TO <1>A;"), "1:11: the number is out of range, found `256`");
+    assert_eq!(message("SEND CHAR(256) TO <1>A;"), "1:11: the number must be 0 to 255, found `256`");
     assert_eq!(message("SEND 1E999 TO <1>A;"), "1:6: the number is out of range, found `1E999`");
     assert!(message("SEND 'a TO <1>A;").starts_with("1:6: the text has no closing quote"));
 }
@@ -207,7 +227,7 @@ fn every_form_of_a_connection_is_read() {
     }
     let Ok(Command::Connect(arc)) = parse(b"CONN TABLETIN<5>:<APPEND>INK;") else { panic!("CONNECT") };
     assert_eq!((arc.output, arc.destination.input), (5, Input::Append));
-    assert_eq!(message("CONNECT A<0>:<1>B;"), "1:11: the number is out of range, found `0`");
+    assert_eq!(message("CONNECT A<0>:<1>B;"), "1:11: the number must be 1 to 65535, found `0`");
     assert!(message("CONNECT A<1>:<insert>B;").starts_with("1:15: expected the number of an input"));
     same("A := F:ROUTE(4);", "a := f : route ( 4 )");
 }
