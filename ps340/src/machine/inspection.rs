@@ -44,12 +44,15 @@ impl Machine {
 
     /// What the machine has counted.
     pub fn counters(&self) -> Counters {
+        let refresh = self.refresh();
         Counters {
             frame: self.frame,
             objects: self.memory.objects.len() as u64,
             bytes: self.memory.bytes() as u64,
             strokes: self.update.strokes.len() as u64,
             vectors: self.update.vectors,
+            refresh_micros: refresh.micros as u64,
+            refresh_frames: refresh.frames,
             ..self.counters
         }
     }
