@@ -57,7 +57,7 @@ fn rows(count: usize) {
     });
     assert_eq!(strokes.len(), count, "all lie on the screen");
     // The light of all strokes is their length times their intensity.
-    let beam = Beam::default();
+    let beam = Beam::new(1024, 1024);
     let threads = rayon_threads();
     let mut total = 0.0;
     let drawing = best(|| total = calligraphic::draw(&beam, &strokes).total()[0]);

@@ -19,16 +19,35 @@ pub fn linear_from_srgb(byte: u8) -> f32 {
 /// # Source
 /// IEC 61966-2-1.
 pub fn srgb_from_linear(light: f32) -> u8 {
-    // At most 255 thresholds are passed, so that the count fits a byte. NaN passes none.
-    THRESHOLDS.partition_point(|threshold| *threshold <= light) as u8
+    let encoding = &*ENCODING;
+    // The cast takes NaN to 0, and no threshold is passed by NaN.
+    let mut byte = encoding.starts[(light.clamp(0.0, 1.0) * STEPS as f32) as usize];
+    while encoding.thresholds.get(usize::from(byte)).is_some_and(|threshold| *threshold <= light) {
+        byte += 1;
+    }
+    byte
+}
+
+/// Equal steps of light for which it is known where the search for a byte begins. Multiplying by this number is exact.
+const STEPS: usize = 4096;
+
+/// What finds the byte of a light.
+struct Encoding {
+    /// Light of every half step between two bytes, rising.
+    thresholds: [f32; 255],
+    /// How many thresholds the beginning of each step passes: at most one or two are left to pass.
+    starts: [u8; STEPS + 1],
 }
 
 /// Light of every byte.
 static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| decode(byte as f64 / 255.0)));
 
-/// Light of every half step between two bytes, rising.
-static THRESHOLDS: LazyLock<[f32; 255]> =
-    LazyLock::new(|| std::array::from_fn(|byte| decode((byte as f64 + 0.5) / 255.0)));
+static ENCODING: LazyLock<Encoding> = LazyLock::new(|| {
+    let thresholds = std::array::from_fn(|byte| decode((byte as f64 + 0.5) / 255.0));
+    let passed = |light: f32| thresholds.partition_point(|threshold: &f32| *threshold <= light);
+    // At most 255 thresholds are passed, so that the count fits a byte.
+    Encoding { thresholds, starts: std::array::from_fn(|step| passed(step as f32 / STEPS as f32) as u8) }
+});
 
 /// The transfer function of sRGB, encoded 0..=1 to linear 0..=1.
 fn decode(encoded: f64) -> f32 {

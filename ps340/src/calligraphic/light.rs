@@ -1,94 +1,162 @@
-//! The light that strokes leave on the screen, pixel by pixel.
+//! The light that strokes leave on the screen, pixel by pixel, in tiles.
 
+use super::bins::Bins;
+use super::optics::Optics;
+use super::track::{LANES, Track};
+use super::widest::{self, Work};
+use crate::traversal::Stroke;
 use rayon::prelude::*;
 
-use super::Exposure;
-use super::track::LANES;
-use crate::picture::Picture;
+/// Width of a tile in pixels.
+pub(super) const TILE_WIDTH: usize = 64;
+/// Height of a tile in pixels.
+pub(super) const TILE_HEIGHT: usize = 32;
+/// Floats of a row of a tile: room for a whole vector of lanes that begins at the last pixel.
+pub(super) const STRIDE: usize = TILE_WIDTH + LANES;
+/// Floats of a plane of a tile.
+pub(super) const PLANE: usize = STRIDE * TILE_HEIGHT;
+/// Strokes that are sorted into tiles at a time: a bound on memory. It has no influence on the light.
+const BLOCK: usize = 1 << 17;
 
-/// Light per pixel of a square screen; 1 is the centre of a long stroke of intensity 1.
+/// Light per pixel; 1 is the centre of a long stroke of intensity 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    size: usize,
-    /// Standard deviation of the spot that wrote it, in pixels.
-    spot: f64,
-    /// Row after row from the top; in a row all red, then all green, then all blue, each `stride` floats.
-    rows: Vec<f32>,
+    pub(super) optics: Optics,
+    /// Guns of the tube: three that write red, green and blue, or one.
+    pub(super) guns: usize,
+    /// Row after row from the top.
+    pub(super) tiles: Vec<Tile>,
+}
+
+/// The light of 64 by 32 pixels. Room is made when light first falls on it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Tile {
+    /// A plane for each gun: what one refresh writes. Worth something if `lit`.
+    pub planes: Vec<f32>,
+    /// Whether the picture writes here.
+    pub lit: bool,
+    /// A plane for each slow component of the phosphor: what it sends out in a frame. Worth something if `glowing`.
+    pub glow: Vec<f32>,
+    /// Whether a slow component is seen.
+    pub glowing: bool,
+    /// Whether the exposed picture is other than black here.
+    pub seen: bool,
 }
 
 impl Light {
-    /// A dark screen of `size` by `size` pixels.
-    pub(super) fn dark(size: usize, spot: f64) -> Self {
-        Self { size, spot, rows: vec![0.0; size * 3 * stride(size)] }
+    /// A dark screen.
+    pub(super) fn dark(optics: Optics, guns: usize) -> Self {
+        let [columns, rows] = tiles(optics.size);
+        Self { optics, guns, tiles: vec![Tile::default(); columns * rows] }
     }
 
-    /// Width and height in pixels.
-    pub fn size(&self) -> u32 {
-        self.size as u32
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.optics.size[0] as u32
     }
 
-    /// Red, green and blue light of the pixel in column `x` from the left and row `y` from the top; `None`
-    /// outside the screen.
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.optics.size[1] as u32
+    }
+
+    /// Light for red, green and blue of the pixel in column `x` from the left and row `y` from the top, before the
+    /// phosphor gives it its colour; `None` outside the picture. With a single gun all three are the same.
     pub fn at(&self, x: u32, y: u32) -> Option<[f32; 3]> {
         let (x, y) = (x as usize, y as usize);
-        if x >= self.size || y >= self.size {
+        if x >= self.optics.size[0] || y >= self.optics.size[1] {
             return None;
         }
-        let row = &self.rows[y * self.row_length()..];
-        Some([0, 1, 2].map(|channel| row[channel * stride(self.size) + x]))
+        let tile = &self.tiles[y / TILE_HEIGHT * self.columns() + x / TILE_WIDTH];
+        let place = y % TILE_HEIGHT * STRIDE + x % TILE_WIDTH;
+        Some([0, 1, 2].map(|channel| match tile.lit {
+            true => tile.planes[channel.min(self.guns - 1) * PLANE + place],
+            false => 0.0,
+        }))
     }
 
-    /// All the light on the screen, in red, green and blue.
+    /// All the light on the screen, for red, green and blue.
     ///
     /// Its unit is the light of a stroke of length 1 (in screen units) and intensity 1, so that a stroke
     /// within the screen adds length times mean intensity times colour.
     pub fn total(&self) -> [f64; 3] {
-        let stride = stride(self.size);
         let mut sum = [0.0; 3];
-        for row in self.rows.chunks_exact(3 * stride) {
-            for (sum, plane) in sum.iter_mut().zip(row.chunks_exact(stride)) {
-                *sum += plane[..self.size].iter().map(|light| f64::from(*light)).sum::<f64>();
+        for y in 0..self.height() {
+            for x in 0..self.width() {
+                let light = self.at(x, y).unwrap_or_default();
+                sum = [0, 1, 2].map(|channel| sum[channel] + f64::from(light[channel]));
             }
         }
-        // Across a line of peak 1 lie sqrt(2 pi) spot pixels of light; a pixel is 2 / size wide.
-        let unit = 2.0 / self.size as f64 / ((2.0 * std::f64::consts::PI).sqrt() * self.spot);
-        sum.map(|sum| sum * unit)
+        // Across a line of peak 1 lie sqrt(2 pi) spot pixels of light; a screen unit has `half` pixels.
+        let Optics { half, spot, peak, .. } = self.optics;
+        sum.map(|sum| sum / half / ((2.0 * std::f64::consts::PI).sqrt() * spot * peak))
     }
 
-    /// The picture that an exposure makes of the light.
-    pub fn expose(&self, exposure: &Exposure) -> Picture {
-        self.map(|light| exposure.respond(light))
-    }
-
-    /// The light itself as the pixels of a picture, without any response: may exceed 1.
-    pub fn unexposed(&self) -> Picture {
-        self.map(|light| light)
-    }
-
-    /// A picture with `respond` of every pixel's light.
-    fn map(&self, respond: impl Fn([f32; 3]) -> [f32; 3] + Sync) -> Picture {
-        let mut pixels = vec![[0.0; 3]; self.size * self.size];
-        let stride = stride(self.size);
-        pixels.par_chunks_mut(self.size).zip(self.rows.par_chunks(3 * stride)).for_each(|(pixels, row)| {
-            for (x, pixel) in pixels.iter_mut().enumerate() {
-                *pixel = respond([row[x], row[stride + x], row[2 * stride + x]]);
-            }
+    /// Pixels on which light falls.
+    pub fn lit_pixels(&self) -> u64 {
+        let lit = |tile: &&Tile| tile.lit;
+        let pixels = self.tiles.iter().filter(lit).flat_map(|tile| {
+            let rows = (0..TILE_HEIGHT).flat_map(|y| (0..TILE_WIDTH).map(move |x| y * STRIDE + x));
+            rows.map(|place| (0..self.guns).any(|gun| tile.planes[gun * PLANE + place] > 0.0))
         });
-        Picture::new(self.size as u32, self.size as u32, pixels).expect("size is at least 1, pixels its square")
+        pixels.filter(|lit| *lit).count() as u64
     }
 
-    /// Floats of one row of pixels.
-    pub(super) fn row_length(&self) -> usize {
-        3 * stride(self.size)
+    /// Columns of tiles.
+    pub(super) fn columns(&self) -> usize {
+        tiles(self.optics.size)[0]
     }
 
-    /// All rows, from the top.
-    pub(super) fn rows_mut(&mut self) -> &mut [f32] {
-        &mut self.rows
+    /// Writes strokes in their order in place of what was written before.
+    ///
+    /// The light is the same for any number of threads: each tile belongs to one task, which adds the strokes in their
+    /// order.
+    pub(super) fn write(&mut self, bins: &mut Bins, strokes: &[Stroke]) {
+        self.tiles.par_iter_mut().for_each(|tile| tile.lit = false);
+        let (optics, guns, extent) = (self.optics, self.guns, tiles(self.optics.size));
+        for block in strokes.chunks(BLOCK) {
+            bins.sort(&optics, block, extent);
+            let bins = &*bins;
+            self.tiles.par_iter_mut().enumerate().for_each(|(index, tile)| {
+                let corner = [index % extent[0] * TILE_WIDTH, index / extent[0] * TILE_HEIGHT];
+                widest::run(Writing { optics: &optics, guns, corner, strokes: block, bins, index, tile });
+            });
+        }
     }
 }
 
-/// Floats of one channel of one row: room for a whole vector of lanes that begins at the last pixel.
-fn stride(size: usize) -> usize {
-    size.next_multiple_of(LANES) + LANES
+/// Columns and rows of tiles of a picture.
+fn tiles([width, height]: [usize; 2]) -> [usize; 2] {
+    [width.div_ceil(TILE_WIDTH), height.div_ceil(TILE_HEIGHT)]
+}
+
+/// Adding strokes to a tile.
+pub(super) struct Writing<'a> {
+    pub optics: &'a Optics,
+    pub guns: usize,
+    /// The first pixel of the tile.
+    pub corner: [usize; 2],
+    pub strokes: &'a [Stroke],
+    pub bins: &'a Bins,
+    /// Of the tile.
+    pub index: usize,
+    pub tile: &'a mut Tile,
+}
+
+impl Work for Writing<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for member in self.bins.members(self.index) {
+            let Some(track) = Track::new(self.optics, &self.strokes[member], self.corner) else { continue };
+            if !self.tile.lit {
+                self.tile.lit = true;
+                self.tile.planes.clear();
+                self.tile.planes.resize(self.guns * PLANE, 0.0);
+            }
+            match self.guns {
+                1 => track.write::<1>(&mut self.tile.planes),
+                _ => track.write::<3>(&mut self.tile.planes),
+            }
+        }
+    }
 }

@@ -1,7 +1,8 @@
-//! One stroke on its way over the pixels.
+//! One stroke on its way over the pixels of a tile.
 
-use super::FAR;
-use super::spot::{self, REACH};
+use super::light::{STRIDE, TILE_HEIGHT, TILE_WIDTH};
+use super::optics::Optics;
+use super::spot::{self, REACH, greater, lesser};
 use crate::traversal::Stroke;
 
 /// Pixels are written in multiples of this number, into room beyond the last one if need be.
@@ -9,59 +10,28 @@ pub(super) const LANES: usize = 8;
 /// Below this length, in spots, a stroke is the moments of its current around its middle: the difference of
 /// two error functions would be all rounding. The first term left out is 1e-7 of the stroke's light here.
 const SHORT: f64 = 0.25;
+/// Stands for the pixels per spot along a row where the direction makes them infinitely many.
+const ENDLESS: f32 = 1e9;
 
-/// The pixels and the spot.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Screen {
-    /// Width and height in pixels.
-    pub size: usize,
-    /// Half of it.
-    pub half: f64,
-    /// Standard deviation of the spot in pixels.
-    pub spot: f64,
-    /// Length, in spots, that takes as long to write as a dot.
-    pub dwell: f64,
-}
-
-impl Screen {
-    /// First and last row, counted from the top, that the light of a stroke can reach; `None` if it reaches
-    /// no row, or is not drawn at all.
-    pub fn rows_touched(&self, stroke: &Stroke) -> Option<(usize, usize)> {
-        let drawable = [stroke.start, stroke.end].iter().flatten().all(|place| place.abs() <= FAR)
-            && stroke.intensity.iter().chain(&stroke.color).all(|part| part.is_finite())
-            && (stroke.intensity[0] > 0.0 || stroke.intensity[1] > 0.0);
-        if !drawable {
-            return None;
-        }
-        let reach = f64::from(REACH) * std::f64::consts::SQRT_2 * self.spot;
-        let (start, end) = (self.place(stroke.start)[1], self.place(stroke.end)[1]);
-        let (top, bottom) = (start.min(end) - reach - 0.5, start.max(end) + reach - 0.5);
-        let last = self.size as f64 - 1.0;
-        (bottom >= 0.0 && top <= last).then(|| (top.max(0.0) as usize, bottom.min(last) as usize))
-    }
-
-    /// A place on the screen in pixels from the upper left corner.
-    fn place(&self, [x, y]: [f32; 2]) -> [f64; 2] {
-        [(f64::from(x) + 1.0) * self.half, (1.0 - f64::from(y)) * self.half]
-    }
-}
-
-/// A stroke in pixels, ready to be written.
+/// A stroke as a tile sees it, ready to be written.
 ///
 /// u is the distance along it from its start, v that across, both in spots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
-    size: usize,
-    start: [f64; 2],
+    /// u at the centre of the tile's first pixel.
+    u: f32,
+    /// Distance from there to the end.
+    rest: f32,
+    /// v there.
+    v: f32,
     /// Growth of u for one pixel to the right and one downwards: the direction over the spot.
-    step: [f64; 2],
-    /// Pixels to the right for a growth of one spot of u, and of -v; 0 if there is none.
-    widths: [f64; 2],
+    step: [f32; 2],
     /// In spots.
-    length: f64,
+    length: f32,
     current: Current,
     color: [f32; 3],
-    rows: (usize, usize),
+    /// First and last row of the tile that light can reach.
+    rows: [usize; 2],
 }
 
 /// How the light depends on u.
@@ -76,120 +46,122 @@ enum Current {
 }
 
 impl Track {
-    /// Prepares a stroke; `None` if it leaves no light on the screen.
-    pub fn new(screen: &Screen, stroke: &Stroke) -> Option<Self> {
-        let rows = screen.rows_touched(stroke)?;
-        let (start, end) = (screen.place(stroke.start), screen.place(stroke.end));
+    /// Prepares a stroke for the tile whose upper left corner is at a pixel; `None` if no light reaches it.
+    #[inline(always)]
+    pub fn new(optics: &Optics, stroke: &Stroke, [left, top]: [usize; 2]) -> Option<Self> {
+        let (start, end, [first, last]) = optics.beam(stroke)?;
         let (dx, dy) = (end[0] - start[0], end[1] - start[1]);
         let pixels = (dx * dx + dy * dy).sqrt();
-        let length = pixels / screen.spot;
+        let per_pixel = 1.0 / optics.spot;
+        let length = pixels * per_pixel;
         let step = if pixels > 0.0 {
-            [dx / pixels / screen.spot, dy / pixels / screen.spot]
+            let unit = per_pixel / pixels;
+            [dx * unit, dy * unit]
         } else {
-            [1.0 / screen.spot, 0.0]
+            [per_pixel, 0.0]
         };
-        let [first, last] = stroke.intensity.map(|intensity| f64::from(intensity.max(0.0)));
-        let gain = (last - first) / length;
         let current = if stroke.is_dot() {
-            Current::Point([(screen.dwell * (first + last) / 2.0) as f32, 0.0, 0.0, 0.0, 0.0])
+            Current::Point([(optics.dwell * (first + last) / 2.0) as f32, 0.0, 0.0, 0.0, 0.0])
         } else if length < SHORT {
             Current::Point(moments(length, first, last))
-        } else if length < 2.0 * f64::from(REACH) {
-            Current::Both(first as f32, gain as f32)
         } else {
-            Current::Nearer(first as f32, gain as f32)
+            let (current, gain) = (first as f32, ((last - first) / length) as f32);
+            let near = length < 2.0 * f64::from(REACH);
+            if near { Current::Both(current, gain) } else { Current::Nearer(current, gain) }
         };
-        let widths = step.map(|step| if step.abs() > 1e-9 { step.recip() } else { 0.0 });
-        let color = stroke.color.map(|part| part.max(0.0));
-        Some(Self { size: screen.size, start, step, widths, length, current, color, rows })
-    }
-
-    /// Adds the light to `rows` of `row` floats each, the first of which is row `top` of the screen.
-    #[inline(always)]
-    pub fn write(&self, rows: &mut [f32], row: usize, top: usize) {
-        let first = self.rows.0.max(top) - top;
-        for (offset, pixels) in rows.chunks_exact_mut(row).enumerate().skip(first) {
-            let y = top + offset;
-            if y > self.rows.1 {
-                break;
-            }
-            // u and v at the centre of the pixel in column 0, in double precision: columns may be far away.
-            let (across, down) = (0.5 - self.start[0], y as f64 + 0.5 - self.start[1]);
-            let u = across * self.step[0] + down * self.step[1];
-            let v = down * self.step[0] - across * self.step[1];
-            let Some((mut column, last)) = self.columns(u, v) else { continue };
-            while column <= last {
-                let from_start = u + column as f64 * self.step[0];
-                let lanes = Lanes {
-                    u: from_start as f32,
-                    rest: (self.length - from_start) as f32,
-                    v: (v - column as f64 * self.step[1]) as f32,
-                    along: self.step[0] as f32,
-                    down: self.step[1] as f32,
-                };
-                self.add(&lanes, pixels, column);
-                column += LANES;
-            }
-        }
-    }
-
-    /// Adds the light of eight pixels to a row, from `column` on.
-    #[inline(always)]
-    fn add(&self, lanes: &Lanes, row: &mut [f32], column: usize) {
-        match self.current {
-            Current::Point(terms) => self.add_profile(Point { terms }, lanes, row, column),
-            Current::Both(current, gain) => self.add_profile(Between { current, gain }, lanes, row, column),
-            Current::Nearer(current, gain) if lanes.clear_of_ends() => {
-                self.add_profile(Interior { current, gain }, lanes, row, column);
-            }
-            Current::Nearer(current, gain) => self.add_profile(NearEnd { current, gain }, lanes, row, column),
-        }
-    }
-
-    /// Adds the light of a profile in the stroke's colour.
-    #[inline(always)]
-    fn add_profile(&self, profile: impl Profile, lanes: &Lanes, row: &mut [f32], column: usize) {
-        let light = lanes.light(profile);
-        let stride = row.len() / 3;
-        add_channel(&light, self.color[0], &mut row[column..]);
-        add_channel(&light, self.color[1], &mut row[stride + column..]);
-        add_channel(&light, self.color[2], &mut row[2 * stride + column..]);
-    }
-
-    /// First and last column of a row whose column 0 has these u and v that light can reach.
-    #[inline(always)]
-    fn columns(&self, u: f64, v: f64) -> Option<(usize, usize)> {
-        let reach = f64::from(REACH);
-        let (mut low, mut high) = (0.0, self.size as f64 - 1.0);
-        // -reach <= u + step[0] x <= length + reach, and -reach <= step[1] x - v <= reach.
-        for (value, width, length) in [(u, self.widths[0], self.length), (-v, self.widths[1], 0.0)] {
-            let (nearest, farthest) = (-reach - value, length + reach - value);
-            if width != 0.0 {
-                let (one, other) = (nearest * width, farthest * width);
-                let (left, right) = if width > 0.0 { (one, other) } else { (other, one) };
-                low = if left > low { left } else { low };
-                high = if right < high { right } else { high };
-            } else if nearest > 0.0 || farthest < 0.0 {
-                return None;
-            }
-        }
-        if high < low {
+        // In double precision: the ends may be far away.
+        let (across, down) = (left as f64 + 0.5 - start[0], top as f64 + 0.5 - start[1]);
+        let u = across * step[0] + down * step[1];
+        let v = down * step[0] - across * step[1];
+        let (high, low) = if dy < 0.0 { (end[1], start[1]) } else { (start[1], end[1]) };
+        let (first_row, last_row) = (high - optics.reach - top as f64 - 0.5, low + optics.reach - top as f64 - 0.5);
+        if last_row < 0.0 || first_row > (TILE_HEIGHT - 1) as f64 {
             return None;
         }
-        // Inwards to whole pixels; 0 <= low <= high < size.
-        let (first, last) = (low as usize, high as usize);
-        let first = if (first as f64) < low { first + 1 } else { first };
-        (first <= last).then_some((first, last))
+        Some(Self {
+            u: u as f32,
+            rest: (length - u) as f32,
+            v: v as f32,
+            step: step.map(|step| step as f32),
+            length: length as f32,
+            current,
+            color: stroke.color.map(|part| part.clamp(0.0, super::STRONGEST)),
+            rows: [first_row.max(0.0) as usize, last_row.min((TILE_HEIGHT - 1) as f64) as usize],
+        })
+    }
+
+    /// Adds the light to the planes of a tile, as many as it has guns.
+    #[inline(always)]
+    pub fn write<const GUNS: usize>(&self, planes: &mut [f32]) {
+        match self.current {
+            Current::Point(terms) => self.fill::<GUNS>(planes, Point { terms }),
+            Current::Both(current, 0.0) => self.fill::<GUNS>(planes, EvenBetween { current }),
+            Current::Both(current, gain) => self.fill::<GUNS>(planes, Between { current, gain }),
+            Current::Nearer(current, 0.0) => self.fill::<GUNS>(planes, EvenLong { current }),
+            Current::Nearer(current, gain) => self.fill::<GUNS>(planes, Long { current, gain }),
+        }
+    }
+
+    #[inline(always)]
+    fn fill<const GUNS: usize>(&self, planes: &mut [f32], profile: impl Profile) {
+        let (firsts, lasts) = self.columns();
+        for y in self.rows[0]..=self.rows[1] {
+            let (mut column, last) = (firsts[y], lasts[y]);
+            let down = y as f32;
+            let row = Lanes {
+                u: down.mul_add(self.step[1], self.u),
+                rest: down.mul_add(-self.step[1], self.rest),
+                v: down.mul_add(self.step[0], self.v),
+                step: self.step,
+            };
+            while column <= last {
+                let light = row.light(column as f32, &profile);
+                let place = y * STRIDE + column as usize;
+                for gun in 0..GUNS {
+                    // A single gun draws every colour alike.
+                    let strength = if GUNS == 1 { 1.0 } else { self.color[gun] };
+                    add(&light, strength, &mut planes[gun * TILE_HEIGHT * STRIDE + place..]);
+                }
+                column += LANES as i32;
+            }
+        }
+    }
+
+    /// First and last column of each row that light can reach; the first is greater where it reaches none.
+    #[inline(always)]
+    fn columns(&self) -> ([i32; TILE_HEIGHT], [i32; TILE_HEIGHT]) {
+        // -reach <= u + step[0] x <= length + reach, and -reach <= v - step[1] x <= reach.
+        let width = |step: f32| if step.abs() > 1.0 / ENDLESS { step.recip() } else { ENDLESS };
+        let (along, across) = (width(self.step[0]), width(self.step[1]));
+        let (mut firsts, mut lasts) = ([0; TILE_HEIGHT], [0; TILE_HEIGHT]);
+        // The rows of whole lanes, so that the compiler can work on several at once.
+        let begin = self.rows[0] / LANES * LANES;
+        let end = (self.rows[1] / LANES + 1) * LANES;
+        for start in (begin..end).step_by(LANES) {
+            for y in start..start + LANES {
+                let down = y as f32;
+                let u = down.mul_add(self.step[1], self.u);
+                let v = down.mul_add(self.step[0], self.v);
+                let (one, other) = ((-REACH - u) * along, (self.length + REACH - u) * along);
+                let (third, fourth) = ((v - REACH) * across, (v + REACH) * across);
+                let low = greater(greater(lesser(one, other), lesser(third, fourth)), 0.0);
+                let high = lesser(lesser(greater(one, other), greater(third, fourth)), (TILE_WIDTH - 1) as f32);
+                // Inwards to whole pixels; low is cut to be a number that fits.
+                firsts[y] = (lesser(low, TILE_WIDTH as f32) + 0.999) as i32;
+                lasts[y] = greater(high, -1.0) as i32 - i32::from(high < 0.0);
+            }
+        }
+        (firsts, lasts)
     }
 }
 
-/// Adds light in one colour to the first eight pixels of a channel.
+/// Adds light to the first eight pixels of a plane.
 #[inline(always)]
-fn add_channel(light: &[f32; LANES], color: f32, channel: &mut [f32]) {
-    if let Some(pixels) = channel.first_chunk_mut::<LANES>() {
+fn add(light: &[f32; LANES], strength: f32, plane: &mut [f32]) {
+    if let Some(pixels) = plane.first_chunk_mut::<LANES>() {
         let mut sum = *pixels;
         for (sum, light) in sum.iter_mut().zip(light) {
-            *sum += light * color;
+            *sum = light.mul_add(strength, *sum);
         }
         *pixels = sum;
     }
@@ -213,9 +185,9 @@ impl Profile for Point {
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
         let middle = (u - rest) * 0.5;
         let square = middle * middle;
-        let even = self.terms[0] + (self.terms[2] + self.terms[4] * square) * square;
-        let odd = self.terms[1] + self.terms[3] * square;
-        spot::dot(middle, v) * (even + odd * middle)
+        let even = self.terms[4].mul_add(square, self.terms[2]).mul_add(square, self.terms[0]);
+        let odd = self.terms[3].mul_add(square, self.terms[1]);
+        greater(spot::dot(middle, v) * odd.mul_add(middle, even), 0.0)
     }
 }
 
@@ -228,75 +200,81 @@ struct Between {
 impl Profile for Between {
     #[inline(always)]
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
-        let (since_start, rise_start) = spot::along(u);
-        let (until_end, rise_end) = spot::along(rest);
         // written(-rest) = 1 - written(rest), rise(-rest) = rise(rest).
-        let written = since_start + until_end - 1.0;
-        let light = (self.current + self.gain * u) * written + self.gain * (rise_start - rise_end);
-        spot::greater(light, 0.0) * spot::across(v)
+        let written = spot::written(u) + spot::written(rest) - 1.0;
+        let rise = spot::rise(u) - spot::rise(rest);
+        let light = self.gain.mul_add(rise, self.gain.mul_add(u, self.current) * written);
+        greater(light, 0.0) * spot::across(v)
+    }
+}
+
+/// The same with an even current.
+struct EvenBetween {
+    current: f32,
+}
+
+impl Profile for EvenBetween {
+    #[inline(always)]
+    fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
+        let written = spot::written(u) + spot::written(rest) - 1.0;
+        greater(self.current * written, 0.0) * spot::across(v)
     }
 }
 
 /// A stroke at least two reaches long: only the nearer end acts.
-struct NearEnd {
+struct Long {
     current: f32,
     gain: f32,
 }
 
-impl Profile for NearEnd {
+impl Profile for Long {
     #[inline(always)]
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
-        let (written, rise) = spot::along(spot::lesser(u, rest));
+        let nearer = lesser(u, rest);
         // Towards the end it is a fall.
-        let fall = -rise;
+        let (rise, fall) = (spot::rise(nearer), -spot::rise(nearer));
         let rise = if u < rest { rise } else { fall };
-        let light = (self.current + self.gain * u) * written + self.gain * rise;
-        spot::greater(light, 0.0) * spot::across(v)
+        let light = self.gain.mul_add(rise, self.gain.mul_add(u, self.current) * spot::written(nearer));
+        greater(light, 0.0) * spot::across(v)
     }
 }
 
-/// A stroke whose ends are out of reach.
-struct Interior {
+/// The same with an even current.
+struct EvenLong {
     current: f32,
-    gain: f32,
 }
 
-impl Profile for Interior {
+impl Profile for EvenLong {
     #[inline(always)]
-    fn light(&self, u: f32, _rest: f32, v: f32) -> f32 {
-        (self.current + self.gain * u) * spot::across(v)
+    fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
+        greater(self.current * spot::written(lesser(u, rest)), 0.0) * spot::across(v)
     }
 }
 
-/// Eight neighbouring pixels of a row.
+/// Where a row of pixels lies, seen from its first one.
 struct Lanes {
-    /// Of the first pixel, in spots: distance from the start, from the end (both positive inside), and across.
+    /// In spots: distance from the start, from the end (both positive inside), and across.
     u: f32,
     rest: f32,
     v: f32,
     /// Growth of u for a pixel to the right, and fall of v.
-    along: f32,
-    down: f32,
+    step: [f32; 2],
 }
 
 impl Lanes {
-    /// Light of each pixel.
+    /// Light of eight neighbouring pixels, the first of which is in a column.
     #[inline(always)]
-    fn light(&self, profile: impl Profile) -> [f32; LANES] {
+    fn light(&self, column: f32, profile: &impl Profile) -> [f32; LANES] {
         let mut lights = [0.0; LANES];
         for (lane, value) in lights.iter_mut().enumerate() {
-            let right = lane as f32;
-            let (along, down) = (right * self.along, right * self.down);
-            *value = profile.light(self.u + along, self.rest - along, self.v - down);
+            let right = column + lane as f32;
+            *value = profile.light(
+                right.mul_add(self.step[0], self.u),
+                right.mul_add(-self.step[0], self.rest),
+                right.mul_add(-self.step[1], self.v),
+            );
         }
         lights
-    }
-
-    /// Whether no end of the stroke reaches any of the pixels.
-    #[inline(always)]
-    fn clear_of_ends(&self) -> bool {
-        let along = (LANES - 1) as f32 * self.along;
-        spot::lesser(self.u, self.u + along) >= REACH && spot::lesser(self.rest, self.rest - along) >= REACH
     }
 }
 

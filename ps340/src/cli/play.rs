@@ -2,7 +2,6 @@
 
 use super::{Trouble, read, say};
 use crate::{
-    calligraphic::Beam,
     machine::Settings,
     play::{EXAMPLES, End, Patience, Player, Script, Watcher, example},
 };
@@ -119,7 +118,7 @@ fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Scree
 /// Writes what is to be left at the end, and judges.
 fn finish(player: &mut Player, end: End, arguments: &Arguments, screen: Screen) -> Result<ExitCode, Trouble> {
     if let Some(file) = &arguments.picture {
-        player.machine().vector_picture(&Beam::default()).write(file)?;
+        player.machine().vector_picture(None).write(file)?;
     }
     screen.close()?;
     let failures = player.take_failures();

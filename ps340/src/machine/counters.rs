@@ -13,6 +13,10 @@ pub struct Counters {
     pub vectors: u64,
     /// Strokes that came out of the latest update.
     pub strokes: u64,
+    /// Time that the beam needs for the picture of now, microseconds.
+    pub refresh_micros: u64,
+    /// Frames from a refresh of it to the next.
+    pub refresh_frames: u64,
     /// Function firings.
     pub firings: u64,
     /// Commands carried out.
@@ -35,12 +39,14 @@ impl fmt::Display for Counters {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "frame={} updates={} vectors={} strokes={} firings={} commands={} bytes_in={} messages_out={} messages={} \
+            "frame={} updates={} vectors={} strokes={} refresh_micros={} refresh_rate={} firings={} commands={} bytes_in={} messages_out={} messages={} \
              noise={} objects={} bytes={}",
             self.frame,
             self.updates,
             self.vectors,
             self.strokes,
+            self.refresh_micros,
+            60.0 / self.refresh_frames.max(1) as f32,
             self.firings,
             self.commands,
             self.bytes_in,

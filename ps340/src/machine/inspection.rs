@@ -1,27 +1,12 @@
 //! Looking into the machine: pictures, texts, counters, objects; and single steps of its network.
 
-use super::{Counters, Machine, Panel, WORK_PER_STEP, describe, tube::Tube};
+use super::{Counters, Machine, Panel, WORK_PER_STEP, describe};
 use crate::{
     disk::Disk, memory::MassMemory, network::Network, picture::Picture, port::ObjectId, raster::FrameBuffer,
     terminal::Terminal, traversal::Update,
 };
 
-/// Which picture the vector screen shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PictureVersion {
-    updates: u64,
-    overlays: u64,
-    graphics: bool,
-    blanked: bool,
-}
-
 impl Machine {
-    /// Which picture the vector screen shows; another one has another version.
-    pub fn picture_version(&self) -> PictureVersion {
-        let Tube { graphics, blanked, drawn, .. } = &self.tube;
-        PictureVersion { updates: self.counters.updates, overlays: *drawn, graphics: *graphics, blanked: *blanked }
-    }
-
     /// The memory behind the raster screen.
     pub fn frame_buffer(&self) -> &FrameBuffer {
         &self.frame_buffer
@@ -64,12 +49,15 @@ impl Machine {
 
     /// What the machine has counted.
     pub fn counters(&self) -> Counters {
+        let refresh = self.refresh();
         Counters {
             frame: self.frame,
             objects: self.memory.objects.len() as u64,
             bytes: self.memory.bytes() as u64,
             strokes: self.update.strokes.len() as u64,
             vectors: self.update.vectors,
+            refresh_micros: refresh.micros as u64,
+            refresh_frames: refresh.frames,
             ..self.counters
         }
     }

@@ -12,6 +12,7 @@ mod keyboard;
 mod parallel;
 mod panel;
 mod requests;
+mod sight;
 mod speech;
 mod streams;
 mod tablet;
@@ -21,15 +22,15 @@ mod watch;
 pub use counters::Counters;
 pub use devices::Event;
 pub use host_line::PlainText;
-pub use inspection::PictureVersion;
 pub use keyboard::{Key, KeyboardMode};
 pub use panel::Panel;
+pub use sight::{DISPLAY_SIZE, PictureVersion};
 pub use speech::REPORTS_PER_FRAME;
 pub use tablet::TabletEvent;
 
 use crate::{
-    calligraphic::Beam, disk::Disk, functions::devices::initial, interpreter::Message, line::LineId,
-    memory::MassMemory, picture::Picture, port::Effect, raster::FrameBuffer, terminal::Terminal, traversal::Update,
+    disk::Disk, functions::devices::initial, interpreter::Message, line::LineId, memory::MassMemory, port::Effect,
+    raster::FrameBuffer, terminal::Terminal, traversal::Update,
 };
 use devices::Devices;
 use host_line::HostLine;
@@ -37,6 +38,7 @@ use keyboard::Keyboard;
 use parallel::{Mailbox, ParallelLine};
 use protocol::wire::MessageWriter;
 use requests::Waiting;
+use sight::Sight;
 use std::collections::{BTreeMap, VecDeque};
 use streams::Streams;
 use tube::Tube;
@@ -99,6 +101,7 @@ pub struct Machine {
     keyboard: Keyboard,
     terminal: Terminal,
     tube: Tube,
+    sight: Sight,
     watch: Watch,
     panel: Panel,
     frame_buffer: FrameBuffer,
@@ -135,6 +138,7 @@ impl Machine {
             keyboard: Keyboard::default(),
             terminal: Terminal::default(),
             tube: Tube::default(),
+            sight: Sight::default(),
             watch: Watch::default(),
             panel: Panel::default(),
             frame_buffer: FrameBuffer::default(),
@@ -217,6 +221,7 @@ impl Machine {
         self.update_picture();
         self.settle();
         self.update_overlay();
+        self.follow_frame();
     }
 
     /// The number of frames that have passed.
@@ -235,12 +240,6 @@ impl Machine {
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
         self.network_idle && self.waiting.is_empty() && self.streams.are_quiet()
-    }
-
-    /// What the vector screen shows now.
-    pub fn vector_picture(&mut self, beam: &Beam) -> Picture {
-        self.renew_picture();
-        beam.picture(&self.visible_strokes())
     }
 
     /// Makes the picture of now, as the next frame would.
@@ -389,5 +388,7 @@ pub fn time_of_frame(frame: u64) -> Micros {
 mod answer_tests;
 #[cfg(test)]
 mod device_tests;
+#[cfg(test)]
+mod sight_tests;
 #[cfg(test)]
 mod tests;

@@ -264,8 +264,8 @@ fn two_machines_do_the_same() {
         two.step([Input::Bytes(LINE, vec![byte])], 0);
     }
     assert_eq!(strokes(&mut one), strokes(&mut two));
-    let beam = Beam { size: 64, ..Beam::default() };
-    assert_eq!(one.vector_picture(&beam).pixels(), two.vector_picture(&beam).pixels());
+    let size = Some([64, 64]);
+    assert_eq!(one.vector_picture(size).pixels(), two.vector_picture(size).pixels());
 }
 
 #[test]

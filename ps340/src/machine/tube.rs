@@ -17,8 +17,6 @@ use std::borrow::Cow;
 
 /// Frames for which blinking characters are seen, and then not seen. Ours.
 const BLINK_FRAMES: u64 = 30;
-/// The screen that the machine shows, of those that SET DISPLAYS tells apart.
-const SCREEN: u8 = 0;
 
 /// Switches of the screen, and what is drawn over the picture.
 #[derive(Debug)]
@@ -36,8 +34,8 @@ pub(super) struct Tube {
     cursor_of: Option<CursorKey>,
     /// The strokes of words and cursor.
     overlay: Vec<Stroke>,
-    /// How often `overlay` was made.
-    pub(super) drawn: u64,
+    /// Changes with them.
+    overlay_version: u64,
 }
 
 /// Strokes of terminal and message line.
@@ -76,7 +74,7 @@ impl Default for Tube {
             cursor: Update::default(),
             cursor_of: None,
             overlay: Vec::new(),
-            drawn: 0,
+            overlay_version: 0,
         }
     }
 }
@@ -84,12 +82,23 @@ impl Default for Tube {
 impl Tube {
     /// The switches as at the start; what is drawn next is another picture than all before.
     pub(super) fn restarted(&self) -> Tube {
-        Tube { drawn: self.drawn + 1, ..Tube::default() }
+        Tube { overlay_version: self.overlay_version + 1, ..Tube::default() }
+    }
+
+    /// A number that changes with the strokes over the picture.
+    pub(super) fn overlay_version(&self) -> u64 {
+        self.overlay_version
+    }
+
+    /// Lets the strokes over the picture be made anew.
+    pub(super) fn forget_overlay(&mut self) {
+        self.words_of = None;
+        self.cursor_of = None;
     }
 }
 
 impl Machine {
-    /// The strokes that the vector screen shows: those of the structure, then terminal, message line and cursor, as
+    /// The strokes that the screen that is looked at shows: those of the structure, then terminal, message line and cursor, as
     /// far as the keys GRAPH and TERM and the screen saver let them be seen.
     pub fn visible_strokes(&self) -> Cow<'_, [Stroke]> {
         let Tube { graphics, blanked, overlay, .. } = &self.tube;
@@ -97,7 +106,7 @@ impl Machine {
             (true, _) => Cow::Borrowed(&[]),
             (false, false) => Cow::Borrowed(overlay),
             (false, true) if overlay.is_empty() && self.update.scopes.is_empty() => Cow::Borrowed(&self.update.strokes),
-            (false, true) => self.update.on_screen(SCREEN).chain(overlay).copied().collect(),
+            (false, true) => self.update.on_screen(self.controls().screen).chain(overlay).copied().collect(),
         }
     }
 
@@ -131,10 +140,11 @@ impl Machine {
         if !self.cursor_is_current() {
             self.update_cursor();
         }
-        let Tube { words, cursor, overlay, drawn, .. } = &mut self.tube;
-        *drawn += 1;
+        let screen = self.controls().screen;
+        let Tube { words, cursor, overlay, overlay_version, .. } = &mut self.tube;
         overlay.clear();
-        overlay.extend(words.strokes.iter().chain(cursor.on_screen(SCREEN)));
+        overlay.extend(words.strokes.iter().chain(cursor.on_screen(screen)));
+        *overlay_version += 1;
     }
 
     fn update_words(&mut self) {

@@ -6,11 +6,13 @@ mod graph;
 mod inspect;
 mod order;
 mod perform;
+mod sight;
 
 pub use graph::{Language, Subject, title};
 pub use inspect::Inspection;
 pub use order::{Order, OrderError, OrderRow, Screen, parse, rows, unescape};
 pub use perform::{Outcome, Wait, perform};
+pub use sight::SightOrder;
 
 /// The reply line for a result: `ok`, `ok TEXT` or `error TEXT`, without the line end.
 pub fn reply(result: &Result<String, String>) -> String {

@@ -1,6 +1,9 @@
 //! The orders of the operator: their table and their text form.
 
-use super::inspect::{self, Inspection};
+use super::{
+    inspect::{self, Inspection},
+    sight::{self, SightOrder},
+};
 use crate::machine::{Key, KeyboardMode};
 use clap::ValueEnum;
 
@@ -76,15 +79,8 @@ pub enum Order {
     Messages,
     /// How replies look on this operator line: with line ends as they are, or as `\n`.
     Lines(bool),
-    /// Writes a picture of a screen.
-    Picture {
-        /// Which.
-        screen: Screen,
-        /// PNG or EXR, by extension.
-        file: String,
-        /// Width and height of the vector screen in pixels.
-        size: Option<u32>,
-    },
+    /// Sets something at the display, or writes a picture of it.
+    Sight(SightOrder),
     /// Describes an object.
     Show(String),
     /// The strokes of the latest update, the first so many.
@@ -128,7 +124,7 @@ impl Order {
             | Order::Message { .. }
             | Order::Messages
             | Order::Lines(_)
-            | Order::Picture { .. }
+            | Order::Sight(_)
             | Order::Show(_)
             | Order::Strokes(_)
             | Order::Overlay(_)
@@ -179,7 +175,7 @@ const STROKES: usize = 10_000;
 
 /// Every order: what a person does at the machine, and what looks into it.
 pub fn rows() -> impl Iterator<Item = &'static OrderRow> {
-    ORDERS.iter().chain(inspect::ROWS)
+    ORDERS.iter().chain(sight::ROWS).chain(inspect::ROWS)
 }
 
 /// The orders of a person at the machine.
@@ -240,12 +236,6 @@ const ORDERS: &[OrderRow] = &[
         arguments: "",
         summary: "all messages to the host that nobody took yet",
         read: |_| Ok(Order::Messages),
-    },
-    OrderRow {
-        word: "picture",
-        arguments: "vector|raster FILE [SIZE]",
-        summary: "write a screen as PNG or EXR",
-        read: picture,
     },
     OrderRow {
         word: "show",
@@ -345,13 +335,13 @@ impl<'a> Words<'a> {
         word.map(|w| w.parse().map_err(|_| OrderError::Bad { found: w.into(), expected })).transpose()
     }
 
-    fn integer(&mut self, low: u8, high: u8, expected: &'static str) -> Result<u8, OrderError> {
+    pub(super) fn integer(&mut self, low: u8, high: u8, expected: &'static str) -> Result<u8, OrderError> {
         let word = self.required(expected)?;
         let read = word.parse().ok().filter(|n| (low..=high).contains(n));
         read.ok_or_else(|| OrderError::Bad { found: word.into(), expected })
     }
 
-    fn real(&mut self, low: f64, high: f64, expected: &'static str) -> Result<f64, OrderError> {
+    pub(super) fn real(&mut self, low: f64, high: f64, expected: &'static str) -> Result<f64, OrderError> {
         let word = self.required(expected)?;
         let read = word.parse().ok().filter(|x| (low..=high).contains(x));
         read.ok_or_else(|| OrderError::Bad { found: word.into(), expected })
@@ -457,25 +447,4 @@ pub fn unescape(text: &str) -> Vec<u8> {
 
 fn frames(words: &mut Words<'_>) -> Result<Order, OrderError> {
     Ok(Order::Frames(words.optional("a number of frames")?.ok_or(OrderError::Missing("a number of frames"))?))
-}
-
-fn picture(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    let screen = match words.required("'vector' or 'raster'")? {
-        "vector" => Screen::Vector,
-        "raster" => Screen::Raster,
-        other => return Err(OrderError::Bad { found: other.into(), expected: "'vector' or 'raster'" }),
-    };
-    let rest = std::mem::take(&mut words.rest);
-    // The size is the last word if it is a number; file names may hold blanks.
-    let (file, size) = match rest.rsplit_once(char::is_whitespace) {
-        Some((file, last)) if screen == Screen::Vector && last.bytes().all(|b| b.is_ascii_digit()) => {
-            let size = last.parse().ok().filter(|s| (16..=8192).contains(s));
-            (file.trim_end(), Some(size.ok_or(OrderError::Bad { found: last.into(), expected: "a size, 16 to 8192" })?))
-        }
-        _ => (rest, None),
-    };
-    if file.is_empty() {
-        return Err(OrderError::Missing("a file name"));
-    }
-    Ok(Order::Picture { screen, file: file.into(), size })
 }

@@ -1,12 +1,10 @@
 //! Carrying out an order on a machine.
 
-use super::{Order, OrderRow, Screen, inspect::inspect, rows};
+use super::{Order, OrderRow, inspect::inspect, rows, sight};
 use crate::{
-    calligraphic::Beam,
+    calligraphic,
     machine::{Event, Key, Machine, TabletEvent},
-    traversal::Stroke,
 };
-use std::path::Path;
 
 /// What came of an order.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,13 +70,13 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         }
         Order::Messages => return Outcome::Done(Ok(messages(machine))),
         Order::Lines(_) => return Outcome::Done(Ok(String::new())),
-        Order::Picture { screen, file, size } => return Outcome::Done(picture(machine, *screen, file, *size)),
+        Order::Sight(order) => return Outcome::Done(sight::perform(order, machine)),
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
         Order::Strokes(most) => {
             machine.renew_picture();
-            return Outcome::Done(Ok(strokes(&machine.latest_update().strokes, *most)));
+            return Outcome::Done(Ok(calligraphic::text(&machine.latest_update().strokes, *most)));
         }
-        Order::Overlay(most) => return Outcome::Done(Ok(strokes(machine.overlay(), *most))),
+        Order::Overlay(most) => return Outcome::Done(Ok(calligraphic::text(machine.overlay(), *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
         Order::Inspect(what) => return Outcome::Done(inspect(what, machine)),
         Order::Panel => {
@@ -107,28 +105,4 @@ fn messages(machine: &mut Machine) -> String {
     let taken = std::iter::from_fn(|| machine.take_message());
     let lines: Vec<String> = taken.map(|message| String::from_utf8_lossy(&message).into_owned()).collect();
     if lines.is_empty() { "no message to the host".into() } else { lines.join("\n") }
-}
-
-/// The number of strokes, then on each line x and y of start and end, the intensities there, red, green and blue.
-fn strokes(strokes: &[Stroke], most: usize) -> String {
-    let shown = &strokes[..strokes.len().min(most)];
-    let mut text = format!("{} strokes", shown.len());
-    for stroke in shown {
-        let numbers = stroke.start.iter().chain(&stroke.end).chain(&stroke.intensity).chain(&stroke.color);
-        text.push('\n');
-        text.push_str(&numbers.map(f32::to_string).collect::<Vec<_>>().join(" "));
-    }
-    text
-}
-
-fn picture(machine: &mut Machine, screen: Screen, file: &str, size: Option<u32>) -> Result<String, String> {
-    let picture = match screen {
-        Screen::Vector => {
-            let default = Beam::default();
-            machine.vector_picture(&Beam { size: size.unwrap_or(default.size), ..default })
-        }
-        Screen::Raster => machine.raster_picture(),
-    };
-    picture.write(Path::new(file)).map_err(|e| e.to_string())?;
-    Ok(format!("{file} {}x{}", picture.width(), picture.height()))
 }

@@ -32,8 +32,16 @@ fn orders_read_back() {
     let file = "my picture.png".to_string();
     assert_eq!(
         parse("picture vector my picture.png 512"),
-        Ok(Order::Picture { screen: Screen::Vector, file, size: Some(512) })
+        Ok(Order::Sight(SightOrder::Picture { screen: Screen::Vector, file, size: Some([512; 2]) }))
     );
+    let file = "a.svg".to_string();
+    assert_eq!(
+        parse("picture vector a.svg 640x480"),
+        Ok(Order::Sight(SightOrder::Picture { screen: Screen::Vector, file, size: Some([640, 480]) }))
+    );
+    assert_eq!(parse("knob"), Ok(Order::Sight(SightOrder::Knob(None))));
+    assert_eq!(parse("steady off"), Ok(Order::Sight(SightOrder::Steady(Some(false)))));
+    assert_eq!(parse("screen 3"), Ok(Order::Sight(SightOrder::Screen(Some(3)))));
 }
 
 #[test]
@@ -55,6 +63,10 @@ fn bad_orders_name_the_word_that_is_wrong() {
     assert_eq!(parse("graph network jsno"), Err(OrderError::Bad { found: "jsno".into(), expected }));
     assert!(parse("graph network a.dot").is_ok() && parse("graph network json").is_ok());
     assert_eq!(parse("help dail"), Err(OrderError::Unknown("dail".into())));
+    let expected = "a size, 1 to 8192, or WIDTHxHEIGHT";
+    assert_eq!(parse("picture vector a.png 9000"), Err(OrderError::Bad { found: "9000".into(), expected }));
+    assert!(parse("picture vector a.png 0x5").is_err() && parse("knob focus 1.5").is_err());
+    assert!(parse("knob volume 1").is_err() && parse("phosphor P0").is_err() && parse("screen 4").is_err());
     assert_eq!(parse("button 3 4"), Err(OrderError::TooMuch("4".into())));
 }
 
@@ -229,4 +241,40 @@ fn the_cursor_is_an_overlay_and_no_stroke_of_the_structure() {
     let overlay = performed(&mut machine, "overlay");
     assert!(overlay.starts_with("2 strokes\n0.46 0 0.54 0 1 1 1 1 1\n"), "{overlay}");
     assert_eq!(performed(&mut machine, "overlay 1").lines().count(), 2);
+}
+
+#[test]
+fn the_display_is_set_by_orders() {
+    let mut machine = Machine::new(Settings::default());
+    assert_eq!(performed(&mut machine, "knob"), "brightness 0.5, contrast 0.5, focus 1");
+    assert_eq!(performed(&mut machine, "knob focus 0.75"), "brightness 0.5, contrast 0.5, focus 0.75");
+    assert_eq!(performed(&mut machine, "steady"), "steady on");
+    assert_eq!(performed(&mut machine, "steady off"), "steady off");
+    assert_eq!(performed(&mut machine, "screen 2"), "screen 2");
+    assert_eq!(performed(&mut machine, "phosphor p31"), "P31");
+    let phosphors = performed(&mut machine, "phosphor");
+    assert!(phosphors.contains("\n* P31 ") && phosphors.starts_with("  P22 "), "{phosphors}");
+    assert_eq!(performed(&mut machine, "refresh"), "0.0 microseconds, 60 Hz");
+}
+
+#[test]
+fn pictures_are_written_as_pixels_drawings_and_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut machine = Machine::new(Settings::default());
+    let line = LineId(1);
+    let text = b"V := VECTOR_LIST N = 2 -0.5,0 0.5,0; DISPLAY V;".to_vec();
+    machine.step([Input::Attach(line), Input::Bytes(line, text)], 0);
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    for (name, reply) in
+        [("a.png 30x20", "30x20"), ("b.exr 20", "20x20"), ("c.svg", "1 strokes"), ("d.txt", "1 strokes")]
+    {
+        let said = performed(&mut machine, &format!("picture vector {}", file(name)));
+        assert!(said.ends_with(reply), "{said}");
+    }
+    let text = std::fs::read_to_string(file("d.txt")).unwrap();
+    assert_eq!(text, "1 strokes\n-0.5 0 0.5 0 1 1 1 1 1\n");
+    assert!(std::fs::read_to_string(file("c.svg")).unwrap().contains("M250.00 500.00L750.00 500.00"));
+    let pixels = image::open(file("a.png")).unwrap().into_rgb8();
+    assert_eq!((pixels.width(), pixels.height()), (30, 20));
+    assert!(pixels.pixels().any(|pixel| pixel.0[0] > 100));
 }

@@ -5,11 +5,10 @@
 use crate::{campaign::Target, pool::Features, seeds, vocabulary::pairs};
 use protocol::command::{CommandReader, reference::name_of};
 use ps340::{
-    calligraphic::Beam,
     line::LineId,
     machine::{Input, Machine, Output, Settings, WORK_PER_STEP},
     memory::MASS_MEMORY,
-    operator::{Order, Outcome, parse, perform},
+    operator::{Order, Outcome, SightOrder, parse, perform},
 };
 
 pub static SESSION: Target = Target { name: "session", seeds: seeds::sessions, run };
@@ -121,7 +120,7 @@ impl Session {
     fn order(&mut self, line: &str) {
         match parse(line) {
             // A picture would be a file of a name that chance made.
-            Ok(Order::Picture { .. } | Order::Quit) | Err(_) => {}
+            Ok(Order::Sight(SightOrder::Picture { .. }) | Order::Quit) | Err(_) => {}
             Ok(order) => {
                 if let Outcome::Waiting(wait) = perform(&order, &mut self.machine) {
                     while wait.poll(&mut self.machine).is_none() && self.may_go_on() {
@@ -158,8 +157,7 @@ impl Session {
         }
         let counters = self.machine.counters();
         assert!(counters.bytes <= MEMORY, "{} bytes", counters.bytes);
-        let beam = Beam { size: 32, ..Beam::default() };
-        assert_eq!(self.machine.vector_picture(&beam).width(), 32);
+        assert_eq!(self.machine.vector_picture(Some([32, 32])).width(), 32);
         if lot % 16 == 5 {
             assert!(self.machine.raster_picture().width() > 0);
         }

@@ -1,0 +1,210 @@
+//! Orders for the display: knobs, phosphor, steadiness, which screen, and pictures in files.
+
+use super::order::{Order, OrderError, OrderRow, Screen, Words};
+use crate::{
+    calligraphic::{self, Controls, KNOBS, Knob, MAX_SIZE, PHOSPHORS, Phosphor, SCREENS},
+    machine::Machine,
+};
+use std::path::Path;
+
+/// Something that a person sets at the display, or wants of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SightOrder {
+    /// Turns a knob, or says how all stand.
+    Knob(Option<(&'static Knob, f32)>),
+    /// Takes another phosphor, or lists them.
+    Phosphor(Option<&'static Phosphor>),
+    /// Whether a long picture stands still instead of flickering; or says so.
+    Steady(Option<bool>),
+    /// Looks at another screen, or says which is looked at.
+    Screen(Option<u8>),
+    /// Says how long the beam needs, and how often it draws the picture.
+    Refresh,
+    /// Writes a picture of a screen, or its strokes.
+    Picture {
+        /// Which.
+        screen: Screen,
+        /// PNG, EXR, SVG or TXT, by extension.
+        file: String,
+        /// Width and height of the vector screen in pixels.
+        size: Option<[u32; 2]>,
+    },
+}
+
+/// The rows of these orders.
+pub(super) const ROWS: &[OrderRow] = &[
+    OrderRow {
+        word: "picture",
+        arguments: "vector|raster FILE [SIZE|WIDTHxHEIGHT]",
+        summary: "write a screen as .png or .exr, the strokes of the vector screen as .svg or .txt",
+        read: picture,
+    },
+    OrderRow {
+        word: "knob",
+        arguments: "[brightness|contrast|focus 0..1]",
+        summary: "turn a knob of the display; alone: how they stand",
+        read: knob,
+    },
+    OrderRow {
+        word: "phosphor",
+        arguments: "[NAME]",
+        summary: "give the screen another phosphor; alone: list them",
+        read: read_phosphor,
+    },
+    OrderRow {
+        word: "steady",
+        arguments: "[on|off]",
+        summary: "whether a picture that takes long to draw stands still (on) or flickers as it did (off)",
+        read: steady,
+    },
+    OrderRow {
+        word: "screen",
+        arguments: "[0..3]",
+        summary: "look at another of the screens that SET DISPLAYS tells apart",
+        read: screen,
+    },
+    OrderRow {
+        word: "refresh",
+        arguments: "",
+        summary: "how long the beam needs for the picture, and how often it draws it",
+        read: |_| Ok(Order::Sight(SightOrder::Refresh)),
+    },
+];
+
+fn bad<T>(found: &str, expected: &'static str) -> Result<T, OrderError> {
+    Err(OrderError::Bad { found: found.into(), expected })
+}
+
+fn knob(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let Some(word) = words.next() else { return Ok(Order::Sight(SightOrder::Knob(None))) };
+    let Some(knob) = KNOBS.iter().find(|knob| knob.name.eq_ignore_ascii_case(word)) else {
+        return bad(word, "'brightness', 'contrast' or 'focus'");
+    };
+    let to = words.real(0.0, 1.0, "a number, 0 to 1")?;
+    Ok(Order::Sight(SightOrder::Knob(Some((knob, to as f32)))))
+}
+
+fn read_phosphor(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let Some(word) = words.next() else { return Ok(Order::Sight(SightOrder::Phosphor(None))) };
+    match calligraphic::phosphor(word) {
+        Some(row) => Ok(Order::Sight(SightOrder::Phosphor(Some(row)))),
+        None => bad(word, "a phosphor of the list 'phosphor'"),
+    }
+}
+
+fn steady(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let on = match words.next() {
+        None => None,
+        Some("on") => Some(true),
+        Some("off") => Some(false),
+        Some(other) => return bad(other, "'on' or 'off'"),
+    };
+    Ok(Order::Sight(SightOrder::Steady(on)))
+}
+
+fn screen(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    if words.rest.is_empty() {
+        return Ok(Order::Sight(SightOrder::Screen(None)));
+    }
+    let screen = words.integer(0, SCREENS - 1, "a screen, 0 to 3")?;
+    Ok(Order::Sight(SightOrder::Screen(Some(screen))))
+}
+
+fn picture(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let screen = match words.required("'vector' or 'raster'")? {
+        "vector" => Screen::Vector,
+        "raster" => Screen::Raster,
+        other => return bad(other, "'vector' or 'raster'"),
+    };
+    let rest = std::mem::take(&mut words.rest);
+    // The size is the last word if it looks like one; file names may hold blanks.
+    let (file, size) = match rest.rsplit_once(char::is_whitespace) {
+        Some((file, last)) if screen == Screen::Vector && looks_like_a_size(last) => match size(last) {
+            Some(size) => (file.trim_end(), Some(size)),
+            None => return bad(last, "a size, 1 to 8192, or WIDTHxHEIGHT"),
+        },
+        _ => (rest, None),
+    };
+    if file.is_empty() {
+        return Err(OrderError::Missing("a file name"));
+    }
+    Ok(Order::Sight(SightOrder::Picture { screen, file: file.into(), size }))
+}
+
+/// Whether a word is a number, or two with an x between them.
+fn looks_like_a_size(word: &str) -> bool {
+    let number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    word.split_once('x').map_or(number(word), |(width, height)| number(width) && number(height))
+}
+
+fn size(word: &str) -> Option<[u32; 2]> {
+    let (width, height) = word.split_once('x').unwrap_or((word, word));
+    let pixels = |part: &str| part.parse().ok().filter(|pixels| (1..=MAX_SIZE).contains(pixels));
+    Some([pixels(width)?, pixels(height)?])
+}
+
+/// Carries out one of these orders.
+///
+/// # Errors
+/// Why a file was not written.
+pub(super) fn perform(order: &SightOrder, machine: &mut Machine) -> Result<String, String> {
+    let mut controls = *machine.controls();
+    match order {
+        SightOrder::Knob(None) => {}
+        SightOrder::Knob(Some((knob, to))) => knob.set(&mut controls, *to),
+        SightOrder::Phosphor(None) => return Ok(phosphors(&controls)),
+        SightOrder::Phosphor(Some(row)) => controls.phosphor = row,
+        SightOrder::Steady(on) => controls.steady = on.unwrap_or(controls.steady),
+        SightOrder::Screen(screen) => controls.screen = screen.unwrap_or(controls.screen),
+        SightOrder::Refresh => return Ok(refresh(machine)),
+        SightOrder::Picture { screen, file, size } => return write(machine, *screen, file, *size),
+    }
+    machine.set_controls(controls);
+    Ok(match order {
+        SightOrder::Knob(_) => {
+            let stand = KNOBS.iter().map(|knob| format!("{} {}", knob.name, knob.get(&controls)));
+            stand.collect::<Vec<_>>().join(", ")
+        }
+        SightOrder::Steady(_) => format!("steady {}", if controls.steady { "on" } else { "off" }),
+        SightOrder::Screen(_) => format!("screen {}", controls.screen),
+        _ => controls.phosphor.name.into(),
+    })
+}
+
+/// The phosphors, a line each, the present one marked; with their sources.
+fn phosphors(controls: &Controls) -> String {
+    let line = |row: &Phosphor| {
+        let mark = if row == controls.phosphor { '*' } else { ' ' };
+        format!("{mark} {:<4} {} ({})", row.name, row.summary, row.source)
+    };
+    PHOSPHORS.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+fn refresh(machine: &mut Machine) -> String {
+    machine.renew_picture();
+    let refresh = machine.refresh();
+    let held = if machine.controls().steady && refresh.frames > 1 { ", held steady" } else { "" };
+    format!("{:.1} microseconds, {} Hz{held}", refresh.micros, refresh.rate() as f32)
+}
+
+/// Writes a picture or a drawing, by the ending of the file's name.
+fn write(machine: &mut Machine, screen: Screen, file: &str, size: Option<[u32; 2]>) -> Result<String, String> {
+    let path = Path::new(file);
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    let drawing = match (screen, ending.as_deref()) {
+        (Screen::Vector, Some("svg")) => calligraphic::svg,
+        (Screen::Vector, Some("txt")) => |strokes: &_| calligraphic::text(strokes, usize::MAX) + "\n",
+        _ => {
+            let picture = match screen {
+                Screen::Vector => machine.vector_picture(size),
+                Screen::Raster => machine.raster_picture(),
+            };
+            picture.write(path).map_err(|e| e.to_string())?;
+            return Ok(format!("{file} {}x{}", picture.width(), picture.height()));
+        }
+    };
+    machine.renew_picture();
+    let strokes = machine.visible_strokes();
+    std::fs::write(path, drawing(&strokes)).map_err(|e| format!("cannot write {file}: {e}"))?;
+    Ok(format!("{file} {} strokes", strokes.len()))
+}

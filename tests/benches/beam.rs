@@ -1,0 +1,125 @@
+//! How many strokes a second the display draws on the processor, from strokes to the bytes of the pixels.
+//!
+//! Each picture is checked before it is timed: the light is that of the strokes, and the bytes are there. A drawer of
+//! plain smooth lines (Wu 1991: two pixels a step, no spot, no ramp, no energy, colour added to bytes) runs beside it.
+//! `THREADS=1` in the environment lets everything run on one thread; otherwise as many as there are processors.
+
+use ps340::{
+    calligraphic::{self, Beam, Controls, Display},
+    traversal::Stroke,
+};
+use std::time::Instant;
+
+/// Runs of each measurement.
+const RUNS: usize = 9;
+
+/// Strokes of `pixels` pixels in a picture of `size`, at places and angles that fill the screen, in several colours.
+fn strokes(count: usize, pixels: f32, size: u32) -> Vec<Stroke> {
+    let mut seed = 1_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 40) as f32 / (1 << 24) as f32
+    };
+    let length = pixels * 2.0 / size as f32;
+    let stroke = |index: usize| {
+        let (x, y, angle) = (1.6 * random() - 0.8, 1.6 * random() - 0.8, std::f32::consts::TAU * random());
+        let color = ps340::hue::rgb((index / 100 * 30) as f32, 0.8);
+        let end = [x + length * angle.cos(), y + length * angle.sin()];
+        Stroke { start: [x, y], end, intensity: [0.5 + 0.5 * random(), 0.5], color }
+    };
+    (0..count).map(stroke).collect()
+}
+
+/// The shortest of several runs, seconds.
+fn best(mut work: impl FnMut(usize)) -> f64 {
+    let run = |(index, work): (usize, &mut dyn FnMut(usize))| {
+        let start = Instant::now();
+        work(index);
+        start.elapsed().as_secs_f64()
+    };
+    (0..RUNS).map(|index| run((index, &mut work))).fold(f64::INFINITY, f64::min)
+}
+
+/// Adds smooth lines of one pixel's width to bytes (X. Wu 1991), on one thread.
+fn wu(strokes: &[Stroke], size: u32, rgba: &mut [u8]) {
+    let half = size as f32 / 2.0;
+    for stroke in strokes {
+        let [mut start, mut end] = [stroke.start, stroke.end].map(|[x, y]| [(x + 1.0) * half, (1.0 - y) * half]);
+        let steep = (end[1] - start[1]).abs() > (end[0] - start[0]).abs();
+        if steep {
+            (start, end) = ([start[1], start[0]], [end[1], end[0]]);
+        }
+        if start[0] > end[0] {
+            (start, end) = (end, start);
+        }
+        let slope = (end[1] - start[1]) / (end[0] - start[0]).max(1e-9);
+        let color = stroke.color.map(|part| part * stroke.intensity[0] * 255.0);
+        let mut across = start[1];
+        for along in start[0] as u32..=end[0] as u32 {
+            let part = across.fract();
+            for (side, part) in [(0, 1.0 - part), (1, part)] {
+                let (x, y) = if steep { (across as u32 + side, along) } else { (along, across as u32 + side) };
+                if x < size && y < size {
+                    let place = 4 * (y * size + x) as usize;
+                    for (byte, color) in rgba[place..place + 3].iter_mut().zip(color) {
+                        *byte = byte.saturating_add((color * part) as u8);
+                    }
+                }
+            }
+            across += slope;
+        }
+    }
+}
+
+/// Strokes a second and the time of a frame.
+fn row(count: usize, pixels: f32, size: u32) {
+    let strokes = strokes(count, pixels, size);
+    let light = calligraphic::draw(&Beam::new(size, size), &strokes);
+    let length = |s: &Stroke| f64::from(s.end[0] - s.start[0]).hypot(f64::from(s.end[1] - s.start[1]));
+    let expected: f64 = strokes.iter().map(|s| length(s) * f64::from(s.intensity[0] + s.intensity[1]) / 2.0).sum();
+    // At full value the strongest of the three channels has all the light, and only one of them may.
+    let strongest = light.total().into_iter().fold(0.0, f64::max);
+    assert!(strongest > 0.3 * expected && strongest < 1.001 * expected, "{strongest} {expected}");
+    let lit = light.lit_pixels();
+
+    let mut display = Display::new(Controls::default(), [size, size]);
+    display.show(&strokes, 0, 0);
+    assert!(display.frame().chunks_exact(4).filter(|pixel| pixel[..3] != [0; 3]).count() as u64 > lit / 3);
+    let mut version = 0;
+    let frame = best(|_| {
+        version += 1;
+        display.show(&strokes, version, version);
+    });
+    let still = best(|_| {
+        (0..1000).for_each(|ahead| display.show(&strokes, version, version + ahead));
+    });
+    let mut rgba = vec![0; 4 * (size * size) as usize];
+    let plain = best(|_| {
+        rgba.fill(0);
+        wu(&strokes, size, &mut rgba);
+    });
+    println!(
+        "{count:>9} of {pixels:>3} px at {size}: {:7.2} ms a frame, {:5.2} M/s, {:5.1} ns a lit pixel ({lit}); unchanged \
+         {:.3} us; Wu {:7.2} ms",
+        frame * 1e3,
+        count as f64 / frame / 1e6,
+        frame / lit as f64 * 1e9,
+        still * 1e3,
+        plain * 1e3,
+    );
+}
+
+fn main() {
+    let threads = std::env::var("THREADS").ok().and_then(|word| word.parse().ok()).unwrap_or(0);
+    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { return };
+    println!("strokes to light to bytes, {} threads, the shortest of {RUNS} runs", pool.current_num_threads());
+    pool.install(|| {
+        for size in [1024, 2048] {
+            for pixels in [10.0, 100.0] {
+                for count in [10, 1_000, 10_000, 100_000, 1_000_000] {
+                    row(count, pixels, size);
+                }
+            }
+        }
+    });
+}
