@@ -1,6 +1,8 @@
 //! The numbered messages of the machine.
 
-use crate::{disk::DiskFault, memory::Refusal, port::Fault, structure::NodeFault, traversal::Trouble};
+use crate::{
+    disk::DiskFault, memory::Refusal, port::Fault, rendering::RenderingFault, structure::NodeFault, traversal::Trouble,
+};
 use protocol::{Name, command::CommandError, record::BinaryError};
 
 /// Which of the three instances ERROR, WARNING and INFORMATION passes a message on.
@@ -59,6 +61,13 @@ pub enum Message {
     Line(String),
     /// I 13: a packet on the diagnostic route.
     Diagnostic(String),
+    /// E 8, E 10: a rendering that was not made.
+    Rendering {
+        /// Of which node.
+        name: String,
+        /// Why not.
+        fault: RenderingFault,
+    },
     /// W 30 to 33, E 550 to 558: a raster operation.
     Raster(crate::raster::RasterFault),
     /// E 2, E 8: a file of the disk.
@@ -92,6 +101,7 @@ impl Message {
             Message::Information(_) => 11,
             Message::Line(_) => 12,
             Message::Diagnostic(_) => 13,
+            Message::Rendering { fault, .. } => fault.number(),
             Message::Raster(fault) => fault.number(),
             Message::Disk(fault) => fault.number(),
         }
@@ -123,6 +133,7 @@ impl std::fmt::Display for Message {
             Message::Update(trouble) => write!(f, "Picture incomplete: {trouble}"),
             Message::Line(text) => f.write_str(text),
             Message::Diagnostic(text) => write!(f, "Host says: {text}"),
+            Message::Rendering { name, fault } => f.write_str(&fault.text(name)),
             Message::Raster(fault) => write!(f, "{fault}"),
             Message::Disk(fault) => write!(f, "{fault}"),
         }

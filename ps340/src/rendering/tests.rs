@@ -1,0 +1,1 @@
+//! Renderings against closed forms and an independent z-buffer.
