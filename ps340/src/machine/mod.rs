@@ -395,4 +395,6 @@ mod answer_tests;
 #[cfg(test)]
 mod device_tests;
 #[cfg(test)]
+mod rendering_tests;
+#[cfg(test)]
 mod tests;

@@ -93,7 +93,7 @@ pub struct Edge {
     pub uses: [u32; 2],
     /// Whether all polygons at it say that it is soft.
     pub soft: bool,
-    /// Hue and saturation in which it is drawn.
+    /// Hue and saturation of the first polygon at it.
     pub color: [f64; 2],
 }
 
@@ -181,6 +181,14 @@ impl Facets {
     /// The points of the corners of a contour.
     pub fn contour(&self, contour: usize) -> impl ExactSizeIterator<Item = u32> + '_ {
         self.corners[self.contours[contour].clone()].iter().map(|corner| corner.point)
+    }
+
+    /// Hue and saturation of an edge: those of the first polygon at it, or of the second if only that shows its front.
+    pub fn color_of(&self, edge: &Edge) -> [f64; 2] {
+        match edge.faces.map(|face| face.map(|face| &self.faces[face as usize])) {
+            [Some(first), Some(second)] if second.toward && !first.toward => second.color,
+            _ => edge.color,
+        }
     }
 
     /// The first two faces at an edge.

@@ -143,7 +143,7 @@ fn straights(facets: &Facets, projected: &Projected, spots: &[Spot], closed: boo
             names: line.spots,
             faces: edge.faces,
             places: line.ends,
-            color: edge.color,
+            color: facets.color_of(edge),
         })
     });
     lines.collect()

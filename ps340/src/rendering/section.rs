@@ -63,7 +63,7 @@ pub fn sectioned(facets: &Facets, plane: &Plane) -> Vec<Segment> {
         };
         let ends = ends.map(|p| p.truncate() / p.w);
         if ends[0] != ends[1] && ends.iter().all(|end| end.is_finite()) {
-            segments.push(Segment { ends, color: edge.color });
+            segments.push(Segment { ends, color: facets.color_of(edge) });
         }
     }
     segments.extend(cross_section(facets, plane));

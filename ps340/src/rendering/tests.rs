@@ -1,1 +1,0 @@
-//! Renderings against closed forms and an independent z-buffer.
