@@ -12,7 +12,11 @@ use crate::{
     structure::Node,
     terminal::Ink,
 };
-use protocol::{Name, Value, command, raster::{RASTER_HEIGHT, RASTER_WIDTH}, value::MAX_STRING};
+use protocol::{
+    Name, Value, command,
+    raster::{RASTER_HEIGHT, RASTER_WIDTH},
+    value::MAX_STRING,
+};
 
 impl Machine {
     /// Carries out one effect.

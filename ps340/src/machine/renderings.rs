@@ -2,9 +2,11 @@
 //!
 //! # Decided here
 //! - All messages to input `<1>` of rendering nodes wait in one queue, so that FIX(0) behind FIX(4) toggles that
-//!   rendering. They begin with the next frame whose picture is not held between BEGIN and END.
+//!   rendering. While the picture is held between BEGIN and END they wait.
+//! - In a frame one rendering is begun, at once if none is under way, so that it is of the moment in which it was asked
+//!   for; others wait for a frame of their own.
 //! - Every message ends with TRUE or FALSE from output `<1>`.
-//! - A rendering is of what the node shows when it begins; what changes meanwhile does not matter.
+//! - What changes while a rendering is made does not matter to it.
 //! - While a shaded rendering is made the vector screen is dark, and it stays dark until TURNONDISPLAY.
 
 use super::Machine;
@@ -30,6 +32,8 @@ const MAX_WAITING: usize = 1_000;
 pub(super) struct Renderings {
     waiting: VecDeque<(ObjectId, RenderingRequest)>,
     task: Option<UnderWay>,
+    /// Whether a rendering was begun, or tried, since the latest frame.
+    begun: bool,
 }
 
 #[derive(Debug)]
@@ -61,24 +65,39 @@ impl Machine {
             let fault = NodeFault::Full { input: Input::Number(1) };
             return self.messages.push(Message::Node { name, fault });
         }
+        let at_once = self.renderings.waiting.is_empty() && matches!(request, RenderingRequest::Render(_));
         self.renderings.waiting.push_back((node, request));
+        // Only what takes a frame may begin at once, or a node whose answers come back to it would never rest.
+        if at_once {
+            self.begin_renderings();
+        }
     }
 
     /// Does a frame's share of what rendering nodes were asked for.
     pub(super) fn advance_renderings(&mut self) {
-        if self.renderings.are_done() || self.memory.structures.is_held() {
-            return;
-        }
-        loop {
-            if let Some(mut under_way) = self.renderings.task.take() {
-                // A rendering takes the rest of the frame's share, also if it needs less.
-                match under_way.task.advance(RENDERING_PER_FRAME) {
-                    Some(outcome) => self.finish_rendering(under_way, outcome),
-                    None => self.renderings.task = Some(under_way),
+        self.renderings.begun = false;
+        self.begin_renderings();
+        if let Some(mut under_way) = self.renderings.task.take() {
+            match under_way.task.advance(RENDERING_PER_FRAME) {
+                Some(outcome) => {
+                    self.finish_rendering(under_way, outcome);
+                    self.begin_renderings();
                 }
-                return;
+                None => self.renderings.task = Some(under_way),
             }
+        }
+    }
+
+    /// Carries out the requests that wait, up to one that takes longer.
+    fn begin_renderings(&mut self) {
+        while self.renderings.task.is_none() && !self.memory.structures.is_held() {
             let Some((node, request)) = self.renderings.waiting.pop_front() else { return };
+            if matches!(request, RenderingRequest::Render(_)) {
+                if self.renderings.begun {
+                    return self.renderings.waiting.push_front((node, request));
+                }
+                self.renderings.begun = true;
+            }
             // The name may have become something else since.
             let Some(solid) = self.memory.rendering_node(node) else { continue };
             match self.carry_rendering(node, solid, request) {
@@ -90,12 +109,7 @@ impl Machine {
     }
 
     /// Carries out a request; false if that takes longer.
-    fn carry_rendering(
-        &mut self,
-        node: ObjectId,
-        solid: bool,
-        request: RenderingRequest,
-    ) -> Result<bool, Failure> {
+    fn carry_rendering(&mut self, node: ObjectId, solid: bool, request: RenderingRequest) -> Result<bool, Failure> {
         let nothing = Failure::Rendering(RenderingFault::Nothing);
         let show = match request {
             RenderingRequest::Render(kind) => {

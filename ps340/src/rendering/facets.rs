@@ -169,8 +169,7 @@ impl Facets {
         if gathered.lights.is_empty() {
             lights.push(Light::default());
         }
-        let facets =
-            Facets { solid, plane: gathered.plane, color: node.hue_saturation, lights, ..Facets::default() };
+        let facets = Facets { solid, plane: gathered.plane, color: node.hue_saturation, lights, ..Facets::default() };
         let mut builder = Builder { facets, ..Builder::default() };
         for block in &gathered.blocks {
             builder.block(block.polygons, &block.state, &block.sight, structures);

@@ -78,12 +78,9 @@ struct Cutter {
 /// Cuts and projects.
 ///
 /// - `triangles`, `edges`: which of them, by number.
-pub fn project(
-    facets: &Facets,
-    triangles: impl Iterator<Item = u32>,
-    edges: impl Iterator<Item = u32>,
-) -> Projected {
-    let raw: Vec<Raw> = facets.points.iter().map(|p| Raw { clip: p.clip, eye: p.eye, local: p.local, view: p.view }).collect();
+pub fn project(facets: &Facets, triangles: impl Iterator<Item = u32>, edges: impl Iterator<Item = u32>) -> Projected {
+    let raw: Vec<Raw> =
+        facets.points.iter().map(|p| Raw { clip: p.clip, eye: p.eye, local: p.local, view: p.view }).collect();
     let near = raw.iter().map(|p| p.clip.w).fold(0.0, f64::max) * NEAREST;
     let mut cutter = Cutter { raw, cuts: HashMap::new(), near };
     let mut projected = Projected::default();

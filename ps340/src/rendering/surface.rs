@@ -40,11 +40,7 @@ pub struct Light {
 impl Surface {
     /// A side as ATTRIBUTES gives it.
     pub fn new(side: &SurfaceColor) -> Surface {
-        Surface {
-            color: rgb(side.color),
-            diffuse: side.diffuse.clamp(0.0, 1.0),
-            specular: side.specular.min(10),
-        }
+        Surface { color: rgb(side.color), diffuse: side.diffuse.clamp(0.0, 1.0), specular: side.specular.min(10) }
     }
 
     /// What ATTRIBUTES says if it says nothing, in a hue and saturation.
@@ -122,11 +118,7 @@ mod tests {
         let lamp = Light { direction: at(60.0), color: [1.0, 0.5, 0.0], ambient: 0.5 };
         let got = light(&GREY, &[lamp], DVec3::NEG_Z, at(-60.0), [0.2, 0.4, 0.6], true);
         // cos 60 = 1/2; the eye stands in the mirrored direction.
-        let expected = [
-            0.5 * (0.2 * 0.5 + 0.75 * 0.5) + 0.25,
-            0.5 * (0.5 * (0.4 * 0.5 + 0.75 * 0.5) + 0.25),
-            0.0,
-        ];
+        let expected = [0.5 * (0.2 * 0.5 + 0.75 * 0.5) + 0.25, 0.5 * (0.5 * (0.4 * 0.5 + 0.75 * 0.5) + 0.25), 0.0];
         for (got, expected) in got.into_iter().zip(expected) {
             assert!((got - expected).abs() < 1e-12, "{got} {expected}");
         }

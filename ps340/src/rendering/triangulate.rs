@@ -38,8 +38,10 @@ pub fn triangulate(corners: &[DVec3], contours: &[Range<usize>], normal: DVec3, 
         }
         let forward = rings[outline].area >= 0.0;
         let mut loop_ = rings[outline].turned(true);
-        let mut holes: Vec<Vec<u32>> =
-            (0..rings.len()).filter(|ring| parents[*ring] == Some(outline)).map(|ring| rings[ring].turned(false)).collect();
+        let mut holes: Vec<Vec<u32>> = (0..rings.len())
+            .filter(|ring| parents[*ring] == Some(outline))
+            .map(|ring| rings[ring].turned(false))
+            .collect();
         holes.sort_by(|a, b| rightmost(&flat, b).1.total_cmp(&rightmost(&flat, a).1));
         for hole in holes {
             join(&flat, &mut loop_, &hole);
@@ -180,17 +182,19 @@ fn clip_ears(flat: &[DVec2], corners: Vec<u32>, forward: bool, triangles: &mut V
     while left > 2 {
         let (a, b, c) = (previous[place], place, next[place]);
         // After a whole round without an ear the contour is not simple, or flat: then any corner goes.
-        let is_ear = left == 3 || refused > left || !reflex[b] && {
-            let (pa, pb, pc) = (at(a), at(b), at(c));
-            !hollow.iter().any(|&other| {
-                let p = at(other);
-                reflex[other]
-                    && (p != pa && p != pb && p != pc)
-                    && turn(pa, pb, p) >= 0.0
-                    && turn(pb, pc, p) >= 0.0
-                    && turn(pc, pa, p) >= 0.0
-            })
-        };
+        let is_ear = left == 3
+            || refused > left
+            || !reflex[b] && {
+                let (pa, pb, pc) = (at(a), at(b), at(c));
+                !hollow.iter().any(|&other| {
+                    let p = at(other);
+                    reflex[other]
+                        && (p != pa && p != pb && p != pc)
+                        && turn(pa, pb, p) >= 0.0
+                        && turn(pb, pc, p) >= 0.0
+                        && turn(pc, pa, p) >= 0.0
+                })
+            };
         if !is_ear {
             refused += 1;
             place = c;
@@ -302,7 +306,8 @@ mod tests {
 
     #[test]
     fn corners_on_straight_edges_stay_corners() {
-        let (_, triangles, area) = of(&[ring(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 1.0]])]);
+        let (_, triangles, area) =
+            of(&[ring(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 1.0]])]);
         assert_eq!(area, 4.0);
         assert!((0..6).all(|corner| triangles.iter().any(|t| t.contains(&corner))));
         assert_eq!(triangles.len(), 4);

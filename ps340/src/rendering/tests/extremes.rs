@@ -83,7 +83,9 @@ fn a_floor_that_runs_under_the_eye_fills_the_lower_half() {
 
 #[test]
 fn the_eye_inside_a_solid_sees_its_walls() {
-    let scene = Scene::solid(tetrahedron()).above(perspective()).above(Operation::Linear(DMat3::from_diagonal(DVec3::splat(8.0))));
+    let scene = Scene::solid(tetrahedron())
+        .above(perspective())
+        .above(Operation::Linear(DMat3::from_diagonal(DVec3::splat(8.0))));
     let image = scene.image(Rendering::Wash, &plain());
     assert!(image.pixels.iter().all(|pixel| *pixel == [255; 3]));
     assert!(!scene.lines(Rendering::HiddenLine).is_empty());
@@ -124,7 +126,10 @@ fn storage_is_needed_for_every_vertex() {
     assert!(scene.facets(600).is_ok());
     let fault = scene.facets(599).unwrap_err();
     assert_eq!(fault, RenderingFault::Storage { needed: 600 });
-    assert_eq!((fault.number(), fault.text("A.R").as_str()), (8, "Insufficient memory: A.R needs RESERVE_WORKING_STORAGE 600"));
+    assert_eq!(
+        (fault.number(), fault.text("A.R").as_str()),
+        (8, "Insufficient memory: A.R needs RESERVE_WORKING_STORAGE 600")
+    );
     let empty = Scene::new(Vec::new());
     assert_eq!(empty.facets(STORAGE).unwrap_err(), RenderingFault::NoPolygons);
 }

@@ -37,7 +37,8 @@ fn flat_light_is_that_of_the_face() {
         assert!(image.pixels.iter().all(|pixel| *pixel == value || *pixel == [0; 3]), "{kind:?}");
     }
     let level = polygon(&[[-0.5, -0.5, 0.0], [0.0, 0.7, 0.0], [0.5, -0.5, 0.0]]);
-    let image = Scene::new(vec![level.clone()]).image(Rendering::Flat, &ShadingEnvironment { ambient: [0.0; 3], ..plain() });
+    let image =
+        Scene::new(vec![level.clone()]).image(Rendering::Flat, &ShadingEnvironment { ambient: [0.0; 3], ..plain() });
     assert_eq!(at(&image, 0.0, 0.0), [255; 3], "0.75 and a highlight of 0.25");
     let dull = ShadingEnvironment { ambient: [0.0; 3], highlights: false, exposure: 0.5, ..plain() };
     assert_eq!(at(&Scene::new(vec![level]).image(Rendering::Flat, &dull), 0.0, 0.0), grey(0.375));
@@ -132,7 +133,8 @@ fn net(n: usize) -> Vec<Polygon> {
         let shift = if inner { 0.9 * side } else { 0.0 };
         [i as f32 * side - 1.0 + random() * shift, k as f32 * side - 1.0 + random() * shift, random()]
     };
-    let corners: Vec<[f32; 3]> = (0..=n).flat_map(|i| (0..=n).map(move |k| (i, k))).map(|(i, k)| corner(i, k)).collect();
+    let corners: Vec<[f32; 3]> =
+        (0..=n).flat_map(|i| (0..=n).map(move |k| (i, k))).map(|(i, k)| corner(i, k)).collect();
     let at = |i: usize, k: usize| corners[i * (n + 1) + k];
     let cells = (0..n * n).map(|c| (c / n, c % n));
     cells
@@ -203,7 +205,8 @@ fn smooth_edges_cover_as_much_as_the_area() {
     };
     let mut errors = Vec::new();
     for quality in 0..=3 {
-        let image = Scene::new(vec![triangle.clone()]).image(Rendering::Wash, &ShadingEnvironment { quality, ..plain() });
+        let image =
+            Scene::new(vec![triangle.clone()]).image(Rendering::Wash, &ShadingEnvironment { quality, ..plain() });
         let sum: f64 = image.pixels.iter().map(|pixel| f64::from(pixel[0]) / 255.0).sum();
         errors.push((sum - area).abs());
         let between = image.pixels.iter().filter(|pixel| pixel[0] > 0 && pixel[0] < 255).count();
@@ -214,12 +217,8 @@ fn smooth_edges_cover_as_much_as_the_area() {
 
 #[test]
 fn background_depth_cue_and_viewport_are_those_of_the_environment() {
-    let environment = ShadingEnvironment {
-        background: [240.0, 1.0, 0.5],
-        viewport: [10, 20, 100, 50],
-        depth_cue: 0.5,
-        ..plain()
-    };
+    let environment =
+        ShadingEnvironment { background: [240.0, 1.0, 0.5], viewport: [10, 20, 100, 50], depth_cue: 0.5, ..plain() };
     // From the front boundary on the left to the back boundary on the right.
     let slope = polygon(&[[-1.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [1.0, 0.0, 1.0], [1.0, -1.0, 1.0]]);
     let image = Scene::new(vec![slope]).image(Rendering::Wash, &environment);

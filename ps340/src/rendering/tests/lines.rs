@@ -85,8 +85,7 @@ fn in_perspective_a_line_ends_where_it_is_seen_to_end() {
     // This one goes away from the eye too: from (0, 0, 2) to (1, 0, 3), at (0.5, 0, 2.5) and so on.
     let slanted = polygon(&[[0.0, 0.0, 2.0], [1.0, 0.0, 3.0], [1.0, 0.9, 3.0]]);
     let lines = Scene::new(vec![plate, slanted]).above(perspective()).lines(Rendering::HiddenLine);
-    let level: Vec<&Segment> =
-        lines.iter().filter(|s| s.ends.iter().all(|p| p.y == 0.0 && p.z > 1.5)).collect();
+    let level: Vec<&Segment> = lines.iter().filter(|s| s.ends.iter().all(|p| p.y == 0.0 && p.z > 1.5)).collect();
     // x = 0.3 z where x = z - 2: z = 20 / 7.
     assert_eq!(level.len(), 1);
     let nearest = level[0].ends.map(|p| p.z).into_iter().fold(f64::INFINITY, f64::min);
@@ -108,8 +107,11 @@ fn hides(triangle: &[DVec3; 3], p: DVec3) -> Option<bool> {
     }
     let depth: f64 = shares.iter().zip(triangle).map(|(s, corner)| s * corner.z).sum();
     let inside = shares.iter().all(|s| *s > MARGIN / area.abs().sqrt());
-    let slope = MARGIN * (1.0 + (triangle.iter().map(|t| t.z).fold(f64::NEG_INFINITY, f64::max)
-        - triangle.iter().map(|t| t.z).fold(f64::INFINITY, f64::min)) / area.abs().sqrt());
+    let slope = MARGIN
+        * (1.0
+            + (triangle.iter().map(|t| t.z).fold(f64::NEG_INFINITY, f64::max)
+                - triangle.iter().map(|t| t.z).fold(f64::INFINITY, f64::min))
+                / area.abs().sqrt());
     if depth > p.z + slope {
         return Some(false);
     }
@@ -118,10 +120,8 @@ fn hides(triangle: &[DVec3; 3], p: DVec3) -> Option<bool> {
 
 /// Compares each edge with a test of single points of it against every triangle. Returns points seen and hidden.
 fn compare(polygons: &[Polygon], lines: &[Segment]) -> [usize; 2] {
-    let triangles: Vec<[DVec3; 3]> = polygons
-        .iter()
-        .map(|p| [0, 1, 2].map(|k| DVec3::from(p.vertices[k].position.map(f64::from))))
-        .collect();
+    let triangles: Vec<[DVec3; 3]> =
+        polygons.iter().map(|p| [0, 1, 2].map(|k| DVec3::from(p.vertices[k].position.map(f64::from)))).collect();
     let mut edges = std::collections::BTreeSet::new();
     let bits = |p: DVec3| p.to_array().map(f64::to_bits);
     for [a, b, c] in &triangles {
@@ -172,7 +172,8 @@ fn a_torus_of_two_thousand_triangles_hides_what_single_points_say() {
         let [_, hidden] = compare(&polygons, &lines);
         assert!(hidden > 4_000, "{hidden}");
     }
-    let both = [true, false].map(|solid| ends(&Scene { solid, ..Scene::new(polygons.clone()) }.lines(Rendering::HiddenLine)));
+    let both =
+        [true, false].map(|solid| ends(&Scene { solid, ..Scene::new(polygons.clone()) }.lines(Rendering::HiddenLine)));
     assert_eq!(both[0], both[1], "a closed surface hides as the solid does");
 }
 
@@ -181,11 +182,8 @@ fn triangles_that_pierce_each_other_cut_their_edges_at_the_line_of_intersection(
     let level = polygon(&[[-0.5, -0.5, 0.0], [0.0, 0.7, 0.0], [0.5, -0.5, 0.0]]);
     let steep = polygon(&[[-0.8, 0.0, -0.4], [0.8, 0.0, 0.4], [0.8, 0.9, 0.4]]);
     let lines = Scene::new(vec![level, steep]).lines(Rendering::HiddenLine);
-    let on_axis: Vec<[f64; 2]> = lines
-        .iter()
-        .filter(|s| s.ends.iter().all(|p| p.y.abs() < 1e-9))
-        .map(|s| s.ends.map(|p| p.x))
-        .collect();
+    let on_axis: Vec<[f64; 2]> =
+        lines.iter().filter(|s| s.ends.iter().all(|p| p.y.abs() < 1e-9)).map(|s| s.ends.map(|p| p.x)).collect();
     // In front until x = 0, then behind the level triangle, whose right side is at y = 0 at 0.7 / 1.2 * 0.5.
     let right = 0.5 * 0.7 / 1.2;
     assert_eq!(on_axis.len(), 2, "{on_axis:?}");
@@ -204,7 +202,8 @@ fn coplanar_polygons_do_not_hide_each_other() {
         polygon(&corners.map(|[x, y]| (turn * DVec3::new(x, y, 0.0)).as_vec3().to_array()))
     };
     // Overlapping, with a common corner, with a corner inside an edge, and far inside.
-    let squares = vec![square(-0.4, -0.4, 0.5), square(-0.4, -0.4, 0.3), square(0.1, -0.2, 0.3), square(-0.3, 0.0, 0.2)];
+    let squares =
+        vec![square(-0.4, -0.4, 0.5), square(-0.4, -0.4, 0.3), square(0.1, -0.2, 0.3), square(-0.3, 0.0, 0.2)];
     let lines = Scene::new(squares).lines(Rendering::HiddenLine);
     let length: f64 = lines.iter().map(|s| (s.ends[1] - s.ends[0]).length()).sum();
     assert!((length - 4.0 * (0.5 + 0.3 + 0.3 + 0.2)).abs() < 1e-5, "{length}");
