@@ -13,6 +13,7 @@ pub mod structure;
 pub mod objects;
 pub mod memory;
 pub mod traversal;
+pub mod rendering;
 pub mod terminal;
 pub mod picture;
 pub mod calligraphic;

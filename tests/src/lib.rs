@@ -2,6 +2,7 @@
 //! conformance suite.
 
 pub mod conformance;
+pub mod facets;
 
 use std::{
     io::{BufRead, BufReader, Read, Write},

@@ -1,6 +1,10 @@
 //! The thread that draws the vector screen, so that neither the machine nor the window waits for it.
 
-use crate::{calligraphic::Beam, machine::PictureVersion, traversal::Stroke};
+use crate::{
+    calligraphic::{Controls, Display},
+    machine::PictureVersion,
+    traversal::Stroke,
+};
 use egui::ColorImage;
 use std::sync::{Arc, Condvar, Mutex};
 
@@ -11,13 +15,17 @@ pub struct Wanted {
     pub version: PictureVersion,
     /// What to draw.
     pub strokes: Arc<Vec<Stroke>>,
+    /// Knobs, phosphor, and which screen.
+    pub controls: Controls,
+    /// The frame of the machine.
+    pub frame: u64,
     /// Width and height in pixels.
-    pub size: u32,
+    pub size: [u32; 2],
 }
 
 impl Wanted {
-    fn is(&self, version: PictureVersion, size: u32) -> bool {
-        self.version == version && self.size == size
+    fn is(&self, other: &Wanted) -> bool {
+        self.version == other.version && self.size == other.size && self.controls == other.controls
     }
 }
 
@@ -26,13 +34,15 @@ impl Wanted {
 struct Easel {
     wanted: Option<Wanted>,
     painted: Option<Arc<ColorImage>>,
+    /// Whether what is seen depends on what was seen before.
+    remembers: bool,
     closed: bool,
 }
 
 /// Draws what was wanted last, as often as it can.
 pub struct Painter {
     easel: Arc<(Mutex<Easel>, Condvar)>,
-    asked: Option<(PictureVersion, u32)>,
+    asked: Option<Wanted>,
 }
 
 impl Painter {
@@ -46,11 +56,13 @@ impl Painter {
 
     /// Says what is to be seen. A picture that is drawn already, or being drawn, is not drawn again.
     pub fn want(&mut self, wanted: Wanted) {
-        let same = self.asked.is_some_and(|(version, size)| wanted.is(version, size));
-        if same || wanted.size == 0 {
+        let same = self.asked.as_ref().is_some_and(|asked| asked.is(&wanted));
+        // A display that remembers goes along with every frame.
+        let goes_on = lock(&self.easel.0).remembers && self.asked.as_ref().is_none_or(|asked| asked.frame != wanted.frame);
+        if same && !goes_on {
             return;
         }
-        self.asked = Some((wanted.version, wanted.size));
+        self.asked = Some(wanted.clone());
         let (easel, changed) = &*self.easel;
         lock(easel).wanted = Some(wanted);
         changed.notify_one();
@@ -72,6 +84,8 @@ impl Drop for Painter {
 
 /// The thread.
 fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context) {
+    let mut display: Option<Display> = None;
+    let mut versions = Versions::default();
     loop {
         let mut guard = lock(easel);
         let wanted = loop {
@@ -84,11 +98,44 @@ fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context) {
             guard = changed.wait(guard).unwrap_or_else(|poisoned| poisoned.into_inner());
         };
         drop(guard);
-        let picture = Beam { size: wanted.size, ..Beam::default() }.picture(&wanted.strokes);
-        let size = [picture.width() as usize, picture.height() as usize];
-        let image = ColorImage::from_rgb(size, &picture.to_srgb());
-        lock(easel).painted = Some(Arc::new(image));
-        context.request_repaint();
+        let display = display.get_or_insert_with(|| Display::new(wanted.controls, wanted.size));
+        display.resize(wanted.size);
+        if *display.controls() != wanted.controls {
+            display.set_controls(wanted.controls);
+        }
+        let version = versions.number(wanted.version);
+        let awaits = display.awaits(version, wanted.frame);
+        if awaits {
+            display.show(&wanted.strokes, version, wanted.frame);
+        }
+        let size = display.size().map(|pixels| pixels as usize);
+        let mut guard = lock(easel);
+        guard.remembers = display.remembers() && display.awaits(version, wanted.frame + 1);
+        if awaits {
+            guard.painted = Some(Arc::new(ColorImage::from_rgba_unmultiplied(size, display.frame())));
+        }
+        let again = guard.remembers || awaits;
+        drop(guard);
+        if again {
+            context.request_repaint();
+        }
+    }
+}
+
+/// Numbers for versions, as the display wants them.
+#[derive(Default)]
+struct Versions {
+    latest: PictureVersion,
+    number: u64,
+}
+
+impl Versions {
+    fn number(&mut self, version: PictureVersion) -> u64 {
+        if version != self.latest {
+            self.latest = version;
+            self.number += 1;
+        }
+        self.number
     }
 }
 

@@ -45,8 +45,13 @@ impl VectorScreen {
         let (space, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         let area = Rect::from_center_size(space.center(), Vec2::splat(side));
         let pixels = (side * ui.pixels_per_point()).round().clamp(1.0, MAX_PIXELS);
-        let strokes = shown.strokes.clone();
-        self.painter.want(Wanted { version: shown.picture, strokes, size: pixels as u32 });
+        self.painter.want(Wanted {
+            version: shown.picture,
+            strokes: shown.strokes.clone(),
+            controls: shown.controls,
+            frame: shown.frame,
+            size: [pixels as u32; 2],
+        });
         if let Some(image) = self.painter.take() {
             put(&mut self.texture, ui, "vector screen", image, TextureOptions::LINEAR);
         }

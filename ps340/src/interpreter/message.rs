@@ -5,6 +5,7 @@ use crate::{
     functions::{self, Family},
     memory::{MassMemory, Refusal},
     port::{Cause, Fault, ObjectId},
+    rendering::RenderingFault,
     structure::{Node, NodeFault},
     traversal::Trouble,
 };
@@ -77,6 +78,13 @@ pub enum Message {
     Line(String),
     /// I 13: a packet on the diagnostic route.
     Diagnostic(String),
+    /// E 8, E 10: a rendering that was not made.
+    Rendering {
+        /// Of which node.
+        name: String,
+        /// Why not.
+        fault: RenderingFault,
+    },
     /// W 30 to 33, E 550 to 558: a raster operation.
     Raster(crate::raster::RasterFault),
     /// E 2, E 8: a file of the disk.
@@ -132,6 +140,7 @@ impl Message {
             Message::Information(_) => 11,
             Message::Line(_) => 12,
             Message::Diagnostic(_) => 13,
+            Message::Rendering { fault, .. } => fault.number(),
             Message::Raster(fault) => fault.number(),
             Message::Disk(fault) => fault.number(),
         }
@@ -164,6 +173,7 @@ impl std::fmt::Display for Message {
             Message::Update(trouble) => write!(f, "Picture incomplete: {trouble}"),
             Message::Line(text) => f.write_str(text),
             Message::Diagnostic(text) => write!(f, "Host says: {text}"),
+            Message::Rendering { name, fault } => f.write_str(&fault.text(name)),
             Message::Raster(fault) => write!(f, "{fault}"),
             Message::Disk(fault) => write!(f, "{fault}"),
         }

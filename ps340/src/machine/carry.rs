@@ -2,6 +2,7 @@
 
 use super::{
     Machine, Output,
+    renderings::Renderings,
     requests::{Pick, TransformRequest, Waiting},
 };
 use crate::{
@@ -11,7 +12,11 @@ use crate::{
     structure::Node,
     terminal::Ink,
 };
-use protocol::{Name, Value, command, raster::RasterCommand, value::MAX_STRING};
+use protocol::{
+    Name, Value, command,
+    raster::{RASTER_HEIGHT, RASTER_WIDTH},
+    value::MAX_STRING,
+};
 
 impl Machine {
     /// Carries out one effect.
@@ -31,7 +36,10 @@ impl Machine {
                 let room = self.waiting.add_pick(Pick { function, at, coordinates, frames });
                 self.lose_without(room, function, "PICK");
             }
-            Effect::ForgetRequests => self.waiting = Waiting::default(),
+            Effect::ForgetRequests => {
+                self.waiting = Waiting::default();
+                self.renderings = Renderings::default();
+            }
             Effect::RequestWriteBack { node } => self.waiting.add_write_back(node),
             Effect::Fetch { function, name } => self.fetch(function, &name),
             Effect::ExtractLabel { function, name, index } => self.extract_label(function, name, index),
@@ -61,11 +69,11 @@ impl Machine {
             }
             Effect::TerminalCsm(csm) => self.terminal.set_ink(Ink { csm, ..*self.terminal.ink() }),
             Effect::TurnOnDisplay => self.tube.graphics = true,
-            Effect::WashScreen { color } => {
-                if let Err(fault) = self.frame_buffer.apply(&RasterCommand::Erase { color }) {
-                    self.messages.push(Message::Raster(fault));
-                }
+            Effect::WashScreen { color, part } => {
+                let [left, bottom, width, height] = part.unwrap_or([0, 0, RASTER_WIDTH, RASTER_HEIGHT]);
+                self.frame_buffer.paint(left, bottom, width, &vec![color; (width * height) as usize]);
             }
+            Effect::RequestRendering { node, request } => self.request_rendering(node, request),
             Effect::Activity => self.activity(),
             Effect::Dial { dial, setting } => self.devices.set_dial(dial, setting),
             Effect::Tablet(command) => {

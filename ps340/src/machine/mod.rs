@@ -11,6 +11,7 @@ mod inspection;
 mod keyboard;
 mod parallel;
 mod panel;
+mod renderings;
 mod requests;
 mod sight;
 mod speech;
@@ -37,6 +38,7 @@ use host_line::HostLine;
 use keyboard::Keyboard;
 use parallel::{Mailbox, ParallelLine};
 use protocol::wire::MessageWriter;
+use renderings::Renderings;
 use requests::Waiting;
 use sight::Sight;
 use std::collections::{BTreeMap, VecDeque};
@@ -115,6 +117,7 @@ pub struct Machine {
     updated: Option<u64>,
     /// What functions want of the next update.
     waiting: Waiting,
+    renderings: Renderings,
     streams: Streams,
     disk: Disk,
     messages: Vec<Message>,
@@ -149,6 +152,7 @@ impl Machine {
             update: Update::default(),
             updated: None,
             waiting: Waiting::default(),
+            renderings: Renderings::default(),
             streams: Streams::default(),
             disk: Disk::default(),
             messages: Vec::new(),
@@ -218,6 +222,8 @@ impl Machine {
         self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
         self.settle();
         self.with_parallels(|parallel, machine, out| parallel.frame(machine, out));
+        self.advance_renderings();
+        self.settle();
         self.update_picture();
         self.settle();
         self.update_overlay();
@@ -239,7 +245,7 @@ impl Machine {
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.waiting.is_empty() && self.streams.are_quiet()
+        self.network_idle && self.waiting.is_empty() && self.renderings.are_done() && self.streams.are_quiet()
     }
 
     /// Makes the picture of now, as the next frame would.
@@ -351,6 +357,7 @@ impl Machine {
         self.update = Update::default();
         self.updated = None;
         self.waiting = Waiting::default();
+        self.renderings = Renderings::default();
         self.streams = Streams::default();
         self.keyboard = Keyboard::default();
         self.terminal = Terminal::default();
@@ -388,6 +395,8 @@ pub fn time_of_frame(frame: u64) -> Micros {
 mod answer_tests;
 #[cfg(test)]
 mod device_tests;
+#[cfg(test)]
+mod rendering_tests;
 #[cfg(test)]
 mod sight_tests;
 #[cfg(test)]

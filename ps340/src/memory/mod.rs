@@ -219,8 +219,8 @@ impl MassMemory {
         if grows && self.is_full() {
             return Err(NodeFault::Full { input });
         }
-        if input == Input::Number(1) && self.is_rendering(node) {
-            return self.render(node, &value);
+        if input == Input::Number(1) && self.rendering_node(node).is_some() {
+            return self.request_rendering(node, value);
         }
         if input == Input::Number(1) && self.is_write_back(node) {
             return match value {

@@ -1,45 +1,70 @@
-//! Messages for rendering nodes: what they ask for, and the answer at their output.
+//! Messages for rendering nodes, and the renderings in vectors that these keep.
 //!
 //! # Source
-//! Numbers of the renderings, toggling, saving under a name and the message at the end as remembered, partly seen in
-//! clients. Not modelled: the renderings themselves. A request is kept in the node and fails with E 10 and FALSE.
+//! Numbers of the renderings, toggling and saving under a name as remembered, partly seen in clients.
 
-use super::MassMemory;
+use super::{MassMemory, Refusal};
 use crate::{
-    port::ObjectId,
-    structure::{Node, NodeFault, Operation, RenderingFault},
+    port::{Effect, ObjectId, Rendering, RenderingRequest},
+    structure::{Member, Node, NodeFault, Operation},
 };
-use protocol::{Value, command::Input};
+use protocol::{Name, Value, command::Input};
 
 impl MassMemory {
-    /// Whether a node is a rendering node.
-    pub(super) fn is_rendering(&self, id: ObjectId) -> bool {
-        matches!(self.structures.node(id), Some(Node::Operate { operation: Operation::Rendering { .. }, .. }))
+    /// Whether a node is a rendering node of solids (true) or surfaces (false); none if it is none.
+    pub fn rendering_node(&self, id: ObjectId) -> Option<bool> {
+        match self.structures.node(id) {
+            Some(Node::Operate { operation: Operation::Rendering { solid, .. }, .. }) => Some(*solid),
+            _ => None,
+        }
     }
 
-    /// A message for input `<1>` of a rendering node. What it asks for ends with TRUE or FALSE from output `<1>`.
+    /// A message for input `<1>` of a rendering node, which becomes a request to the machine.
     ///
     /// # Errors
-    /// Why there is no rendering, or the message is none that such a node takes.
-    pub(super) fn render(&mut self, id: ObjectId, value: &Value) -> Result<(), NodeFault> {
+    /// The message is none that such a node takes.
+    pub(super) fn request_rendering(&mut self, node: ObjectId, value: Value) -> Result<(), NodeFault> {
         let input = Input::Number(1);
-        let done = match value {
-            Value::Boolean(false) => Ok(()),
-            Value::Integer(0) | Value::Boolean(true) | Value::String(_) => {
-                Err(NodeFault::Rendering(RenderingFault::Nothing))
+        let request = match value {
+            Value::Boolean(show) => RenderingRequest::Show(show),
+            Value::Integer(0) => RenderingRequest::Toggle,
+            Value::Integer(number) => {
+                RenderingRequest::Render(Rendering::from_number(number).ok_or(NodeFault::Range { input })?)
             }
-            Value::Integer(number @ 1..=8) => {
-                let number = *number as u8;
-                self.structures.request_rendering(id, number);
-                match self.system.working_storage {
-                    0 => Err(NodeFault::NoWorkingStorage),
-                    _ => Err(NodeFault::Rendering(RenderingFault::Unavailable(number))),
-                }
+            Value::String(text) => {
+                let name = std::str::from_utf8(&text).ok().and_then(|text| Name::new(text.trim()).ok());
+                RenderingRequest::Save(name.ok_or(NodeFault::Range { input })?)
             }
-            Value::Integer(_) => return Err(NodeFault::Range { input }),
-            _ => return Err(NodeFault::Kind { input, kind: value.kind() }),
+            value => return Err(NodeFault::Kind { input, kind: value.kind() }),
         };
-        self.network.emit(id, 1, Value::Boolean(done.is_ok()), &mut self.effects);
-        done
+        self.effects.push(Effect::RequestRendering { node, request });
+        Ok(())
+    }
+
+    /// Gives a rendering node a rendering in vectors, which it shows.
+    ///
+    /// # Errors
+    /// [`Refusal::Full`]; the node is then as before.
+    pub fn set_rendered(&mut self, node: ObjectId, members: Vec<Member>) -> Result<(), Refusal> {
+        if self.bytes() + Node::Group(members.clone()).bytes() > super::MASS_MEMORY {
+            return Err(Refusal::Full);
+        }
+        self.structures.set_rendered(node, members);
+        Ok(())
+    }
+
+    /// Gives the last rendering of a node a name of its own: a vector list, or a structure of lists in several colours.
+    /// Returns false if there is no rendering.
+    ///
+    /// # Errors
+    /// [`Refusal::Full`], [`Refusal::System`].
+    pub fn save_rendered(&mut self, node: ObjectId, name: &Name) -> Result<bool, Refusal> {
+        let Some(rendered) = self.structures.rendered(node) else { return Ok(false) };
+        let saved = match rendered.members.as_slice() {
+            [Member::Unnamed(only @ Node::Vectors(_))] => only.clone(),
+            members => Node::Group(members.to_vec()),
+        };
+        self.define_node(name, saved)?;
+        Ok(true)
     }
 }

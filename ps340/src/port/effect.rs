@@ -1,6 +1,6 @@
 //! What the function network wants of the rest of the machine.
 
-use super::{Fault, ObjectId};
+use super::{Fault, ObjectId, RenderingRequest};
 use glam::DVec2;
 use protocol::{Name, Value, command::Input};
 
@@ -52,10 +52,19 @@ pub enum Effect {
     Terminal(Box<[u8]>),
     /// The vector display goes on again after a static picture.
     TurnOnDisplay,
-    /// The raster screen is filled with a colour.
+    /// A part of the raster screen is filled with a colour.
     WashScreen {
         /// Red, green, blue.
         color: [u8; 3],
+        /// Left, bottom, width and height in pixels; none for the whole screen.
+        part: Option<[u32; 4]>,
+    },
+    /// A message came to input `<1>` of a rendering node. It is carried out after those before it, at the next frame.
+    RequestRendering {
+        /// The node.
+        node: ObjectId,
+        /// What is wanted.
+        request: RenderingRequest,
     },
     /// Characters to the host line, without any frame.
     HostCharacters(Box<[u8]>),

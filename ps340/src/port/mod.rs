@@ -9,6 +9,7 @@ mod literal;
 mod outbox;
 mod place;
 mod queue;
+mod rendering;
 
 pub use backlog::{Backlog, MAX_QUEUE};
 pub use effect::{DialSetting, Effect, FileName, Label, MAX_FILE_NAME, Stream, TabletCommand};
@@ -18,6 +19,7 @@ pub use kinds::KindSet;
 pub use literal::{Literal, PickLiteral};
 pub use outbox::Outbox;
 pub use queue::{Arrival, Port};
+pub use rendering::{Rendering, RenderingRequest};
 
 /// The identity of a named object, function or display node, for as long as the object's name exists.
 ///

@@ -17,6 +17,8 @@
 //! - What the tables put out is what the monitor displays, in sRGB: [`FrameBuffer::picture`] holds the linear
 //!   light of these bytes, so that a PNG of it holds exactly the bytes and an OpenEXR their light.
 //!
+//! - Shaded renderings and washes write pixels where they belong, and leave window and current pixel alone.
+//!
 //! *Not modelled*: the monitor's own transfer curve, flicker and the time that a transfer takes.
 
 mod fault;
@@ -90,6 +92,22 @@ impl FrameBuffer {
             RasterCommand::Runs(runs) => self.write_runs(runs),
             RasterCommand::LookupTable { index, entries } => self.load_table(usize::from(*index), entries),
             RasterCommand::LookupRamp { min, max } => self.load_ramp(*min, *max),
+        }
+    }
+
+    /// Writes a rectangle of pixels; what lies beyond the screen is left out.
+    ///
+    /// - `left`, `bottom`, `width`: in pixels.
+    /// - `pixels`: the bottom line first, left to right.
+    pub fn paint(&mut self, left: u32, bottom: u32, width: u32, pixels: &[[u8; 3]]) {
+        let (left, bottom) = (left as usize, bottom as usize);
+        let seen = WIDTH.saturating_sub(left).min(width as usize);
+        if seen == 0 {
+            return;
+        }
+        let lines = self.pixels.chunks_exact_mut(WIDTH).skip(bottom);
+        for (line, new) in lines.zip(pixels.chunks_exact(width as usize)) {
+            line[left..left + seen].copy_from_slice(&new[..seen]);
         }
     }
 

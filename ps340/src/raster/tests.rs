@@ -1,7 +1,5 @@
 //! The frame buffer against the rules of its module, pixel by pixel.
 
-use std::time::{Duration, Instant};
-
 use super::*;
 
 const RED: [u8; 3] = [255, 0, 0];
@@ -175,16 +173,15 @@ fn pixels_beyond_the_screen_are_a_warning_and_are_dropped() {
 }
 
 #[test]
-fn an_image_of_single_pixel_runs_takes_milliseconds() {
+fn rectangles_are_painted_where_they_belong_and_cut_at_the_screen() {
     let mut screen = FrameBuffer::new();
-    let runs = RasterCommand::Runs((0..307_200).map(|index| run(1, [index as u8; 3])).collect());
-    let quickest = (0..5)
-        .map(|_| {
-            let start = Instant::now();
-            screen.apply(&runs).unwrap();
-            start.elapsed()
-        })
-        .min();
-    // A tenth of this is typical; the rest is for a busy machine.
-    assert!(quickest < Some(Duration::from_millis(50)), "{quickest:?}");
+    screen.apply(&window(3, 4, 5, 6)).unwrap();
+    screen.paint(638, 479, 3, &[RED, BLUE, RED, BLUE, BLUE, BLUE]);
+    assert_eq!([637, 638, 639].map(|x| screen.pixel(x, 479).unwrap()), [[0; 3], RED, BLUE]);
+    assert_eq!(screen.output().iter().filter(|pixel| **pixel != [0; 3]).count(), 2);
+    screen.paint(640, 0, 5, &[RED; 10]);
+    screen.paint(0, 500, 5, &[RED; 10]);
+    screen.paint(0, 0, 0, &[]);
+    assert_eq!(screen.output().iter().filter(|pixel| **pixel != [0; 3]).count(), 2);
+    assert_eq!(screen.position, (3, 4));
 }

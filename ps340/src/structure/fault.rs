@@ -49,38 +49,6 @@ pub enum NodeFault {
         /// Which input.
         input: Input,
     },
-    /// A rendering without RESERVE_WORKING_STORAGE.
-    #[error("Insufficient memory: no working storage is reserved for a rendering")]
-    NoWorkingStorage,
-    /// A rendering that could not be made.
-    #[error("Rendering failed: {0}")]
-    Rendering(RenderingFault),
-}
-
-/// Why a rendering node has nothing to show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum RenderingFault {
-    /// A kind of rendering that this machine does not make.
-    #[error("{} is not available", rendering(*.0))]
-    Unavailable(u8),
-    /// No rendering was made that could be shown or saved.
-    #[error("nothing was rendered")]
-    Nothing,
-}
-
-/// What a rendering node is asked for with 1 to 8.
-fn rendering(number: u8) -> &'static str {
-    match number {
-        1 => "the cross-section FIX(1)",
-        2 => "the sectioned rendering FIX(2)",
-        3 => "the backface removal FIX(3)",
-        4 => "the hidden-line removal FIX(4)",
-        5 => "the wash shading FIX(5)",
-        6 => "the flat shading FIX(6)",
-        7 => "the smooth shading FIX(7)",
-        8 => "the Phong shading FIX(8)",
-        _ => "this rendering",
-    }
 }
 
 impl NodeFault {
@@ -90,9 +58,8 @@ impl NodeFault {
             NodeFault::Undefined { .. } => 2,
             NodeFault::Kind { .. } | NodeFault::Vectors { .. } | NodeFault::Dots { .. } => 5,
             NodeFault::Range { .. } => 6,
-            NodeFault::Full { .. } | NodeFault::NoWorkingStorage => 8,
+            NodeFault::Full { .. } => 8,
             NodeFault::NoSuchInput { .. } => 9,
-            NodeFault::Rendering(_) => 10,
         }
     }
 
@@ -115,8 +82,6 @@ impl NodeFault {
             NodeFault::NoSuchInput { input } => format!("No such input {input} of {name}"),
             NodeFault::Full { input } => format!("Insufficient memory at {input}{name}"),
             NodeFault::Range { input } => format!("Value out of range at {input}{name}"),
-            NodeFault::NoWorkingStorage => format!("Insufficient memory: {name} needs RESERVE_WORKING_STORAGE"),
-            NodeFault::Rendering(fault) => format!("Rendering failed: {fault} at {name}"),
         }
     }
 }

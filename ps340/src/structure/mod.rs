@@ -9,9 +9,9 @@ mod physical;
 mod word;
 
 pub use copy::{CopyFault, copy};
-pub use fault::{NodeFault, RenderingFault};
+pub use fault::NodeFault;
 pub use node::{Labels, Member, Node, Polygons, Vectors};
-pub use operation::{CONDITIONAL_BITS, Degenerate, MAX_LEVEL, Operation};
+pub use operation::{CONDITIONAL_BITS, Degenerate, MAX_LEVEL, Operation, Rendered};
 pub use physical::{PhysicalFault, VECTOR_WORDS};
 
 use crate::{
@@ -205,11 +205,36 @@ impl Structures {
         true
     }
 
-    /// Notes the rendering, 1 to 8, that a rendering node is asked for.
-    pub fn request_rendering(&mut self, id: ObjectId, number: u8) {
-        if let Some(Node::Operate { operation: Operation::Rendering { request, .. }, .. }) = self.node_mut(id) {
-            *request = Some(number);
+    /// The last rendering in vectors of a rendering node; none if there is none.
+    pub fn rendered(&self, id: ObjectId) -> Option<&Rendered> {
+        match self.node(id) {
+            Some(Node::Operate { operation: Operation::Rendering { rendered, .. }, .. }) => rendered.as_deref(),
+            _ => None,
         }
+    }
+
+    /// Gives a rendering node a rendering in vectors, which it shows in the place of the original. Harmless for other
+    /// nodes.
+    pub fn set_rendered(&mut self, id: ObjectId, members: Vec<Member>) {
+        let bytes = node::members_bytes(&members);
+        if let Some(Node::Operate { operation: Operation::Rendering { rendered, .. }, .. }) = self.node_mut(id) {
+            let before = rendered.replace(Box::new(Rendered { members, shown: true }));
+            self.bytes += bytes;
+            self.bytes -= before.map_or(0, |before| node::members_bytes(&before.members));
+            self.version += 1;
+        }
+    }
+
+    /// Shows the last rendering in vectors of a rendering node, or the original. Returns false if there is none.
+    pub fn show_rendered(&mut self, id: ObjectId, show: bool) -> bool {
+        let Some(Node::Operate { operation: Operation::Rendering { rendered: Some(rendered), .. }, .. }) =
+            self.node_mut(id)
+        else {
+            return false;
+        };
+        rendered.shown = show;
+        self.version += 1;
+        true
     }
 
     /// Puts `member` into a structure as its own, behind the member `anchor` or, without one, behind the first.

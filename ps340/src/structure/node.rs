@@ -105,11 +105,19 @@ pub enum Member {
     Included(ObjectId),
 }
 
+/// What members of a structure take, in bytes.
+pub(super) fn members_bytes(members: &[Member]) -> usize {
+    members.iter().map(|m| MEMBER_BYTES + if let Member::Unnamed(n) = m { n.bytes() } else { 0 }).sum()
+}
+
 impl Node {
     /// The memory that grows with the user's data, in bytes.
     pub fn bytes(&self) -> usize {
         size_of::<Node>()
             + match self {
+                Node::Operate { operation: Operation::Rendering { rendered: Some(rendered), .. }, .. } => {
+                    members_bytes(&rendered.members)
+                }
                 Node::Nil | Node::Operate { .. } | Node::Illumination(_) | Node::Attributes(_) => 0,
                 Node::Polygons(p) => {
                     p.polygons.iter().map(|p| size_of::<Polygon>() + size_of_val(p.vertices.as_slice())).sum()
@@ -123,9 +131,7 @@ impl Node {
                 Node::Variable(Some(Value::String(text))) => text.len(),
                 Node::Variable(_) => 0,
                 Node::Instance(members) => members.len() * MEMBER_BYTES,
-                Node::Group(members) => {
-                    members.iter().map(|m| MEMBER_BYTES + if let Member::Unnamed(n) = m { n.bytes() } else { 0 }).sum()
-                }
+                Node::Group(members) => members_bytes(members),
                 Node::Vectors(vectors) => {
                     let dashed = vectors.dashed.iter().map(|dashed| &dashed.1);
                     let bytes = |l: &VectorList| l.points.len() * size_of::<[f32; 4]>() + l.lines.len();

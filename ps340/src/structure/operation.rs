@@ -1,5 +1,6 @@
 //! What an operate node does to the state, and how a command becomes that.
 
+use super::Member;
 use crate::{matrices, port::ObjectId};
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3};
 use protocol::{
@@ -153,11 +154,20 @@ pub enum Operation {
     Rendering {
         /// Whether the polygons below are the boundary of a solid.
         solid: bool,
-        /// The rendering that was asked for last, 1..=8.
-        request: Option<u8>,
+        /// The last rendering in vectors.
+        rendered: Option<Box<Rendered>>,
     },
     /// SECTIONING_PLANE.
     SectioningPlane,
+}
+
+/// A rendering in vectors, which stands for the original below its node while it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// The vectors, with SET COLOR where they are not in the colour that the node has.
+    pub members: Vec<Member>,
+    /// Whether it is shown.
+    pub shown: bool,
 }
 
 /// Front and back when a view does not give them: about what the manuals name, and what a client passed.
@@ -282,8 +292,8 @@ fn attribute(operate: &Operate) -> Result<Operation, Degenerate> {
         Operate::XformVector => Operation::XformVector,
         Operate::CancelXform => Operation::CancelXform,
         Operate::WriteBack => Operation::WriteBack,
-        Operate::SurfaceRendering => Operation::Rendering { solid: false, request: None },
-        Operate::SolidRendering => Operation::Rendering { solid: true, request: None },
+        Operate::SurfaceRendering => Operation::Rendering { solid: false, rendered: None },
+        Operate::SolidRendering => Operation::Rendering { solid: true, rendered: None },
         Operate::SectioningPlane => Operation::SectioningPlane,
         Operate::Rotate { .. }
         | Operate::Scale(_)

@@ -184,7 +184,7 @@ fn every_node() -> Vec<Node> {
         Operation::IfBit { bit: 0, on: true },
         Operation::IfLevel { comparison: Comparison::Less, level: 1 },
         Operation::IfPhase(true),
-        Operation::Rendering { solid: false, request: None },
+        Operation::Rendering { solid: false, rendered: None },
         Operation::SectioningPlane,
     ];
     let mut nodes: Vec<Node> =
@@ -303,7 +303,7 @@ fn each_operate_node_takes_what_its_command_says() {
     let place = |center, size| Operation::PickLocation { center, size };
     let displays = |on| Operation::Displays { scopes: 0b10, on };
     let level = |level| Operation::IfLevel { comparison: Comparison::Less, level };
-    let render = |solid| Operation::Rendering { solid, request: None };
+    let render = |solid| Operation::Rendering { solid, rendered: None };
     let texture = |texture| Operation::LineTexture { around_corners: true, texture };
     let load = |horizontal, vertical| Operation::LoadViewport { horizontal, vertical, intensity: Some([0.1, 0.9]) };
     let limits = Value::Matrix2(Box::new(DMat2::from_cols_array(&[-0.5, 0.5, 0.0, 1.0])));

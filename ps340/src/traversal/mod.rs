@@ -8,6 +8,7 @@
 //! Not modelled: limits of the matrix stack, the fixed-point arithmetic of the pipeline.
 
 mod clip;
+mod gather;
 pub mod font;
 mod phase;
 mod state;
@@ -19,11 +20,12 @@ mod walk;
 pub mod write_back;
 
 pub use clip::{Clipper, ScreenMap};
+pub use gather::{Block, Gathered, Plane, Sight, newell};
 pub use pick::{PickHit, PickRequest, PickedKind};
 pub use state::State;
 pub use stroke::Stroke;
 pub use update::{Requests, Transformed, Trouble, Update};
-pub use walk::{MAX_DEPTH, MAX_GATHERED, MAX_VECTORS, MAX_VISITS, alone, update, update_into};
+pub use walk::{MAX_DEPTH, MAX_GATHERED, MAX_VECTORS, MAX_VISITS, alone, gather, update, update_into};
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! What the walk carries down the structure: matrices and attributes.
 
-use super::pick::Identifiers;
+use super::{gather::Sight, pick::Identifiers};
 use crate::{hue, port::ObjectId, structure::Operation};
 use glam::{DMat2, DMat4, DVec2};
 use protocol::command::CharacterOrientation;
@@ -68,6 +68,8 @@ pub struct State {
     pub write_back: bool,
     /// The XFORM VECTOR node that gathers the vectors below.
     pub gatherer: Option<ObjectId>,
+    /// The parts of the matrix, while polygons are gathered for a rendering.
+    pub sight: Option<Box<Sight>>,
 }
 
 impl Default for State {
@@ -101,6 +103,7 @@ impl Default for State {
             plotter: false,
             write_back: false,
             gatherer: None,
+            sight: None,
         }
     }
 }
@@ -113,9 +116,13 @@ impl State {
             Operation::TextSize(size) => self.characters = DMat2::from_diagonal(DVec2::splat(*size)),
             Operation::Font(font) => self.font = *font,
             Operation::Orientation(orientation) => self.orientation = *orientation,
-            Operation::Linear(m) => self.ctm *= DMat4::from_mat3(*m),
-            Operation::Translate(by) => self.ctm *= DMat4::from_translation(*by),
-            Operation::Affine(m) | Operation::Projective(m) => self.ctm *= *m,
+            Operation::Linear(m) => self.place(DMat4::from_mat3(*m)),
+            Operation::Translate(by) => self.place(DMat4::from_translation(*by)),
+            Operation::Affine(m) => self.place(*m),
+            Operation::Projective(m) => {
+                self.ctm *= *m;
+                self.sight.iter_mut().for_each(|sight| sight.project(m));
+            }
             Operation::Viewport { horizontal, vertical, intensity } => {
                 self.horizontal = inside(self.horizontal, *horizontal);
                 self.vertical = inside(self.vertical, *vertical);
@@ -165,6 +172,12 @@ impl State {
             | Operation::Priority(_)
             | Operation::LineTexture { .. } => {}
         }
+    }
+
+    /// The state below a matrix that moves and does not project.
+    fn place(&mut self, m: DMat4) {
+        self.ctm *= m;
+        self.sight.iter_mut().for_each(|sight| sight.place(&m));
     }
 
     /// Whether an operate node lets the walk through; those without a condition always do.

@@ -2,6 +2,7 @@
 
 use super::{
     Clipper, PickHit, PickedKind, Requests, State, Stroke, Trouble, Update,
+    gather::{Gathered, Gatherer, Sight},
     outline::{self, Piece},
     phase,
     pick::{IdentifierChains, Identifiers, PickBox},
@@ -16,7 +17,7 @@ use protocol::{
     value::PickedPlace,
 };
 use rayon::prelude::*;
-use std::ops::ControlFlow;
+use std::{collections::BTreeSet, ops::ControlFlow};
 
 /// How deep nodes may nest. The real stack held tens of levels.
 pub const MAX_DEPTH: usize = 10_000;
@@ -56,10 +57,23 @@ pub fn alone(structures: &Structures, frame: u64, root: ObjectId, state: State) 
     walk.update
 }
 
+/// Gathers what a rendering node renders, without drawing anything.
+pub fn gather(structures: &Structures, frame: u64, node: ObjectId) -> Gathered<'_> {
+    static NOTHING: Requests = Requests { transforms: BTreeSet::new(), write_back: BTreeSet::new(), pick: None };
+    let mut walk = Walk::new(structures, frame, &NOTHING);
+    walk.gatherer = Some(Gatherer::new(node));
+    for root in structures.displayed() {
+        walk.root(root, State { sight: Some(Box::<Sight>::default()), ..State::default() });
+    }
+    walk.gatherer.map(Gatherer::finish).unwrap_or_default()
+}
+
 struct Walk<'a> {
     structures: &'a Structures,
     frame: u64,
     requests: &'a Requests,
+    /// What is gathered instead of drawn.
+    gatherer: Option<Gatherer<'a>>,
     update: Update,
     identifiers: IdentifierChains<'a>,
     /// A bit for each object that the walk is inside of.
@@ -125,6 +139,7 @@ impl<'a> Walk<'a> {
             structures,
             frame,
             requests,
+            gatherer: None,
             update: Update::default(),
             identifiers: IdentifierChains::default(),
             entered: vec![0; structures.extent().div_ceil(64)],
@@ -176,10 +191,19 @@ impl<'a> Walk<'a> {
                 }
                 if visit.in_structure && descendant.is_none() {
                     self.apply(operation, visit.object, &mut level.state);
+                    if let Some(rendered) = self.shown_instead(operation) {
+                        let state = level.state.clone();
+                        level.items = Items::Members(&[]); // it stands for everything after it
+                        self.enter(visit.object, rendered, state, levels);
+                    }
                     return ControlFlow::Continue(());
                 }
                 let mut state = level.state.clone();
                 self.apply(operation, visit.object, &mut state);
+                if let Some(rendered) = self.shown_instead(operation) {
+                    self.enter(visit.object, rendered, state, levels);
+                    return ControlFlow::Continue(());
+                }
                 let below = match (descendant, visit.object) {
                     (Some(below), _) => Items::Object(*below),
                     (None, Some(object)) => Items::Members(self.structures.followers(object)),
@@ -190,6 +214,16 @@ impl<'a> Walk<'a> {
             data => self.draw(data, visit.object, &level.state),
         }
         ControlFlow::Continue(())
+    }
+
+    /// The vectors that a rendering node shows instead of what is below it.
+    fn shown_instead(&self, operation: &'a Operation) -> Option<Items<'a>> {
+        match operation {
+            Operation::Rendering { rendered: Some(rendered), .. } if rendered.shown && self.gatherer.is_none() => {
+                Some(Items::Members(&rendered.members))
+            }
+            _ => None,
+        }
     }
 
     /// Goes a level down, unless the structure is too deep or contains itself.
@@ -232,12 +266,19 @@ impl<'a> Walk<'a> {
                     state.gatherer = Some(id);
                 }
             }
+            Operation::Rendering { .. } => {
+                self.gatherer.iter_mut().for_each(|gatherer| gatherer.rendering(object, state));
+            }
+            Operation::SectioningPlane => state.sight.iter_mut().for_each(|sight| sight.cut()),
             operation => state.apply(operation),
         }
     }
 
     /// Draws a data node, unless its state hides it.
     fn draw(&mut self, node: &'a Node, object: Option<ObjectId>, state: &State) {
+        if let Some(gatherer) = &mut self.gatherer {
+            return gatherer.take(node, state);
+        }
         if state.blinking {
             let (seen, change) = phase::blink(state.blink_rate, self.frame);
             self.update.changes_at(change);

@@ -62,22 +62,16 @@ fn vectors_are_marked_as_lines_and_positions() {
 }
 
 #[test]
-fn a_rendering_that_fails_says_so_and_sends_false() {
-    let mut desk = told(&format!("{DOT} R := SURFACE_RENDERING APPLIED TO D; VARIABLE V; CONNECT R<1>:<1>V;"));
-    assert_eq!(desk.tell("SEND FIX(7) TO <1>R;"), ["E 8 *** Insufficient memory: R needs RESERVE_WORKING_STORAGE"]);
-    assert_eq!(desk.delivered(), [Value::Boolean(false)]);
-    desk.tell("RESERVE_WORKING_STORAGE 100000;");
-    let said = desk.tell("SEND FIX(7) TO <1>R;");
-    assert_eq!(said, ["E 10 *** Rendering failed: the smooth shading FIX(7) is not available at R"]);
-    assert_eq!(desk.delivered(), [Value::Boolean(false)]);
-    for command in ["SEND FIX(0) TO <1>R;", "SEND TRUE TO <1>R;", "SEND 'SAVED' TO <1>R;"] {
-        assert_eq!(desk.tell(command), ["E 10 *** Rendering failed: nothing was rendered at R"], "{command}");
-        assert_eq!(desk.delivered(), [Value::Boolean(false)]);
+fn rendering_nodes_refuse_what_is_no_request() {
+    let mut desk = told(&format!("{DOT} R := SURFACE_RENDERING APPLIED TO D;"));
+    assert!(desk.tell("SEND TRUE TO <2>R; SEND FIX(7) TO <1>R; SEND 'SAVED' TO <1>R;").is_empty());
+    for number in [9, -1] {
+        let command = format!("SEND FIX({number}) TO <1>R;");
+        assert_eq!(desk.tell(&command), ["E 6 *** Value out of range at <1>R"]);
     }
-    assert!(desk.tell("SEND FALSE TO <1>R; SEND TRUE TO <2>R;").is_empty(), "the original is shown anyway");
-    assert_eq!(desk.delivered(), [Value::Boolean(true)]);
-    assert_eq!(desk.tell("SEND FIX(9) TO <1>R;"), ["E 6 *** Value out of range at <1>R"]);
+    assert_eq!(desk.tell("SEND '' TO <1>R;"), ["E 6 *** Value out of range at <1>R"]);
     assert_eq!(desk.tell("SEND 1.5 TO <1>R;"), ["E 5 *** Bad message type at <1>R: real"]);
+    assert_eq!(desk.tell("SEND FIX(1) TO <2>R;"), ["E 5 *** Bad message type at <2>R: integer"]);
 }
 
 #[test]

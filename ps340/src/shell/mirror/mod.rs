@@ -12,6 +12,7 @@ pub use structure::NodeShown;
 pub use traffic::{Passed, Traffic};
 
 use crate::{
+    calligraphic::Controls,
     line::LineId,
     machine::{Counters, KeyboardMode, Machine, Panel, PictureVersion, time_of_frame},
     raster::FrameBuffer,
@@ -46,6 +47,8 @@ pub struct Shown {
     pub picture: PictureVersion,
     /// What the vector screen shows.
     pub strokes: Arc<Vec<Stroke>>,
+    /// Knobs, phosphor, and which screen is looked at.
+    pub controls: Controls,
     /// What the raster screen shows.
     pub raster: Arc<FrameBuffer>,
     /// Labels, lights, message line.
@@ -112,12 +115,13 @@ impl Mirror {
             frame,
             micros: time_of_frame(frame),
             panel: machine.panel().clone(),
+            controls: *machine.controls(),
             mode: machine.keyboard_mode(),
             counters: machine.counters(),
             hosts: hosts.map(str::to_owned).collect(),
             ..Shown::clone(&before)
         };
-        let mut is_new = shown.panel != before.panel || shown.mode != before.mode || shown.hosts != before.hosts;
+        let mut is_new = shown.panel != before.panel || shown.mode != before.mode || shown.controls != before.controls || shown.hosts != before.hosts;
         if picture != before.picture {
             shown.picture = picture;
             shown.strokes = Arc::new(machine.visible_strokes().into_owned());

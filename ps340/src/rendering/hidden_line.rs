@@ -1,0 +1,362 @@
+//! Hidden-line removal: which parts of each edge no polygon hides.
+//!
+//! # Model
+//! Points are rounded to a grid of 2^24 by 2^24 places on the screen, as fine as the strokes of the beam. On it every
+//! sign and every quotient that places an edge against the sides of a triangle is exact or correctly rounded, so that
+//! neighbouring triangles hide up to the very same point and nothing shows through between them. A triangle is closed:
+//! what lies exactly behind its side is hidden.
+//!
+//! An edge is never hidden by the faces it belongs to, nor by one that is nearer by less than what a step of the grid
+//! changes: lines in the plane of a polygon are seen. Rests shorter than [`SHORTEST`] steps are left out, unless they
+//! are whole edges.
+//!
+//! Of a solid that is not opened by the front of the view, faces that show their reverse, and edges between two of them,
+//! are hidden by others; they are left out from the start. Soft edges are drawn where one of the two faces is seen from
+//! its front and the other from its reverse, or where there is only one face.
+//!
+//! # Source
+//! The visible intervals of A. Appel 1967, found edge by edge against the triangles in the cells of a uniform grid
+//! (Franklin 1980) instead of along contours; grid, rounding and tolerances are ours.
+//!
+//! # Cost
+//! Proportional to n for n triangles of equal size, since cells are about as large as they; n^2 at worst.
+
+use super::{
+    Facets, Segment,
+    facets::Edge,
+    project::{Projected, project},
+};
+use rayon::prelude::*;
+
+/// Steps of the grid from the middle of the screen to its side.
+const STEPS: f64 = (1 << 23) as f64;
+/// Rests of an edge shorter than this many steps are not drawn: a thousandth of a pixel.
+const SHORTEST: f64 = 16.0;
+/// Most cells of the grid across the screen, as a power of two.
+const MOST_CELLS: u32 = 10;
+/// Edges that are tested between two looks at the budget.
+const BATCH: usize = 512;
+/// What an edge costs besides its tests, in tests.
+const EDGE_UNITS: u64 = 10;
+
+/// Hidden-line removal that is under way.
+#[derive(Debug)]
+pub struct HiddenLine {
+    grid: Grid,
+    edges: Vec<Straight>,
+    next: usize,
+    segments: Vec<Segment>,
+}
+
+/// A point on the grid of the screen; x and y are integers of at most 2^24.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spot {
+    x: f64,
+    y: f64,
+    nearness: f64,
+}
+
+/// An edge on the screen.
+#[derive(Clone, Debug)]
+struct Straight {
+    ends: [Spot; 2],
+    /// Numbers of its ends.
+    names: [u32; 2],
+    faces: [Option<u32>; 2],
+    /// Its ends in the coordinates of the node and their w.
+    places: [(glam::DVec4, f64); 2],
+    color: [f64; 2],
+}
+
+/// A triangle on the screen, counter-clockwise.
+#[derive(Clone, Copy, Debug)]
+struct Hider {
+    spots: [Spot; 3],
+    names: [u32; 3],
+    face: u32,
+    /// Twice its area.
+    area: f64,
+    /// The nearest of its corners.
+    nearest: f64,
+    /// How much the nearness changes in a step of the grid, with roundings.
+    slack: f64,
+}
+
+/// Triangles by the cells of the screen that they may touch.
+#[derive(Debug)]
+struct Grid {
+    hiders: Vec<Hider>,
+    /// Cells across, as a power of two.
+    cells: u32,
+    /// Where the list of each cell begins.
+    starts: Vec<u32>,
+    lists: Vec<u32>,
+}
+
+impl HiddenLine {
+    /// Begins with facets.
+    pub fn new(facets: &Facets) -> HiddenLine {
+        let all = 0..facets.triangles.len() as u32;
+        let drawn = |edge: &Edge| !edge.soft || is_outline(facets, edge);
+        let edges = (0..facets.edges.len() as u32).filter(|edge| drawn(&facets.edges[*edge as usize]));
+        let projected = project(facets, all, edges);
+        let closed = facets.solid && !projected.opened;
+        let spots: Vec<Spot> = projected.spots.iter().map(Spot::new).collect();
+        let edges = straights(facets, &projected, &spots, closed);
+        HiddenLine { grid: Grid::new(hiders(facets, &projected, &spots, closed)), edges, next: 0, segments: Vec::new() }
+    }
+
+    /// Goes on for about so many tests of an edge against a triangle. Returns what is seen, once it is done.
+    pub fn advance(&mut self, units: u64) -> Option<Vec<Segment>> {
+        let mut left = units;
+        while self.next < self.edges.len() {
+            if left == 0 {
+                return None;
+            }
+            let end = (self.next + BATCH).min(self.edges.len());
+            let seen = |edge: &Straight| self.grid.visible(edge);
+            let parts: Vec<(Vec<Segment>, u64)> = self.edges[self.next..end].par_iter().map(seen).collect();
+            for (segments, tests) in parts {
+                self.segments.extend(segments);
+                left = left.saturating_sub(tests + EDGE_UNITS);
+            }
+            self.next = end;
+        }
+        Some(std::mem::take(&mut self.segments))
+    }
+}
+
+/// Whether an edge separates what is seen from its front and what is not, or ends a surface.
+fn is_outline(facets: &Facets, edge: &Edge) -> bool {
+    let mut toward = facets.faces_of(edge).map(|face| face.toward);
+    let first = toward.next();
+    first != toward.next()
+}
+
+fn straights(facets: &Facets, projected: &Projected, spots: &[Spot], closed: bool) -> Vec<Straight> {
+    let lines = projected.lines.iter().filter_map(|line| {
+        let edge = &facets.edges[line.edge as usize];
+        let hidden = closed && facets.faces_of(edge).all(|face| !face.toward);
+        let ends = line.spots.map(|spot| spots[spot as usize]);
+        (!hidden).then_some(Straight {
+            ends,
+            names: line.spots,
+            faces: edge.faces,
+            places: line.ends,
+            color: facets.color_of(edge),
+        })
+    });
+    lines.collect()
+}
+
+fn hiders(facets: &Facets, projected: &Projected, spots: &[Spot], closed: bool) -> Vec<Hider> {
+    let largest = spots.iter().map(|spot| spot.nearness.abs()).fold(0.0, f64::max);
+    let pieces = projected.pieces.iter().filter_map(|piece| {
+        let face = facets.triangles[piece.triangle as usize].face;
+        if closed && !facets.faces[face as usize].toward {
+            return None;
+        }
+        Hider::new(piece.spots, piece.spots.map(|spot| spots[spot as usize]), face, largest)
+    });
+    pieces.collect()
+}
+
+impl Spot {
+    fn new(spot: &super::project::Spot) -> Spot {
+        Spot {
+            x: (spot.place.x * STEPS).round().clamp(-STEPS, STEPS),
+            y: (spot.place.y * STEPS).round().clamp(-STEPS, STEPS),
+            nearness: spot.nearness,
+        }
+    }
+
+    /// Twice the area of the triangle with two other points: exact.
+    fn area(&self, a: &Spot, b: &Spot) -> f64 {
+        (a.x - self.x) * (b.y - self.y) - (a.y - self.y) * (b.x - self.x)
+    }
+}
+
+impl Hider {
+    /// None for a triangle that is seen from its side.
+    fn new(mut names: [u32; 3], mut spots: [Spot; 3], face: u32, largest: f64) -> Option<Hider> {
+        let mut area = spots[0].area(&spots[1], &spots[2]);
+        if area < 0.0 {
+            names.swap(1, 2);
+            spots.swap(1, 2);
+            area = -area;
+        }
+        let [a, b, c] = spots;
+        let (u, v) = (b.nearness - a.nearness, c.nearness - a.nearness);
+        let slope_x = (u * (c.y - a.y) - v * (b.y - a.y)) / area;
+        let slope_y = (v * (b.x - a.x) - u * (c.x - a.x)) / area;
+        let slack = slope_x.abs() + slope_y.abs() + 1e-13 * largest;
+        let nearest = a.nearness.max(b.nearness).max(c.nearness);
+        (area > 0.0).then_some(Hider { spots, names, face, area, nearest, slack })
+    }
+
+    /// The part of an edge that it hides, as parameters along the edge.
+    fn hidden(&self, edge: &Straight) -> Option<[f64; 2]> {
+        let [a, b] = &edge.ends;
+        let [p, q, r] = &self.spots;
+        // Twice the areas that the ends make with the sides, opposite to each corner: exact, negative outside.
+        let from = [a.area(q, r), a.area(r, p), a.area(p, q)];
+        let to = [b.area(q, r), b.area(r, p), b.area(p, q)];
+        let (mut begin, mut end) = (0.0_f64, 1.0_f64);
+        for (from, to) in from.into_iter().zip(to) {
+            if from < 0.0 && to < 0.0 {
+                return None;
+            }
+            if from < 0.0 {
+                begin = begin.max(from / (from - to));
+            } else if to < 0.0 {
+                end = end.min(from / (from - to));
+            }
+        }
+        if begin >= end {
+            return None;
+        }
+        // How much nearer the edge is, at both ends of that part.
+        let ahead = |t: f64| {
+            let plane: f64 = (0..3).map(|k| (from[k] + (to[k] - from[k]) * t) * self.spots[k].nearness).sum();
+            a.nearness + (b.nearness - a.nearness) * t - plane / self.area
+        };
+        let meets = |name: u32| self.names.contains(&name);
+        let (first, last) = (ahead(begin), ahead(end));
+        // From a common corner on, the edge goes behind or before the triangle all the way.
+        if begin == 0.0 && meets(edge.names[0]) {
+            return (last < -self.slack).then_some([begin, end]);
+        }
+        if end == 1.0 && meets(edge.names[1]) {
+            return (first < -self.slack).then_some([begin, end]);
+        }
+        match (first < -self.slack, last < -self.slack) {
+            (true, true) => Some([begin, end]),
+            (false, false) => None,
+            (behind, _) => {
+                let crossing = begin + (end - begin) * ((-self.slack - first) / (last - first)).clamp(0.0, 1.0);
+                Some(if behind { [begin, crossing] } else { [crossing, end] })
+            }
+        }
+    }
+}
+
+impl Grid {
+    fn new(hiders: Vec<Hider>) -> Grid {
+        let mut cells = (hiders.len().max(1).ilog2() / 2 + 1).min(MOST_CELLS);
+        let entries = |cells: u32| -> usize {
+            hiders.iter().map(|hider| columns_of(hider, cells).len() * rows_of(hider, cells).len()).sum()
+        };
+        // Large triangles are in many cells; there may be no more entries than this for each of them.
+        while cells > 0 && entries(cells) > 64 + 16 * hiders.len() {
+            cells -= 1;
+        }
+        let mut starts = vec![0_u32; (1 << (2 * cells)) + 1];
+        let each_cell = |hider: &Hider, visit: &mut dyn FnMut(usize)| {
+            for row in rows_of(hider, cells) {
+                columns_of(hider, cells).for_each(|column| visit((row << cells) + column));
+            }
+        };
+        for hider in &hiders {
+            each_cell(hider, &mut |cell| starts[cell + 1] += 1);
+        }
+        for cell in 1..starts.len() {
+            starts[cell] += starts[cell - 1];
+        }
+        let mut free = starts.clone();
+        let mut lists = vec![0; starts.last().map_or(0, |end| *end as usize)];
+        for (number, hider) in hiders.iter().enumerate() {
+            each_cell(hider, &mut |cell| {
+                lists[free[cell] as usize] = number as u32;
+                free[cell] += 1;
+            });
+        }
+        Grid { hiders, cells, starts, lists }
+    }
+
+    /// The seen parts of an edge, and the number of tests that they took.
+    fn visible(&self, edge: &Straight) -> (Vec<Segment>, u64) {
+        let [a, b] = &edge.ends;
+        let (farthest, length) = (a.nearness.min(b.nearness), (b.x - a.x).hypot(b.y - a.y));
+        let mut hidden: Vec<[f64; 2]> = Vec::new();
+        let mut tests = 0;
+        let rows = span(a.y, b.y, self.cells);
+        for row in rows {
+            for column in self.columns(a, b, row) {
+                let cell = (row << self.cells) + column;
+                let list = &self.lists[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+                tests += list.len() as u64;
+                let before = hidden.len();
+                for &number in list {
+                    let hider = &self.hiders[number as usize];
+                    if hider.nearest > farthest && !edge.faces.contains(&Some(hider.face)) {
+                        hidden.extend(hider.hidden(edge));
+                    }
+                }
+                if hidden[before..].contains(&[0.0, 1.0]) {
+                    return (Vec::new(), tests);
+                }
+            }
+        }
+        hidden.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut segments = Vec::new();
+        let mut from = 0.0;
+        for [begin, end] in hidden.into_iter().chain([[1.0, 1.0]]) {
+            let whole = from == 0.0 && begin == 1.0;
+            if begin > from && (whole || (begin - from) * length >= SHORTEST) {
+                segments.extend(edge.part(from, begin));
+            }
+            from = end.max(from);
+        }
+        (segments, tests)
+    }
+
+    /// The columns of cells in a row that a line may touch.
+    fn columns(&self, a: &Spot, b: &Spot, row: usize) -> std::ops::RangeInclusive<usize> {
+        let size = 2.0 * STEPS / (1_u64 << self.cells) as f64;
+        let bottom = row as f64 * size - STEPS;
+        let at = |y: f64| {
+            let t = if a.y == b.y { 0.0 } else { ((y - a.y) / (b.y - a.y)).clamp(0.0, 1.0) };
+            a.x + (b.x - a.x) * t
+        };
+        let (left, right) = if a.y == b.y { (a.x, b.x) } else { (at(bottom), at(bottom + size)) };
+        // A step to each side for roundings.
+        span(left.min(right) - 1.0, left.max(right) + 1.0, self.cells)
+    }
+}
+
+impl Straight {
+    /// A part of the edge in the coordinates of the node. Parameters run evenly on the screen.
+    fn part(&self, from: f64, to: f64) -> Option<Segment> {
+        let [(a, wa), (b, wb)] = self.places;
+        let place = |t: f64| {
+            if t == 0.0 || t == 1.0 {
+                let end = if t == 0.0 { a } else { b };
+                return end.truncate() / end.w;
+            }
+            let u = t * wa / ((1.0 - t) * wb + t * wa);
+            let point = a + (b - a) * u;
+            point.truncate() / point.w
+        };
+        let ends = [place(from), place(to)];
+        ends.iter().all(|end| end.is_finite()).then_some(Segment { ends, color: self.color })
+    }
+}
+
+/// The cells that the way from one coordinate to another touches.
+fn span(from: f64, to: f64, cells: u32) -> std::ops::RangeInclusive<usize> {
+    let last = (1_i64 << cells) - 1;
+    let cell = |c: f64| (((c + STEPS) as i64) >> (24 - cells)).clamp(0, last) as usize;
+    cell(from.min(to))..=cell(from.max(to))
+}
+
+fn rows_of(hider: &Hider, cells: u32) -> std::ops::Range<usize> {
+    let [a, b, c] = hider.spots.map(|spot| spot.y);
+    let span = span(a.min(b).min(c), a.max(b).max(c), cells);
+    *span.start()..span.end() + 1
+}
+
+fn columns_of(hider: &Hider, cells: u32) -> std::ops::Range<usize> {
+    let [a, b, c] = hider.spots.map(|spot| spot.x);
+    let span = span(a.min(b).min(c), a.max(b).max(c), cells);
+    *span.start()..span.end() + 1
+}

@@ -1,0 +1,169 @@
+//! The polygons, lights and sectioning plane that a rendering node renders, gathered by a walk of its own.
+//!
+//! # Model
+//! Light and planes need coordinates in which angles are true: *eye coordinates*. They are those just below the
+//! innermost perspective (FIELD_OF_VIEW, EYE, a 4x4 matrix with such a last column), or without one, just below the
+//! outermost WINDOW or 4x4 matrix; everything below these is modelling.
+//!
+//! # Decided here
+//! - What is below the node is rendered: polygons, lit by the ILLUMINATION nodes there. A node that the picture meets
+//!   several times is rendered where it is met first.
+//! - The first polygon that is met below a SECTIONING_PLANE is the plane, and no part of the object if that node is
+//!   below the rendering node; otherwise one that is met elsewhere in the picture does.
+
+use super::State;
+use crate::{
+    port::ObjectId,
+    structure::{Node, Polygons},
+};
+use glam::{DMat4, DVec3};
+use protocol::command::Illumination;
+
+/// The parts of the accumulated matrix while polygons are gathered: `ctm = view eye`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// From eye coordinates to clip space.
+    pub view: DMat4,
+    /// From the coordinates of the data to eye coordinates.
+    pub eye: DMat4,
+    /// From the coordinates of the data to those of the rendering node; none outside of it.
+    pub local: Option<DMat4>,
+    /// Whether a projection was met.
+    framed: bool,
+    /// Below a SECTIONING_PLANE, and whether that is below the rendering node.
+    plane: Option<bool>,
+}
+
+impl Default for Sight {
+    fn default() -> Sight {
+        Sight { view: DMat4::IDENTITY, eye: DMat4::IDENTITY, local: None, framed: false, plane: None }
+    }
+}
+
+impl Sight {
+    /// The parts below a matrix that does not project.
+    pub(super) fn place(&mut self, m: &DMat4) {
+        self.eye *= *m;
+        self.local.iter_mut().for_each(|local| *local *= *m);
+    }
+
+    /// The parts below a window, a field of view or another 4x4 matrix.
+    pub(super) fn project(&mut self, m: &DMat4) {
+        let affine = m.row(3) == glam::DVec4::W;
+        if affine && self.framed {
+            return self.place(m);
+        }
+        self.view = self.view * self.eye * *m;
+        self.eye = DMat4::IDENTITY;
+        self.framed = true;
+        self.local.iter_mut().for_each(|local| *local *= *m);
+    }
+
+    /// Notes that the rendering node is entered.
+    pub(super) fn enter(&mut self) {
+        self.local = Some(DMat4::IDENTITY);
+    }
+
+    /// Notes that a SECTIONING_PLANE is entered.
+    pub(super) fn cut(&mut self) {
+        self.plane = Some(self.local.is_some());
+    }
+}
+
+/// A polygon node where it is displayed.
+#[derive(Clone, Debug)]
+pub struct Block<'a> {
+    /// The polygons.
+    pub polygons: &'a Polygons,
+    /// Where they are, and their colour if they do not say.
+    pub state: State,
+    /// The parts of their matrix.
+    pub sight: Sight,
+}
+
+/// A plane in eye coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// A point of it.
+    pub point: DVec3,
+    /// Towards its front, the side from which its polygon runs clockwise; not 0.
+    pub normal: DVec3,
+}
+
+/// What is below a rendering node.
+#[derive(Clone, Debug, Default)]
+pub struct Gathered<'a> {
+    /// The state at the node; none if the picture does not meet it.
+    pub node: Option<State>,
+    /// Polygons of the object.
+    pub blocks: Vec<Block<'a>>,
+    /// Lights, each with the matrix to eye coordinates.
+    pub lights: Vec<(Illumination, DMat4)>,
+    /// The sectioning plane.
+    pub plane: Option<Plane>,
+}
+
+/// What a walk gathers.
+#[derive(Debug)]
+pub(super) struct Gatherer<'a> {
+    target: ObjectId,
+    /// A plane outside of the target.
+    elsewhere: Option<Plane>,
+    gathered: Gathered<'a>,
+}
+
+impl<'a> Gatherer<'a> {
+    /// For a rendering node.
+    pub(super) fn new(target: ObjectId) -> Gatherer<'a> {
+        Gatherer { target, elsewhere: None, gathered: Gathered::default() }
+    }
+
+    /// The state below a rendering node.
+    pub(super) fn rendering(&mut self, object: Option<ObjectId>, state: &mut State) {
+        if object == Some(self.target) && self.gathered.node.is_none() {
+            self.gathered.node = Some(State { sight: None, ..state.clone() });
+            state.sight.iter_mut().for_each(|sight| sight.enter());
+        }
+    }
+
+    /// Takes a data node.
+    pub(super) fn take(&mut self, node: &'a Node, state: &State) {
+        let Some(sight) = state.sight.as_deref() else { return };
+        match node {
+            Node::Illumination(light) if sight.local.is_some() => self.gathered.lights.push((*light, sight.eye)),
+            Node::Polygons(polygons) => {
+                match sight.plane {
+                    Some(true) if self.gathered.plane.is_none() => self.gathered.plane = plane(polygons, &sight.eye),
+                    Some(false) if self.elsewhere.is_none() => self.elsewhere = plane(polygons, &sight.eye),
+                    _ => {}
+                }
+                if sight.local.is_some() && sight.plane != Some(true) {
+                    let state = State { sight: None, ..state.clone() };
+                    self.gathered.blocks.push(Block { polygons, state, sight: *sight });
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// What was gathered.
+    pub(super) fn finish(self) -> Gathered<'a> {
+        Gathered { plane: self.gathered.plane.or(self.elsewhere), ..self.gathered }
+    }
+}
+
+/// The plane of the first polygon of a node; none if it has no area.
+fn plane(polygons: &Polygons, eye: &DMat4) -> Option<Plane> {
+    let polygon = polygons.polygons.first()?;
+    let corners: Vec<DVec3> =
+        polygon.vertices.iter().map(|v| eye.transform_point3(DVec3::from(v.position.map(f64::from)))).collect();
+    let normal = newell(&corners) * eye.determinant().signum();
+    let point = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    (normal.is_finite() && normal != DVec3::ZERO && point.is_finite()).then_some(Plane { point, normal })
+}
+
+/// The vector of twice the area of a polygon. It points to where the corners run clockwise, the axes being left-handed.
+pub fn newell(corners: &[DVec3]) -> DVec3 {
+    let Some(first) = corners.first() else { return DVec3::ZERO };
+    corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum()
+}
