@@ -202,6 +202,7 @@ fn a_capture_is_what_passed_and_plays_again() {
                 Event::ToHost(bytes) => to.extend(bytes),
                 Event::Open(peer) => assert!(peer.starts_with("pty:") || peer.starts_with("file:"), "{peer}"),
                 Event::Close => closed += 1,
+                Event::Order(_) => {}
             }
         }
         (String::from_utf8(from).unwrap(), String::from_utf8(to).unwrap(), closed)

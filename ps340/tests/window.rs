@@ -202,7 +202,9 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     }
 
     // F3 is function key 3.
-    desk.tell("CONNECT FKEYS<1>:<1>TEXT; CONNECT BUTTONSIN<1>:<1>TEXT; LATER := VECTOR_LIST ITEMIZED N=2 P 0,0 L 0,0;\n");
+    desk.tell(
+        "CONNECT FKEYS<1>:<1>TEXT; CONNECT BUTTONSIN<1>:<1>TEXT; LATER := VECTOR_LIST ITEMIZED N=2 P 0,0 L 0,0;\n",
+    );
     desk.expect("show LATER", "VECTOR_LIST");
     let [x, y] = desk.place("vector screen");
     desk.display.act(&format!("mousemove {x} {y}"));

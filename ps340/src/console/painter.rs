@@ -58,7 +58,8 @@ impl Painter {
     pub fn want(&mut self, wanted: Wanted) {
         let same = self.asked.as_ref().is_some_and(|asked| asked.is(&wanted));
         // A display that remembers goes along with every frame.
-        let goes_on = lock(&self.easel.0).remembers && self.asked.as_ref().is_none_or(|asked| asked.frame != wanted.frame);
+        let goes_on =
+            lock(&self.easel.0).remembers && self.asked.as_ref().is_none_or(|asked| asked.frame != wanted.frame);
         if same && !goes_on {
             return;
         }

@@ -63,7 +63,7 @@ impl Machine {
         if self.renderings.waiting.len() >= MAX_WAITING {
             let name = self.memory.objects.name(node).to_owned();
             let fault = NodeFault::Full { input: Input::Number(1) };
-            return self.messages.push(Message::Node { name, fault });
+            return self.messages.push(Message::Node { name, fault, hint: String::new() });
         }
         let at_once = self.renderings.waiting.is_empty() && matches!(request, RenderingRequest::Render(_));
         self.renderings.waiting.push_back((node, request));

@@ -2,7 +2,7 @@
 
 use crate::{campaign::Target, chance::Chance, pool::Features, seeds};
 use protocol::{
-    capture::{CaptureReader, Event, HEADER, PIECE},
+    capture::{CaptureReader, Event, HEADER, MAX_ORDER, PIECE},
     listing::Listing,
     parallel::{self, FrameReader, Side},
     wire::{
@@ -198,6 +198,7 @@ fn captured(input: &[u8], pieces: &[&[u8]], features: &mut Features) {
                 features.saw(std::mem::discriminant(&record.event));
                 let fits = match &record.event {
                     Event::Open(peer) => peer.len() <= 1024,
+                    Event::Order(order) => order.len() <= MAX_ORDER,
                     Event::FromHost(bytes) | Event::ToHost(bytes) => (1..=PIECE).contains(&bytes.len()),
                     Event::Close => true,
                 };

@@ -121,7 +121,10 @@ impl Mirror {
             hosts: hosts.map(str::to_owned).collect(),
             ..Shown::clone(&before)
         };
-        let mut is_new = shown.panel != before.panel || shown.mode != before.mode || shown.controls != before.controls || shown.hosts != before.hosts;
+        let mut is_new = shown.panel != before.panel
+            || shown.mode != before.mode
+            || shown.controls != before.controls
+            || shown.hosts != before.hosts;
         if picture != before.picture {
             shown.picture = picture;
             shown.strokes = Arc::new(machine.visible_strokes().into_owned());
