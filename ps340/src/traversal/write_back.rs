@@ -123,7 +123,8 @@ mod tests {
     fn corner() -> [Stroke; 3] {
         let stroke = |start, end, color| Stroke { start, end, intensity: [1.0, 0.5], color };
         let first = Stroke { intensity: [1.0, 1.0], ..stroke([-1.0, 0.0], [0.5, 0.25], RED) };
-        [first, stroke([0.5, 0.25], [1.0, 1.0], RED), stroke([0.0, 0.0], [0.0, 0.0], [1.0; 3])]
+        let dot = Stroke { intensity: [1.0, 1.0], ..stroke([0.0, 0.0], [0.0, 0.0], [1.0; 3]) };
+        [first, stroke([0.5, 0.25], [1.0, 1.0], RED), dot]
     }
 
     #[test]
