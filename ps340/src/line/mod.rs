@@ -14,7 +14,7 @@ mod operator;
 pub use capture::Capture;
 pub use hosts::{MAX_HOSTS, MAX_WAITING_BYTES, Writer};
 pub use listener::{Listener, SocketFile};
-pub use operator::{OperatorLine, serve_operators, serve_stdio};
+pub use operator::{OperatorLine, Reply, serve_operators, serve_stdio};
 pub use protocol::address::{Address, AddressError, LineAddress};
 pub use source::Source;
 pub use terminal::{PseudoTerminal, open_serial};
