@@ -77,7 +77,10 @@ fn a_rendering_that_fails_says_so_and_sends_false() {
     assert!(desk.tell("SEND FALSE TO <1>R; SEND TRUE TO <2>R;").is_empty(), "the original is shown anyway");
     assert_eq!(desk.delivered(), [Value::Boolean(true)]);
     assert_eq!(desk.tell("SEND FIX(9) TO <1>R;"), ["E 6 *** Value out of range at <1>R"]);
-    assert_eq!(desk.tell("SEND 1.5 TO <1>R;"), ["E 5 *** Bad message type at <1>R: real"]);
+    assert_eq!(
+        desk.tell("SEND 1.5 TO <1>R;"),
+        ["E 5 *** Bad message type at <1>R: real; it takes Boolean or integer or string"]
+    );
 }
 
 #[test]
@@ -107,7 +110,7 @@ fn numbers_that_are_probably_not_meant_are_taken_with_a_warning() {
 
 #[test]
 fn a_fault_inside_a_structure_is_told_where_it_stands() {
-    let mut desk = told("S := BEGIN_STRUCTURE");
+    let mut desk = told("S := BEGIN_STRUCTURE NIL;");
     let said = desk.tell("FIELD_OF_VIEW 200;");
     assert!(
         said.len() == 1 && said[0].starts_with("E 6 *** Value out of range in a FIELD_OF_VIEW inside S: "),
