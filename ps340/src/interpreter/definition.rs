@@ -157,7 +157,7 @@ pub(super) fn node(content: Content, scope: Scope<'_>, memory: &mut MassMemory) 
             step: DVec2::X,
         })),
         Object::Operate { operate, applied_to } => Node::Operate {
-            operation: operation(&operate, scope, memory)?,
+            operation: operation(name_of_operate(&operate), &operate, scope, memory)?,
             descendant: applied_to.map(|below| scope.object(&below, memory)).transpose()?,
         },
         Object::Polygons(polygons) => Node::Polygons(Box::new(self::polygons(polygons, scope, memory)?)),
@@ -182,13 +182,20 @@ pub(super) fn node(content: Content, scope: Scope<'_>, memory: &mut MassMemory) 
 }
 
 /// The operation of an operate command.
-pub(super) fn operation(operate: &Operate, scope: Scope<'_>, memory: &mut MassMemory) -> Result<Operation, Message> {
+///
+/// - `of`: of what, for messages.
+pub(super) fn operation(
+    of: &str,
+    operate: &Operate,
+    scope: Scope<'_>,
+    memory: &mut MassMemory,
+) -> Result<Operation, Message> {
     let font = match operate {
         Operate::CharacterFont(font) => Some(scope.object(font, memory)?),
         _ => None,
     };
     let made = Operation::new(operate, font, memory.structures.frame());
-    made.map_err(|e| Message::Range { of: name_of_operate(operate).into(), text: e.to_string() })
+    made.map_err(|e| Message::Range { of: of.into(), text: e.to_string() })
 }
 
 fn check_polygons(polygons: &[Polygon]) -> Result<(), String> {

@@ -100,17 +100,17 @@ pub(super) fn forget_unit(unit: &Name, memory: &mut MassMemory) -> Result<(), Me
 }
 
 /// The operation of a PREFIX or FOLLOW, whose references are full names.
-fn operation(operate: &Operate, memory: &mut MassMemory) -> Result<Operation, Message> {
-    definition::operation(operate, Scope::Outside, memory)
+fn operation(name: &Name, operate: &Operate, memory: &mut MassMemory) -> Result<Operation, Message> {
+    definition::operation(name.as_str(), operate, Scope::Outside, memory)
 }
 
 pub(super) fn prefix(name: &Name, operate: &Operate, memory: &mut MassMemory) -> Result<(), Message> {
-    let operation = operation(operate, memory)?;
+    let operation = operation(name, operate, memory)?;
     Ok(memory.prefix(name, operation)?)
 }
 
 pub(super) fn follow(name: &Name, operate: &Operate, memory: &mut MassMemory) -> Result<(), Message> {
-    let operation = operation(operate, memory)?;
+    let operation = operation(name, operate, memory)?;
     Ok(memory.follow(name, operation)?)
 }
 

@@ -109,7 +109,7 @@ impl Message {
         let name = memory.title(node);
         let hint = memory.structures.node(node).and_then(|node| match fault {
             NodeFault::Kind { input, .. } => node.takes(input).map(|takes| format!("it takes {takes}")),
-            NodeFault::NoSuchInput { .. } => Some(inputs_of(node, &name)),
+            NodeFault::NoSuchInput { input } if node.takes(input).is_none() => Some(inputs_of(node, &name)),
             _ => None,
         });
         Message::Node { name, fault, hint: hint.map_or(String::new(), |hint| format!("; {hint}")) }

@@ -94,8 +94,10 @@ impl Interpreter {
     /// INCLUDE acts at once, so it cannot reach into the structure that is open; it would make other nodes instead.
     fn include(&self, name: &Name, into: &Name, memory: &mut MassMemory) -> Result<(), Message> {
         let defined = |name: &Name| memory.target(name).is_some_and(|id| memory.is_defined(id));
-        let inside = [name, into].into_iter().filter(|name| !defined(name)).find_map(|name| self.still_open(name));
-        inside.map_or_else(|| edit::include(name, into, memory), Err)
+        // A member that is to be included under its full name will be there when the structure is.
+        let named = self.structure.as_ref().and_then(|draft| draft.member(name)).filter(|full| full != name);
+        let inside = named.map(|_| name).into_iter().chain([into]).find(|name| !defined(name));
+        inside.and_then(|name| self.still_open(name)).map_or_else(|| edit::include(name, into, memory), Err)
     }
 
     fn try_execute(

@@ -175,7 +175,7 @@ mod tests {
             tokio::spawn(serve(Box::new(far), events));
             let (mut read, mut write) = tokio::io::split(near);
             write.write_all(b"top\nlines on\ntop\nlines off\ntop\n").await.unwrap();
-            let mut said = vec![0; 40];
+            let mut said = vec![0; 38];
             read.read_exact(&mut said).await.unwrap();
             String::from_utf8(said).unwrap()
         });

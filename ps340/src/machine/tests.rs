@@ -442,12 +442,11 @@ fn a_host_that_leaves_ends_the_begin_that_holds_the_picture_for_all() {
 
 #[test]
 fn a_name_that_is_not_known_is_told_with_the_one_that_was_meant() {
-    let mut machine = told("");
-    let said = tell(&mut machine, "CUBE := NIL; SEND 1 TO <1>CUEB; X := F:ADDD; DELETE DAILS;");
+    let machine = told("CUBE := NIL; SEND 1 TO <1>CUEB; X := F:ADDD; DELETE DAILS;");
     let expected = [
         "E 2 *** Name not found: CUEB; did you mean CUBE?",
         "E 2 *** Name not found: F:ADDD; did you mean F:ADD?",
         "E 2 *** Name not found: DAILS; did you mean DIALS?",
     ];
-    assert_eq!(said, expected);
+    assert_eq!(errors(&machine), expected);
 }

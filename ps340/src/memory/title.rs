@@ -7,7 +7,7 @@ use std::ops::Bound;
 
 /// Names that are compared with one that is not known.
 const COMPARED: usize = 4096;
-/// Shortest name for which another is proposed; shorter ones are all alike.
+/// Shortest last part of a name for which another is proposed; shorter ones are all alike.
 const SHORTEST: usize = 3;
 /// Structures in structures that a title looks through for one with a name.
 const DEPTH: usize = 64;
@@ -56,7 +56,8 @@ impl MassMemory {
         let letters = |text: &str| text.chars().filter(|c| !c.is_ascii_digit()).collect::<String>();
         let own = letters(name);
         let others = known.into_iter().filter(|known| letters(known) != own);
-        Some(nearest(name, others)?.to_owned()).filter(|_| name.len() >= SHORTEST)
+        let short = name.rsplit('.').next().is_some_and(|last| last.len() < SHORTEST);
+        Some(nearest(name, others)?.to_owned()).filter(|_| !short)
     }
 }
 
@@ -84,6 +85,8 @@ mod tests {
             ("T2", None),
             ("WHEEL18", None),
             ("AC", None),
+            ("ROBOT.ARN", Some("ROBOT.ARM")),
+            ("ROBOT.X", None),
             ("F:ADDD", Some("F:ADD")),
             ("PICTURE", None),
         ] {

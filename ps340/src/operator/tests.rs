@@ -144,8 +144,7 @@ fn functions_count_what_they_did() {
 
 #[test]
 fn clocks_and_devices_count_how_often_they_spoke() {
-    let clock =
-        "C := F:CLFRAMES; SEND FIX(2) TO <1>C; SEND FIX(1) TO <2>C; SEND TRUE TO <6>C; CONNECT C<1>:<1>DLABEL2;";
+    let clock = "C := F:CLFRAMES; SEND FIX(2) TO <1>C; SEND TRUE TO <3>C; SEND TRUE TO <4>C; SEND FIX(0) TO <5>C; SEND FIX(1) TO <6>C; CONNECT C<1>:<1>DLABEL2;";
     let text = format!("{CHAIN}{clock}");
     let said =
         replies(&text, &["count on", "dial 1 1", "frames 4", "dial 1 1", "frames 1", "counters dials", "counters c"]);
@@ -228,7 +227,7 @@ fn the_prompt_says_what_is_open() {
     assert_eq!(prompt("ROBOT := BEGIN_STRUCTURE"), "@@...>");
     assert_eq!(prompt("ARM := BEGIN_STRUCTURE NIL;"), "@@2 ROBOT.ARM>");
     assert_eq!(prompt("END_STRUCTURE;"), "@@1 ROBOT>");
-    assert_eq!(prompt("END_STRUCTURE; BEGIN NIL"), "@@BEGIN...>");
+    assert_eq!(prompt("END_STRUCTURE; BEGIN;"), "@@BEGIN>");
     assert_eq!(prompt("!RESET;"), "@@");
 }
 

@@ -110,7 +110,10 @@ fn include_and_remove_edit_instances_structures_and_what_is_not_there_yet() {
     assert_eq!(desk.picture(), [[0.5, 0.0], [0.5, 0.0], [0.75, 0.0]]);
     assert!(desk.tell("REMOVE D FROM A; REMOVE D FROM S; REMOVE D FROM S; REMOVE X FROM Y;").is_empty());
     assert_eq!(desk.picture(), [[0.5, 0.0]]);
-    assert_eq!(desk.tell("INCLUDE A IN D;"), ["E 4 *** D is no instance that could include A"]);
+    assert_eq!(
+        desk.tell("INCLUDE A IN D;"),
+        ["E 4 *** D is a VECTOR_LIST and cannot include A: only INSTANCE OF and structures can"]
+    );
 }
 
 #[test]

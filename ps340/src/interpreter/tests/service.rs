@@ -8,7 +8,12 @@ fn the_status_says_what_is_open() {
     let mut desk = told("A := BEGIN_STRUCTURE B := BEGIN_STRUCTURE BEGIN; BEGIN; OPTIMIZE STRUCTURE; CONFIGURE X;");
     let said = desk.tell("COMMAND STATUS;");
     assert!(said.iter().all(|line| line.starts_with("I 11 *** ")), "{said:?}");
-    for expected in ["2 BEGIN_STRUCTURE open: A, A.B", "2 BEGIN open", "OPTIMIZE STRUCTURE on", "configure mode on"] {
+    for expected in [
+        "2 BEGIN_STRUCTURE open: A, A.B",
+        "2 BEGIN open; the picture stands still until END",
+        "OPTIMIZE STRUCTURE on",
+        "configure mode on",
+    ] {
         assert!(said.iter().any(|line| line.ends_with(expected)), "{expected}: {said:?}");
     }
     desk.tell("!RESET;");

@@ -70,8 +70,14 @@ fn rendering_nodes_refuse_what_is_no_request() {
         assert_eq!(desk.tell(&command), ["E 6 *** Value out of range at <1>R"]);
     }
     assert_eq!(desk.tell("SEND '' TO <1>R;"), ["E 6 *** Value out of range at <1>R"]);
-    assert_eq!(desk.tell("SEND 1.5 TO <1>R;"), ["E 5 *** Bad message type at <1>R: real"]);
-    assert_eq!(desk.tell("SEND FIX(1) TO <2>R;"), ["E 5 *** Bad message type at <2>R: integer"]);
+    assert_eq!(
+        desk.tell("SEND 1.5 TO <1>R;"),
+        ["E 5 *** Bad message type at <1>R: real; it takes Boolean or integer or string"]
+    );
+    assert_eq!(
+        desk.tell("SEND FIX(1) TO <2>R;"),
+        ["E 5 *** Bad message type at <2>R: integer; it takes Boolean"]
+    );
 }
 
 #[test]
@@ -101,7 +107,7 @@ fn numbers_that_are_probably_not_meant_are_taken_with_a_warning() {
 
 #[test]
 fn a_fault_inside_a_structure_is_told_where_it_stands() {
-    let mut desk = told("S := BEGIN_STRUCTURE");
+    let mut desk = told("S := BEGIN_STRUCTURE NIL;");
     let said = desk.tell("FIELD_OF_VIEW 200;");
     assert!(
         said.len() == 1 && said[0].starts_with("E 6 *** Value out of range in a FIELD_OF_VIEW inside S: "),
