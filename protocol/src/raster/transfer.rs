@@ -18,6 +18,7 @@ pub fn linear_from_srgb(byte: u8) -> f32 {
 ///
 /// # Source
 /// IEC 61966-2-1.
+#[inline]
 pub fn srgb_from_linear(light: f32) -> u8 {
     let encoding = &*ENCODING;
     // The cast takes NaN to 0, and no threshold is passed by NaN.

@@ -332,9 +332,8 @@ impl Put for Bytes<'_> {
     fn put(&mut self, row: usize, column: usize, count: usize, [red, green, blue]: &[[f32; LANES]; 3]) {
         let start = 4 * (row * self.width + self.left + column);
         for (lane, pixel) in self.pixels[start..start + 4 * count].chunks_exact_mut(4).enumerate() {
-            let color = [red[lane], green[lane], blue[lane]];
-            let bytes = if color == [0.0; 3] { [0; 3] } else { color.map(srgb_from_linear) };
-            pixel.copy_from_slice(&[bytes[0], bytes[1], bytes[2], 255]);
+            let byte = |channel: &[f32; LANES]| srgb_from_linear(channel[lane]);
+            pixel.copy_from_slice(&[byte(red), byte(green), byte(blue), 255]);
         }
     }
 }
