@@ -378,11 +378,9 @@ impl<P: Put> Work for Exposing<'_, P> {
         for row in 0..self.put.rows() {
             for column in (0..self.put.across()).step_by(LANES) {
                 let mut colors = self.source.colors(row * STRIDE + column);
-                for lane in 0..LANES {
-                    let pixel = self.exposure.respond([colors[0][lane], colors[1][lane], colors[2][lane]]);
-                    for channel in 0..3 {
-                        colors[channel][lane] = pixel[channel];
-                    }
+                let [red, green, blue] = &mut colors;
+                for ((red, green), blue) in red.iter_mut().zip(green).zip(blue) {
+                    [*red, *green, *blue] = self.exposure.respond([*red, *green, *blue]);
                 }
                 self.put.put(row, column, LANES.min(self.put.across() - column), &colors);
             }

@@ -12,6 +12,8 @@ pub(super) const LANES: usize = 8;
 const SHORT: f64 = 0.25;
 /// Room for the places of a tile, and for two that are not counted.
 const PLACES: usize = TILE_HEIGHT * TILE_WIDTH / LANES + 2;
+/// What a row counts in a place of the list; more than its columns.
+const ROW: u16 = 256;
 /// Stands for the pixels per spot along a row where the direction makes them infinitely many.
 const ENDLESS: f32 = 1e9;
 
@@ -107,10 +109,11 @@ impl Track {
 
     #[inline(always)]
     fn fill<const GUNS: usize>(&self, planes: &mut [f32], profile: impl Profile) {
-        let mut places = [[0; 2]; PLACES];
+        let mut places = [0; PLACES];
         let count = self.places(&mut places);
-        for [y, column] in &places[..count] {
-            let (down, right) = (f32::from(*y), f32::from(*column));
+        for packed in &places[..count] {
+            let (y, column) = (usize::from(packed / ROW), usize::from(packed % ROW));
+            let (down, right) = (y as i32 as f32, column as i32 as f32);
             let lanes = Lanes {
                 u: right.mul_add(self.step[0], down.mul_add(self.step[1], self.u)),
                 rest: right.mul_add(-self.step[0], down.mul_add(-self.step[1], self.rest)),
@@ -118,7 +121,7 @@ impl Track {
                 step: self.step,
             };
             let light = lanes.light(&profile);
-            let place = usize::from(*y) * STRIDE + usize::from(*column);
+            let place = y * STRIDE + column;
             for gun in 0..GUNS {
                 // A single gun draws every colour alike.
                 let strength = if GUNS == 1 { 1.0 } else { self.color[gun] };
@@ -127,54 +130,68 @@ impl Track {
         }
     }
 
-    /// Notes row and column of the first of every eight pixels that light can reach; returns how many eights there are.
+    /// Notes row (times [`ROW`]) and column of the first of every eight pixels that light can reach; returns how many
+    /// eights there are.
     ///
     /// A list, because the processor can foresee the way through it, and not where in each row the light ends.
     #[inline(always)]
-    fn places(&self, places: &mut [[u8; 2]; PLACES]) -> usize {
-        let spans = self.spans();
+    fn places(&self, places: &mut [u16; PLACES]) -> usize {
+        let (firsts, eights) = self.spans();
         let mut count = 0;
-        for y in self.rows[0]..=self.rows[1] {
-            let (first, last) = (spans[0][y / LANES][y % LANES], spans[1][y / LANES][y % LANES]);
-            let eights = ((last - first + LANES as i32) / LANES as i32).max(0) as usize;
+        let rows = self.rows[0]..self.rows[1] + 1;
+        for (first, eights) in firsts[rows.clone()].iter().zip(&eights[rows]) {
             // Two are noted always, and counted if they are there.
-            let place = |eight: usize| [y as u8, (first as usize + eight * LANES) as u8];
-            places[count] = place(0);
-            places[count + 1] = place(1);
+            let Some([one, other]) = places[count..].first_chunk_mut() else { break };
+            (*one, *other) = (*first as u16, *first as u16 + LANES as u16);
+            let eights = *eights as usize;
             for eight in 2..eights {
-                places[count + eight] = place(eight);
+                places[count + eight] = *first as u16 + (eight * LANES) as u16;
             }
             count += eights;
         }
         count
     }
 
-    /// First and last column of each row that light can reach; the first is greater where it reaches none.
+    /// For each row of the tile where the light begins, as in [`Track::places`], and how many times eight pixels it
+    /// can reach.
     #[inline(always)]
-    fn spans(&self) -> [[[i32; LANES]; TILE_HEIGHT / LANES]; 2] {
+    fn spans(&self) -> ([i32; TILE_HEIGHT], [i32; TILE_HEIGHT]) {
         // -reach <= u + step[0] x <= length + reach, and -reach <= v - step[1] x <= reach.
         let width = |step: f32| if step.abs() > 1.0 / ENDLESS { step.recip() } else { ENDLESS };
         let (along, across) = (width(self.step[0]), width(self.step[1]));
-        let mut spans = [[[0; LANES]; TILE_HEIGHT / LANES]; 2];
-        let [firsts, lasts] = &mut spans;
-        for block in self.rows[0] / LANES..=self.rows[1] / LANES {
-            for lane in 0..LANES {
-                let down = (block * LANES + lane) as i32 as f32;
+        let (mut firsts, mut eights) = ([0; TILE_HEIGHT], [0; TILE_HEIGHT]);
+        for block in self.rows[0] / LANES..self.rows[1] / LANES + 1 {
+            let top = (block * LANES) as i32;
+            let (mut first, mut count) = ([0; LANES], [0; LANES]);
+            for (lane, (first, count)) in first.iter_mut().zip(&mut count).enumerate() {
+                let y = top + lane as i32;
+                let down = y as f32;
                 let u = down.mul_add(self.step[1], self.u);
                 let v = down.mul_add(self.step[0], self.v);
                 let (one, other) = ((-REACH - u) * along, (self.length + REACH - u) * along);
                 let (third, fourth) = ((v - REACH) * across, (v + REACH) * across);
                 let low = greater(lesser(one, other), lesser(third, fourth));
                 let high = lesser(greater(one, other), greater(third, fourth));
-                // Inwards to whole pixels, by cutting positive numbers.
-                let low = greater(lesser(low, TILE_WIDTH as f32), 0.0) + 0.999;
-                let high = greater(lesser(high, (TILE_WIDTH - 1) as f32), -1.0) + 1.0;
-                firsts[block][lane] = low as i32;
-                lasts[block][lane] = high as i32 - 1;
+                // Inwards to whole pixels.
+                let begin = whole(greater(lesser(low, TILE_WIDTH as f32), 0.0) + 0.499);
+                let end = whole(greater(lesser(high, (TILE_WIDTH - 1) as f32), -1.0) - 0.499);
+                let eights = (end - begin + LANES as i32) >> LANES.ilog2();
+                *first = y * i32::from(ROW) + begin;
+                *count = if eights > 0 { eights } else { 0 };
             }
+            firsts[block * LANES..][..LANES].copy_from_slice(&first);
+            eights[block * LANES..][..LANES].copy_from_slice(&count);
         }
-        spans
+        (firsts, eights)
     }
+}
+
+/// The whole number next to one that is much less than 2^22. One addition, unlike a cast.
+#[inline(always)]
+fn whole(x: f32) -> i32 {
+    /// 1.5 * 2^23: adding it rounds to a whole number and leaves that in the low bits.
+    const ROUND: f32 = 12_582_912.0;
+    (x + ROUND).to_bits() as i32 - ROUND.to_bits() as i32
 }
 
 /// Adds light to the first eight pixels of a plane.
