@@ -18,24 +18,24 @@ pub fn linear_from_srgb(byte: u8) -> f32 {
 ///
 /// # Source
 /// IEC 61966-2-1.
+#[inline]
 pub fn srgb_from_linear(light: f32) -> u8 {
     let encoding = &*ENCODING;
+    let light = light.clamp(0.0, 1.0);
     // The cast takes NaN to 0, and no threshold is passed by NaN.
-    let mut byte = encoding.starts[(light.clamp(0.0, 1.0) * STEPS as f32) as usize];
-    while encoding.thresholds.get(usize::from(byte)).is_some_and(|threshold| *threshold <= light) {
-        byte += 1;
-    }
-    byte
+    let start = encoding.starts[(light * STEPS as f32) as usize];
+    start + u8::from(encoding.thresholds[usize::from(start)] <= light)
 }
 
-/// Equal steps of light for which it is known where the search for a byte begins. Multiplying by this number is exact.
+/// Equal steps of light, each of which passes one threshold at most: they are 1/3295 apart where they are closest.
+/// Multiplying by this number is exact.
 const STEPS: usize = 4096;
 
 /// What finds the byte of a light.
 struct Encoding {
-    /// Light of every half step between two bytes, rising.
-    thresholds: [f32; 255],
-    /// How many thresholds the beginning of each step passes: at most one or two are left to pass.
+    /// Light of every half step between two bytes, rising; the last is never passed.
+    thresholds: [f32; 256],
+    /// How many thresholds the beginning of each step passes.
     starts: [u8; STEPS + 1],
 }
 
@@ -43,8 +43,9 @@ struct Encoding {
 static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| decode(byte as f64 / 255.0)));
 
 static ENCODING: LazyLock<Encoding> = LazyLock::new(|| {
-    let thresholds = std::array::from_fn(|byte| decode((byte as f64 + 0.5) / 255.0));
-    let passed = |light: f32| thresholds.partition_point(|threshold: &f32| *threshold <= light);
+    let half_step = |byte: usize| if byte < 255 { decode((byte as f64 + 0.5) / 255.0) } else { f32::INFINITY };
+    let thresholds: [f32; 256] = std::array::from_fn(half_step);
+    let passed = |light: f32| thresholds.partition_point(|threshold| *threshold <= light);
     // At most 255 thresholds are passed, so that the count fits a byte.
     Encoding { thresholds, starts: std::array::from_fn(|step| passed(step as f32 / STEPS as f32) as u8) }
 });
@@ -81,5 +82,14 @@ mod tests {
     fn light_out_of_range_is_clamped() {
         let bytes = [f32::NAN, f32::NEG_INFINITY, -1.0, 0.0, 1.0, 9.0, f32::INFINITY].map(srgb_from_linear);
         assert_eq!(bytes, [0, 0, 0, 0, 255, 255, 255]);
+    }
+
+    #[test]
+    fn every_byte_begins_exactly_at_its_half_step() {
+        for byte in 1..=255_u8 {
+            let threshold = decode((f64::from(byte) - 0.5) / 255.0);
+            assert_eq!(srgb_from_linear(threshold), byte);
+            assert_eq!(srgb_from_linear(threshold.next_down()), byte - 1);
+        }
     }
 }

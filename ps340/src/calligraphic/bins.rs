@@ -6,7 +6,11 @@ use crate::traversal::Stroke;
 use rayon::prelude::*;
 
 /// Strokes that one task sorts. It has no influence on the light.
-const CHUNK: usize = 4096;
+const CHUNK: usize = 2048;
+/// Strokes that are looked at together. It has no influence on the light.
+const BLOCK: usize = 1 << 17;
+/// Strokes in all tiles together that are kept at a time: a bound on memory. It has no influence on the light.
+const MOST: usize = 1 << 21;
 
 /// The strokes of each tile. The room is kept from picture to picture.
 #[derive(Clone, Debug, Default)]
@@ -18,70 +22,80 @@ pub(super) struct Bins {
 /// The same for some neighbouring strokes.
 #[derive(Clone, Debug, Default)]
 struct Chunk {
-    /// Index of the first stroke.
-    first: usize,
     /// First and last column and row of tiles that each stroke touches; none where the first is greater.
     touched: Vec<[[u16; 2]; 2]>,
     /// Where the members of each tile begin in `members`; one entry more than tiles.
     starts: Vec<u32>,
-    /// Indices of strokes, tile after tile.
-    members: Vec<u32>,
+    /// Strokes, tile after tile: copies, so that a tile finds its own side by side.
+    members: Vec<Stroke>,
 }
 
 impl Bins {
-    /// Sorts strokes into `columns` by `rows` tiles.
-    pub fn sort(&mut self, optics: &Optics, strokes: &[Stroke], [columns, rows]: [usize; 2]) {
-        self.used = strokes.len().div_ceil(CHUNK);
-        if self.chunks.len() < self.used {
-            self.chunks.resize_with(self.used, Chunk::default);
+    /// Sorts strokes, from the first on, into `columns` by `rows` tiles. Returns how many it took: as many as fit.
+    pub fn sort(&mut self, optics: &Optics, strokes: &[Stroke], [columns, rows]: [usize; 2]) -> usize {
+        let strokes = &strokes[..strokes.len().min(BLOCK)];
+        let wanted = strokes.len().div_ceil(CHUNK);
+        if self.chunks.len() < wanted {
+            self.chunks.resize_with(wanted, Chunk::default);
         }
-        let chunks = self.chunks.par_iter_mut().zip(strokes.par_chunks(CHUNK)).enumerate();
-        chunks.for_each(|(index, (chunk, strokes))| {
-            chunk.first = index * CHUNK;
-            chunk.sort(optics, strokes, columns, rows);
-        });
+        let chunks = self.chunks.par_iter_mut().zip(strokes.par_chunks(CHUNK));
+        chunks.for_each(|(chunk, strokes)| chunk.count(optics, strokes, columns, rows));
+        let mut room = MOST;
+        let fits = |chunk: &&Chunk| {
+            let left = room.checked_sub(chunk.total());
+            room = left.unwrap_or(0);
+            left.is_some()
+        };
+        self.used = self.chunks[..wanted].iter().take_while(fits).count().max(wanted.min(1));
+        let chunks = self.chunks[..self.used].par_iter_mut().zip(strokes.par_chunks(CHUNK));
+        chunks.for_each(|(chunk, strokes)| chunk.fill(optics, strokes, columns));
+        strokes.len().min(self.used * CHUNK)
     }
 
-    /// The indices of the strokes that touch a tile.
-    pub fn members(&self, tile: usize) -> impl Iterator<Item = usize> {
-        self.chunks[..self.used].iter().flat_map(move |chunk| {
-            let members = &chunk.members[chunk.starts[tile] as usize..chunk.starts[tile + 1] as usize];
-            members.iter().map(|member| *member as usize)
-        })
+    /// The strokes that touch a tile.
+    pub fn members(&self, tile: usize) -> impl Iterator<Item = &[Stroke]> {
+        let range = move |chunk: &Chunk| chunk.starts[tile] as usize..chunk.starts[tile + 1] as usize;
+        self.chunks[..self.used].iter().map(move |chunk| &chunk.members[range(chunk)])
     }
 }
 
 impl Chunk {
-    /// Sorts by counting.
-    fn sort(&mut self, optics: &Optics, strokes: &[Stroke], columns: usize, rows: usize) {
+    /// Strokes in all tiles together, after [`Chunk::count`].
+    fn total(&self) -> usize {
+        self.starts.last().map_or(0, |total| *total as usize)
+    }
+
+    /// Counts the strokes of each tile.
+    fn count(&mut self, optics: &Optics, strokes: &[Stroke], columns: usize, rows: usize) {
         let tiles = |[low, high]: [usize; 2], size: usize| [(low / size) as u16, (high / size) as u16];
-        self.touched.clear();
-        self.touched.extend(strokes.iter().map(|stroke| match optics.touched(stroke) {
+        let Self { touched, starts, .. } = self;
+        touched.clear();
+        touched.extend(strokes.iter().map(|stroke| match optics.touched(stroke) {
             Some([x, y]) => [tiles(x, TILE_WIDTH), tiles(y, TILE_HEIGHT)],
             None => [[1, 0]; 2],
         }));
-        let Self { first, touched, starts, members } = self;
         starts.clear();
         starts.resize(columns * rows + 1, 0);
-        let mut total = 0;
-        for (stroke, touched) in strokes.iter().zip(&*touched) {
-            each_tile(optics, stroke, touched, columns, |tile| {
-                starts[tile] += 1;
-                total += 1;
-            });
+        for (stroke, touched) in strokes.iter().zip(touched) {
+            each_tile(optics, stroke, touched, columns, |tile| starts[tile] += 1);
         }
         // From counts to the ends of the bins; filling from the last stroke on makes the ends beginnings.
         let mut end = 0;
-        for start in starts.iter_mut() {
+        for start in starts {
             end += *start;
             *start = end;
         }
-        members.clear();
-        members.resize(total, 0);
-        for (index, (stroke, touched)) in strokes.iter().zip(&*touched).enumerate().rev() {
+    }
+
+    /// Copies the strokes to their tiles.
+    fn fill(&mut self, optics: &Optics, strokes: &[Stroke], columns: usize) {
+        let total = self.total();
+        let Self { touched, starts, members } = self;
+        members.resize(total, Stroke::default());
+        for (stroke, touched) in strokes.iter().zip(touched).rev() {
             each_tile(optics, stroke, touched, columns, |tile| {
                 starts[tile] -= 1;
-                members[starts[tile] as usize] = (*first + index) as u32;
+                members[starts[tile] as usize] = *stroke;
             });
         }
     }

@@ -308,6 +308,8 @@ trait Put {
     fn across(&self) -> usize;
     /// Takes some pixels, red, green and blue, of a row from a column on.
     fn put(&mut self, row: usize, column: usize, count: usize, pixels: &[[f32; LANES]; 3]);
+    /// Makes some pixels black.
+    fn black(&mut self, row: usize, column: usize, count: usize);
 }
 
 /// Bytes of sRGB with 255 as the fourth.
@@ -332,10 +334,15 @@ impl Put for Bytes<'_> {
     fn put(&mut self, row: usize, column: usize, count: usize, [red, green, blue]: &[[f32; LANES]; 3]) {
         let start = 4 * (row * self.width + self.left + column);
         for (lane, pixel) in self.pixels[start..start + 4 * count].chunks_exact_mut(4).enumerate() {
-            let color = [red[lane], green[lane], blue[lane]];
-            let bytes = if color == [0.0; 3] { [0; 3] } else { color.map(srgb_from_linear) };
-            pixel.copy_from_slice(&[bytes[0], bytes[1], bytes[2], 255]);
+            let byte = |channel: &[f32; LANES]| srgb_from_linear(channel[lane]);
+            pixel.copy_from_slice(&[byte(red), byte(green), byte(blue), 255]);
         }
+    }
+
+    #[inline(always)]
+    fn black(&mut self, row: usize, column: usize, count: usize) {
+        let start = 4 * (row * self.width + self.left + column);
+        self.pixels[start..start + 4 * count].copy_from_slice(&[[0, 0, 0, 255]; LANES].as_flattened()[..4 * count]);
     }
 }
 
@@ -364,6 +371,12 @@ impl Put for Floats<'_> {
             *pixel = [red[lane], green[lane], blue[lane]];
         }
     }
+
+    #[inline(always)]
+    fn black(&mut self, row: usize, column: usize, count: usize) {
+        let start = row * self.width + self.left + column;
+        self.pixels[start..start + count].fill([0.0; 3]);
+    }
 }
 
 /// Making pixels of the light of a tile.
@@ -378,14 +391,18 @@ impl<P: Put> Work for Exposing<'_, P> {
     fn run(mut self) {
         for row in 0..self.put.rows() {
             for column in (0..self.put.across()).step_by(LANES) {
+                let count = LANES.min(self.put.across() - column);
                 let mut colors = self.source.colors(row * STRIDE + column);
-                for lane in 0..LANES {
-                    let pixel = self.exposure.respond([colors[0][lane], colors[1][lane], colors[2][lane]]);
-                    for channel in 0..3 {
-                        colors[channel][lane] = pixel[channel];
-                    }
+                // Most of a tile is dark as a rule.
+                if colors.as_flattened().iter().fold(0, |bits, color| bits | color.to_bits()) == 0 {
+                    self.put.black(row, column, count);
+                    continue;
                 }
-                self.put.put(row, column, LANES.min(self.put.across() - column), &colors);
+                let [red, green, blue] = &mut colors;
+                for ((red, green), blue) in red.iter_mut().zip(green).zip(blue) {
+                    [*red, *green, *blue] = self.exposure.respond([*red, *green, *blue]);
+                }
+                self.put.put(row, column, count, &colors);
             }
         }
     }

@@ -35,11 +35,12 @@ impl Exposure {
     #[inline(always)]
     pub fn respond(&self, light: [f32; 3]) -> [f32; 3] {
         // Written so that NaN becomes 0.
-        let light = light.map(|channel| lesser(greater(channel, 0.0), BLINDING));
+        let bounded = |channel: f32| lesser(greater(channel, 0.0), BLINDING);
+        let light = [bounded(light[0]), bounded(light[1]), bounded(light[2])];
         let strongest = greater(greater(light[0], light[1]), light[2]);
         let gain = greater(self.gain, 0.0);
         let scale = gain * saturation(gain * strongest);
-        light.map(|channel| lesser(channel * scale, 1.0))
+        [lesser(light[0] * scale, 1.0), lesser(light[1] * scale, 1.0), lesser(light[2] * scale, 1.0)]
     }
 }
 

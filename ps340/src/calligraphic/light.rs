@@ -15,8 +15,6 @@ pub(super) const TILE_HEIGHT: usize = 32;
 pub(super) const STRIDE: usize = TILE_WIDTH + LANES;
 /// Floats of a plane of a tile.
 pub(super) const PLANE: usize = STRIDE * TILE_HEIGHT;
-/// Strokes that are sorted into tiles at a time: a bound on memory. It has no influence on the light.
-const BLOCK: usize = 1 << 17;
 
 /// Light per pixel; 1 is the centre of a long stroke of intensity 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,12 +112,14 @@ impl Light {
     pub(super) fn write(&mut self, bins: &mut Bins, strokes: &[Stroke]) {
         self.tiles.par_iter_mut().for_each(|tile| tile.lit = false);
         let (optics, guns, extent) = (self.optics, self.guns, tiles(self.optics.size));
-        for block in strokes.chunks(BLOCK) {
-            bins.sort(&optics, block, extent);
+        let mut rest = strokes;
+        while !rest.is_empty() {
+            let taken = bins.sort(&optics, rest, extent);
+            rest = &rest[taken..];
             let bins = &*bins;
             self.tiles.par_iter_mut().enumerate().for_each(|(index, tile)| {
                 let corner = [index % extent[0] * TILE_WIDTH, index / extent[0] * TILE_HEIGHT];
-                widest::run(Writing { optics: &optics, guns, corner, strokes: block, bins, index, tile });
+                widest::run(Writing { optics: &optics, guns, corner, bins, index, tile });
             });
         }
     }
@@ -136,7 +136,6 @@ pub(super) struct Writing<'a> {
     pub guns: usize,
     /// The first pixel of the tile.
     pub corner: [usize; 2],
-    pub strokes: &'a [Stroke],
     pub bins: &'a Bins,
     /// Of the tile.
     pub index: usize,
@@ -146,16 +145,17 @@ pub(super) struct Writing<'a> {
 impl Work for Writing<'_> {
     #[inline(always)]
     fn run(self) {
-        for member in self.bins.members(self.index) {
-            let Some(track) = Track::new(self.optics, &self.strokes[member], self.corner) else { continue };
-            if !self.tile.lit {
-                self.tile.lit = true;
-                self.tile.planes.clear();
-                self.tile.planes.resize(self.guns * PLANE, 0.0);
+        let Self { optics, guns, corner, bins, index, tile } = self;
+        for stroke in bins.members(index).flatten() {
+            let Some(track) = Track::new(optics, stroke, corner) else { continue };
+            if !tile.lit {
+                tile.lit = true;
+                tile.planes.clear();
+                tile.planes.resize(guns * PLANE, 0.0);
             }
-            match self.guns {
-                1 => track.write::<1>(&mut self.tile.planes),
-                _ => track.write::<3>(&mut self.tile.planes),
+            match guns {
+                1 => track.write::<1>(&mut tile.planes),
+                _ => track.write::<3>(&mut tile.planes),
             }
         }
     }

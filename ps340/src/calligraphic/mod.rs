@@ -59,7 +59,7 @@ use optics::Optics;
 /// Smallest standard deviation of the spot, in pixels.
 pub const SPOT_FLOOR: f64 = 0.75;
 /// Largest standard deviation of the spot, in screen units.
-pub const SPOT_CEILING: f64 = 0.25;
+pub const SPOT_CEILING: f64 = 0.02;
 /// Largest width and height of a picture, in pixels.
 pub const MAX_SIZE: u32 = 8192;
 /// Farthest coordinate of a stroke that is drawn, in screen units.

@@ -54,13 +54,15 @@ impl Optics {
     /// Where the beam goes for a stroke; `None` if it stays dark, or the stroke is not finite or too far away.
     #[inline(always)]
     pub fn beam(&self, stroke: &Stroke) -> Option<Deflection> {
-        let drawable = [stroke.start, stroke.end].iter().flatten().all(|place| place.abs() <= FAR)
-            && stroke.intensity.iter().chain(&stroke.color).all(|part| part.is_finite());
-        if !drawable {
+        let near = |[x, y]: [f32; 2]| x.abs() <= FAR && y.abs() <= FAR;
+        let [red, green, blue] = stroke.color;
+        let all = stroke.intensity[0].is_finite() & stroke.intensity[1].is_finite();
+        let finite = all & red.is_finite() & green.is_finite() & blue.is_finite();
+        if !(near(stroke.start) && near(stroke.end) && finite) {
             return None;
         }
         let (mut start, mut end) = (self.place(stroke.start), self.place(stroke.end));
-        let [mut first, mut last] = stroke.intensity.map(|intensity| self.current(intensity));
+        let (mut first, mut last) = (self.current(stroke.intensity[0]), self.current(stroke.intensity[1]));
         if first <= 0.0 && last <= 0.0 {
             return None;
         }

@@ -200,7 +200,7 @@ fn wide_and_plain_instructions_give_the_same_bits() {
     let columns = plain.columns();
     for (index, tile) in plain.tiles.iter_mut().enumerate() {
         let corner = [index % columns * light::TILE_WIDTH, index / columns * light::TILE_HEIGHT];
-        let writing = light::Writing { optics: &optics, guns: 3, corner, strokes: &strokes, bins: &bins, index, tile };
+        let writing = light::Writing { optics: &optics, guns: 3, corner, bins: &bins, index, tile };
         widest::Work::run(writing);
     }
     assert!(plain.total()[0] > 0.0);

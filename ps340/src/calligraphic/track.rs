@@ -1,6 +1,6 @@
 //! One stroke on its way over the pixels of a tile.
 
-use super::light::{STRIDE, TILE_HEIGHT, TILE_WIDTH};
+use super::light::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH};
 use super::optics::Optics;
 use super::spot::{self, REACH, greater, lesser};
 use crate::traversal::Stroke;
@@ -10,6 +10,10 @@ pub(super) const LANES: usize = 8;
 /// Below this length, in spots, a stroke is the moments of its current around its middle: the difference of
 /// two error functions would be all rounding. The first term left out is 1e-7 of the stroke's light here.
 const SHORT: f64 = 0.25;
+/// Room for the places of a tile, and for two that are not counted.
+const PLACES: usize = TILE_HEIGHT * TILE_WIDTH / LANES + 2;
+/// What a row counts in a place of the list; more than its columns.
+const ROW: u16 = 256;
 /// Stands for the pixels per spot along a row where the direction makes them infinitely many.
 const ENDLESS: f32 = 1e9;
 
@@ -78,14 +82,15 @@ impl Track {
         if last_row < 0.0 || first_row > (TILE_HEIGHT - 1) as f64 {
             return None;
         }
+        let color = |gun: usize| lesser(greater(stroke.color[gun], 0.0), super::STRONGEST);
         Some(Self {
             u: u as f32,
             rest: (length - u) as f32,
             v: v as f32,
-            step: step.map(|step| step as f32),
+            step: [step[0] as f32, step[1] as f32],
             length: length as f32,
             current,
-            color: stroke.color.map(|part| part.clamp(0.0, super::STRONGEST)),
+            color: [color(0), color(1), color(2)],
             rows: [first_row.max(0.0) as usize, last_row.min((TILE_HEIGHT - 1) as f64) as usize],
         })
     }
@@ -104,55 +109,89 @@ impl Track {
 
     #[inline(always)]
     fn fill<const GUNS: usize>(&self, planes: &mut [f32], profile: impl Profile) {
-        let (firsts, lasts) = self.columns();
-        for y in self.rows[0]..=self.rows[1] {
-            let (mut column, last) = (firsts[y], lasts[y]);
-            let down = y as f32;
-            let row = Lanes {
-                u: down.mul_add(self.step[1], self.u),
-                rest: down.mul_add(-self.step[1], self.rest),
-                v: down.mul_add(self.step[0], self.v),
+        let mut places = [0; PLACES];
+        let count = self.places(&mut places);
+        for packed in &places[..count] {
+            let (y, column) = (usize::from(packed / ROW), usize::from(packed % ROW));
+            let (down, right) = (y as i32 as f32, column as i32 as f32);
+            let lanes = Lanes {
+                u: right.mul_add(self.step[0], down.mul_add(self.step[1], self.u)),
+                rest: right.mul_add(-self.step[0], down.mul_add(-self.step[1], self.rest)),
+                v: right.mul_add(-self.step[1], down.mul_add(self.step[0], self.v)),
                 step: self.step,
             };
-            while column <= last {
-                let light = row.light(column as f32, &profile);
-                let place = y * STRIDE + column as usize;
-                for gun in 0..GUNS {
-                    // A single gun draws every colour alike.
-                    let strength = if GUNS == 1 { 1.0 } else { self.color[gun] };
-                    add(&light, strength, &mut planes[gun * TILE_HEIGHT * STRIDE + place..]);
-                }
-                column += LANES as i32;
+            let light = lanes.light(&profile);
+            let place = y * STRIDE + column;
+            for gun in 0..GUNS {
+                // A single gun draws every colour alike.
+                let strength = if GUNS == 1 { 1.0 } else { self.color[gun] };
+                add(&light, strength, &mut planes[gun * PLANE + place..]);
             }
         }
     }
 
-    /// First and last column of each row that light can reach; the first is greater where it reaches none.
+    /// Notes row (times [`ROW`]) and column of the first of every eight pixels that light can reach; returns how many
+    /// eights there are.
+    ///
+    /// A list, because the processor can foresee the way through it, and not where in each row the light ends.
     #[inline(always)]
-    fn columns(&self) -> ([i32; TILE_HEIGHT], [i32; TILE_HEIGHT]) {
+    fn places(&self, places: &mut [u16; PLACES]) -> usize {
+        let (firsts, eights) = self.spans();
+        let mut count = 0;
+        let rows = self.rows[0]..self.rows[1] + 1;
+        for (first, eights) in firsts[rows.clone()].iter().zip(&eights[rows]) {
+            // Two are noted always, and counted if they are there.
+            let Some([one, other]) = places[count..].first_chunk_mut() else { break };
+            (*one, *other) = (*first as u16, *first as u16 + LANES as u16);
+            let eights = *eights as usize;
+            for eight in 2..eights {
+                places[count + eight] = *first as u16 + (eight * LANES) as u16;
+            }
+            count += eights;
+        }
+        count
+    }
+
+    /// For each row of the tile where the light begins, as in [`Track::places`], and how many times eight pixels it
+    /// can reach.
+    #[inline(always)]
+    fn spans(&self) -> ([i32; TILE_HEIGHT], [i32; TILE_HEIGHT]) {
         // -reach <= u + step[0] x <= length + reach, and -reach <= v - step[1] x <= reach.
         let width = |step: f32| if step.abs() > 1.0 / ENDLESS { step.recip() } else { ENDLESS };
         let (along, across) = (width(self.step[0]), width(self.step[1]));
-        let (mut firsts, mut lasts) = ([0; TILE_HEIGHT], [0; TILE_HEIGHT]);
-        // The rows of whole lanes, so that the compiler can work on several at once.
-        let begin = self.rows[0] / LANES * LANES;
-        let end = (self.rows[1] / LANES + 1) * LANES;
-        for start in (begin..end).step_by(LANES) {
-            for y in start..start + LANES {
+        let (mut firsts, mut eights) = ([0; TILE_HEIGHT], [0; TILE_HEIGHT]);
+        for block in self.rows[0] / LANES..self.rows[1] / LANES + 1 {
+            let top = (block * LANES) as i32;
+            let (mut first, mut count) = ([0; LANES], [0; LANES]);
+            for (lane, (first, count)) in first.iter_mut().zip(&mut count).enumerate() {
+                let y = top + lane as i32;
                 let down = y as f32;
                 let u = down.mul_add(self.step[1], self.u);
                 let v = down.mul_add(self.step[0], self.v);
                 let (one, other) = ((-REACH - u) * along, (self.length + REACH - u) * along);
                 let (third, fourth) = ((v - REACH) * across, (v + REACH) * across);
-                let low = greater(greater(lesser(one, other), lesser(third, fourth)), 0.0);
-                let high = lesser(lesser(greater(one, other), greater(third, fourth)), (TILE_WIDTH - 1) as f32);
-                // Inwards to whole pixels; low is cut to be a number that fits.
-                firsts[y] = (lesser(low, TILE_WIDTH as f32) + 0.999) as i32;
-                lasts[y] = greater(high, -1.0) as i32 - i32::from(high < 0.0);
+                let low = greater(lesser(one, other), lesser(third, fourth));
+                let high = lesser(greater(one, other), greater(third, fourth));
+                // Inwards to whole pixels.
+                let begin = whole(greater(lesser(low, TILE_WIDTH as f32), 0.0) + 0.499);
+                let end = whole(greater(lesser(high, (TILE_WIDTH - 1) as f32), -1.0) - 0.499);
+                let eights = (end - begin + LANES as i32) >> LANES.ilog2();
+                *first = y * i32::from(ROW) + begin;
+                *count = if eights > 0 { eights } else { 0 };
             }
+            firsts[block * LANES..][..LANES].copy_from_slice(&first);
+            eights[block * LANES..][..LANES].copy_from_slice(&count);
         }
-        (firsts, lasts)
+        (firsts, eights)
     }
+}
+
+/// The whole number next to one that is much less than 2^22. One addition, unlike a cast.
+#[inline(always)]
+fn whole(x: f32) -> i32 {
+    /// 1.5 * 2^23: adding it rounds to a whole number and leaves that in the low bits.
+    const ROUND: f32 = 12_582_912.0;
+    (x + ROUND).to_bits() as i32 - ROUND.to_bits() as i32
 }
 
 /// Adds light to the first eight pixels of a plane.
@@ -251,7 +290,7 @@ impl Profile for EvenLong {
     }
 }
 
-/// Where a row of pixels lies, seen from its first one.
+/// Where eight neighbouring pixels lie, seen from the first one.
 struct Lanes {
     /// In spots: distance from the start, from the end (both positive inside), and across.
     u: f32,
@@ -262,12 +301,12 @@ struct Lanes {
 }
 
 impl Lanes {
-    /// Light of eight neighbouring pixels, the first of which is in a column.
+    /// Light of each pixel.
     #[inline(always)]
-    fn light(&self, column: f32, profile: &impl Profile) -> [f32; LANES] {
+    fn light(&self, profile: &impl Profile) -> [f32; LANES] {
         let mut lights = [0.0; LANES];
         for (lane, value) in lights.iter_mut().enumerate() {
-            let right = column + lane as f32;
+            let right = lane as f32;
             *value = profile.light(
                 right.mul_add(self.step[0], self.u),
                 right.mul_add(-self.step[0], self.rest),
