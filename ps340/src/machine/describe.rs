@@ -186,6 +186,9 @@ fn values(operation: &Operation) -> String {
         Operation::BlinkRate(frames) => frames.to_string(),
         Operation::Priority(priority) => priority.to_string(),
         Operation::LineTexture { texture, .. } => texture.to_string(),
+        Operation::Rendering { rendered: Some(rendered), .. } => {
+            if rendered.shown { "shows its rendering" } else { "shows the original, has a rendering" }.into()
+        }
         Operation::Font(_)
         | Operation::ChangeLevelOfDetail(_)
         | Operation::XformMatrix

@@ -46,7 +46,7 @@ impl MassMemory {
     /// # Errors
     /// [`Refusal::Full`]; the node is then as before.
     pub fn set_rendered(&mut self, node: ObjectId, members: Vec<Member>) -> Result<(), Refusal> {
-        if self.bytes() + Node::Group(members.clone()).bytes() > super::MASS_MEMORY {
+        if self.bytes() + members.iter().map(Member::bytes).sum::<usize>() > super::MASS_MEMORY {
             return Err(Refusal::Full);
         }
         self.structures.set_rendered(node, members);

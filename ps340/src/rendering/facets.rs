@@ -6,7 +6,7 @@
 //! Faces with coordinates that are not finite are left out.
 //!
 //! # Cost
-//! Time and memory grow with the number of corners; about 300 bytes each.
+//! Time and memory grow with the number of corners: about 300 bytes each, and as much again while a rendering is made.
 
 use super::{
     RenderingFault,
@@ -27,8 +27,9 @@ use std::{
 
 /// Bytes of working storage that a rendering takes for a vertex: what a client reserves.
 pub const BYTES_PER_VERTEX: u64 = 50;
-/// Most vertices that are rendered together, so that a rendering begins in about a second. Ours.
-pub const MAX_VERTICES: usize = 4_000_000;
+/// Most vertices that are rendered together, so that a rendering begins within half a second and takes less than a
+/// gigabyte. Ours.
+pub const MAX_VERTICES: usize = 1_000_000;
 
 /// A point where corners of polygons meet.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +90,8 @@ pub struct Edge {
     pub ends: [u32; 2],
     /// The first two faces at it; the same face may be both.
     pub faces: [Option<u32>; 2],
+    /// The corners of these faces at its ends.
+    pub corners: [[u32; 2]; 2],
     /// How many contours run along it from the first end to the second, and back.
     pub uses: [u32; 2],
     /// Whether all polygons at it say that it is soft.
@@ -323,25 +326,29 @@ impl Builder {
 
     fn contour_edges(&mut self, begin: usize, polygon: &Polygon, face: u32, color: [f64; 2]) {
         let end = self.facets.corners.len();
-        let mut from = self.facets.corners[end - 1].point;
+        let mut before = end - 1;
         for (corner, vertex) in (begin..end).zip(&polygon.vertices) {
-            let to = self.facets.corners[corner].point;
+            let [from, to] = [before, corner].map(|corner| self.facets.corners[corner].point);
+            let mut corners = [before as u32, corner as u32];
             let ends = [from.min(to), from.max(to)];
             let direction = usize::from(from > to);
-            from = to;
+            if from > to {
+                corners.reverse();
+            }
+            before = corner;
             if ends[0] == ends[1] {
                 continue;
             }
             let edges = &mut self.facets.edges;
             let number = *self.edges.entry(ends).or_insert_with(|| {
-                edges.push(Edge { ends, faces: [None; 2], uses: [0; 2], soft: true, color });
+                edges.push(Edge { ends, faces: [None; 2], corners: [[0; 2]; 2], uses: [0; 2], soft: true, color });
                 edges.len() as u32 - 1
             });
             let edge = &mut edges[number as usize];
             edge.uses[direction] += 1;
             edge.soft &= vertex.soft;
-            if let Some(place) = edge.faces.iter_mut().find(|place| place.is_none()) {
-                *place = Some(face);
+            if let Some(place) = edge.faces.iter().position(Option::is_none) {
+                (edge.faces[place], edge.corners[place]) = (Some(face), corners);
             }
         }
     }

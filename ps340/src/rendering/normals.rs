@@ -1,6 +1,6 @@
 //! Normals at the corners of faces, for smooth shading.
 
-use super::{Facets, facets::Face};
+use super::Facets;
 use glam::DVec3;
 
 /// The normal of each corner, of length 1, towards the front of its face.
@@ -14,14 +14,9 @@ use glam::DVec3;
 pub fn corner_normals(facets: &Facets) -> Vec<DVec3> {
     let mut groups = Groups((0..facets.corners.len() as u32).collect());
     for edge in facets.edges.iter().filter(|edge| edge.soft && edge.uses == [1, 1]) {
-        let [Some(first), Some(second)] = edge.faces.map(|face| face.map(|face| &facets.faces[face as usize])) else {
-            continue;
-        };
-        for end in edge.ends {
-            if let (Some(a), Some(b)) = (corner_at(facets, first, end), corner_at(facets, second, end)) {
-                groups.join(a, b);
-            }
-        }
+        let [first, second] = edge.corners;
+        groups.join(first[0], second[0]);
+        groups.join(first[1], second[1]);
     }
     let mut sums = vec![DVec3::ZERO; facets.corners.len()];
     for face in &facets.faces {
@@ -44,10 +39,6 @@ pub fn corner_normals(facets: &Facets) -> Vec<DVec3> {
         None => sums[groups.root(corner as u32) as usize].normalize_or(face.normal),
     });
     normals.collect()
-}
-
-fn corner_at(facets: &Facets, face: &Face, point: u32) -> Option<u32> {
-    face.corners.clone().find(|corner| facets.corners[*corner].point == point).map(|corner| corner as u32)
 }
 
 /// Which corners share a normal: a forest in which each tree is a group.

@@ -15,7 +15,7 @@ use robust::{Coord, orient2d};
 use std::ops::Range;
 
 /// Most corners of a polygon with all its contours; the corners beyond are left unfilled. Ours.
-pub const MAX_CORNERS: usize = 5_000;
+pub const MAX_CORNERS: usize = 3_000;
 
 /// The triangles of a polygon, as indices into `corners`, each running the way the outer contours run.
 ///
@@ -186,9 +186,11 @@ fn clip_ears(flat: &[DVec2], corners: Vec<u32>, forward: bool, triangles: &mut V
             || refused > left
             || !reflex[b] && {
                 let (pa, pb, pc) = (at(a), at(b), at(c));
+                let (low, high) = (pa.min(pb).min(pc), pa.max(pb).max(pc));
                 !hollow.iter().any(|&other| {
                     let p = at(other);
                     reflex[other]
+                        && (p.cmpge(low) & p.cmple(high)).all()
                         && (p != pa && p != pb && p != pc)
                         && turn(pa, pb, p) >= 0.0
                         && turn(pb, pc, p) >= 0.0

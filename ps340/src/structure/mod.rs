@@ -216,11 +216,12 @@ impl Structures {
     /// Gives a rendering node a rendering in vectors, which it shows in the place of the original. Harmless for other
     /// nodes.
     pub fn set_rendered(&mut self, id: ObjectId, members: Vec<Member>) {
-        let bytes = node::members_bytes(&members);
+        let size = |members: &[Member]| members.iter().map(Member::bytes).sum::<usize>();
+        let bytes = size(&members);
         if let Some(Node::Operate { operation: Operation::Rendering { rendered, .. }, .. }) = self.node_mut(id) {
             let before = rendered.replace(Box::new(Rendered { members, shown: true }));
             self.bytes += bytes;
-            self.bytes -= before.map_or(0, |before| node::members_bytes(&before.members));
+            self.bytes -= before.map_or(0, |before| size(&before.members));
             self.version += 1;
         }
     }

@@ -105,9 +105,11 @@ pub enum Member {
     Included(ObjectId),
 }
 
-/// What members of a structure take, in bytes.
-pub(super) fn members_bytes(members: &[Member]) -> usize {
-    members.iter().map(|m| MEMBER_BYTES + if let Member::Unnamed(n) = m { n.bytes() } else { 0 }).sum()
+impl Member {
+    /// The memory that it takes, in bytes, without that of objects of their own.
+    pub fn bytes(&self) -> usize {
+        MEMBER_BYTES + if let Member::Unnamed(node) = self { node.bytes() } else { 0 }
+    }
 }
 
 impl Node {
@@ -116,7 +118,7 @@ impl Node {
         size_of::<Node>()
             + match self {
                 Node::Operate { operation: Operation::Rendering { rendered: Some(rendered), .. }, .. } => {
-                    members_bytes(&rendered.members)
+                    rendered.members.iter().map(Member::bytes).sum()
                 }
                 Node::Nil | Node::Operate { .. } | Node::Illumination(_) | Node::Attributes(_) => 0,
                 Node::Polygons(p) => {
@@ -131,7 +133,7 @@ impl Node {
                 Node::Variable(Some(Value::String(text))) => text.len(),
                 Node::Variable(_) => 0,
                 Node::Instance(members) => members.len() * MEMBER_BYTES,
-                Node::Group(members) => members_bytes(members),
+                Node::Group(members) => members.iter().map(Member::bytes).sum(),
                 Node::Vectors(vectors) => {
                     let dashed = vectors.dashed.iter().map(|dashed| &dashed.1);
                     let bytes = |l: &VectorList| l.points.len() * size_of::<[f32; 4]>() + l.lines.len();
