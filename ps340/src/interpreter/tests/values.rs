@@ -74,10 +74,7 @@ fn rendering_nodes_refuse_what_is_no_request() {
         desk.tell("SEND 1.5 TO <1>R;"),
         ["E 5 *** Bad message type at <1>R: real; it takes Boolean or integer or string"]
     );
-    assert_eq!(
-        desk.tell("SEND FIX(1) TO <2>R;"),
-        ["E 5 *** Bad message type at <2>R: integer; it takes Boolean"]
-    );
+    assert_eq!(desk.tell("SEND FIX(1) TO <2>R;"), ["E 5 *** Bad message type at <2>R: integer; it takes Boolean"]);
 }
 
 #[test]
