@@ -174,8 +174,18 @@ mod tests {
         command::{Input, reference},
     };
 
-    /// Gives samples of all kinds to an input; returns the kinds that it took, none if there is no such input.
+    /// Gives samples of all kinds to an input; returns the kinds that it took, none if there is no such input. An input
+    /// past the last element of a list takes nothing, and is not asked.
     fn taken(node: &Node, input: Input) -> Option<Vec<Kind>> {
+        let elements = match node {
+            Node::Vectors(vectors) => vectors.list.points.len(),
+            Node::Labels(block) => block.labels.len(),
+            _ => usize::MAX,
+        };
+        let input = match input {
+            Input::Number(n) if n as usize > elements => Input::Last,
+            input => input,
+        };
         let mut exists = false;
         let takes = |kind: &Kind| {
             samples(*kind).into_iter().any(|value| {
