@@ -320,11 +320,11 @@ mod tests {
         let point = ring(&[[1.0, 1.0]; 5]);
         assert_eq!(of(&[point]).2, 0.0);
         let line = ring(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]);
-        assert_eq!(of(&[line.clone()]).1.len(), 2);
+        assert_eq!(of(std::slice::from_ref(&line)).1.len(), 2);
         // A contour that crosses itself, and a hole that is its outline again.
         let bow = ring(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0], [-1.0, 1.0]]);
         let mut triangles = Vec::new();
-        triangulate(&bow, &[0..5], DVec3::Z, &mut triangles);
+        triangulate(&bow, std::slice::from_ref(&(0..5)), DVec3::Z, &mut triangles);
         assert_eq!(triangles.len(), 3);
         let twice = [circle(5, 1.0, [0.0, 0.0], 1.0), circle(5, 1.0, [0.0, 0.0], 1.0)].concat();
         triangulate(&twice, &[0..5, 5..10], DVec3::Z, &mut triangles);
@@ -341,7 +341,7 @@ mod tests {
             for sign in [1.0, -1.0] {
                 let corners: Vec<DVec3> = square.iter().map(|p| place(p[0], sign * p[1])).collect();
                 let mut triangles = Vec::new();
-                triangulate(&corners, &[0..4], normal, &mut triangles);
+                triangulate(&corners, std::slice::from_ref(&(0..4)), normal, &mut triangles);
                 for t in triangles {
                     let [a, b, c] = t.map(|k| corners[k as usize]);
                     assert!((b - a).cross(c - a).dot(normal * sign) > 0.0);
