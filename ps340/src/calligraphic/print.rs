@@ -28,7 +28,7 @@ pub fn text(strokes: &[Stroke], most: usize) -> String {
 
 /// The strokes as a drawing for print (SVG 1.1): lines of one width on white paper.
 ///
-/// The intensity chooses one of [`INKS`] inks from the paper's white to the full colour, so that lines of any intensity
+/// The intensity chooses one of a few inks from the paper's white to the full colour, so that lines of any intensity
 /// are opaque and their joints are as even as their middles; a stroke whose intensity changes is cut at every step.
 /// The white part of a colour prints black. Weak strokes lie below strong ones. What is not finite or leaves the
 /// screen is left out.

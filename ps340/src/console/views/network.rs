@@ -94,10 +94,10 @@ fn show_function(ui: &mut Ui, function: &FunctionShown, rate: f64) {
                 (true, 1) => "1 waits".to_owned(),
                 (true, count) => format!("{count} wait"),
             };
-            ui.label(RichText::new(format!("<{number}> {waiting}: {}", input.first)).monospace().small());
+            ui.label(RichText::new(format!("<{number}> {waiting}: {}", input.first)).monospace());
         }
         for arc in &function.arcs {
-            ui.label(RichText::new(format!("<{}> to {}", arc.output, arc.to)).monospace().small().weak());
+            ui.label(RichText::new(format!("<{}> to {}", arc.output, arc.to)).monospace().weak());
         }
     });
 }

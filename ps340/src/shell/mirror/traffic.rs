@@ -15,7 +15,7 @@ pub struct Passed {
     pub line: LineId,
     /// Whether the host sent them; else the machine did.
     pub from_host: bool,
-    /// What passed: of more than [`MAX_TRAFFIC`] bytes, the first.
+    /// What passed: of more than 64 KiB, the first.
     pub bytes: Arc<[u8]>,
 }
 
