@@ -81,6 +81,8 @@ pub struct Triangle {
     pub corners: [u32; 3],
     /// The face.
     pub face: u32,
+    /// Whether its own front is seen; triangles of a face that is not plane may differ.
+    pub toward: bool,
 }
 
 /// An edge between two points.
@@ -371,8 +373,12 @@ impl Builder {
         face.toward = face.normal.dot(toward_eye(facets.views[face.view as usize].eye, face.center)) > 0.0;
         let mut triangles = Vec::with_capacity(corners.len());
         triangulate(&corners, &contours, area, &mut triangles);
-        let place = |k: u32| begin as u32 + k;
-        facets.triangles.extend(triangles.iter().map(|t| Triangle { corners: t.map(place), face: number }));
+        let eye = facets.views[face.view as usize].eye;
+        facets.triangles.extend(triangles.into_iter().map(|triangle| {
+            let place = triangle.map(|corner| corners[corner as usize]);
+            let toward = newell(&place).dot(toward_eye(eye, place[0])) * mirror > 0.0;
+            Triangle { corners: triangle.map(|corner| begin as u32 + corner), face: number, toward }
+        }));
     }
 }
 

@@ -10,9 +10,10 @@
 //! changes: lines in the plane of a polygon are seen. Rests shorter than [`SHORTEST`] steps are left out, unless they
 //! are whole edges.
 //!
-//! Of a solid that is not opened by the front of the view, faces that show their reverse, and edges between two of them,
-//! are hidden by others; they are left out from the start. Soft edges are drawn where one of the two faces is seen from
-//! its front and the other from its reverse, or where there is only one face.
+//! Of a solid that is not opened by the front of the view, triangles that show their reverse, and edges between two of
+//! them, are hidden by others; they are left out from the start. Soft edges are drawn where one of the two triangles at
+//! them is seen from its front and the other from its reverse, or where there is only one. So are the inner edges of a
+//! polygon that is not plane, where it bends away from the eye.
 //!
 //! # Source
 //! The visible intervals of A. Appel 1967, found edge by edge against the triangles in the cells of a uniform grid
@@ -24,9 +25,10 @@
 use super::{
     Facets, Segment,
     facets::Edge,
-    project::{Projected, project},
+    project::{Line, Projected, project},
 };
 use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
 
 /// Steps of the grid from the middle of the screen to its side.
 const STEPS: f64 = (1 << 23) as f64;
@@ -96,13 +98,14 @@ struct Grid {
 impl HiddenLine {
     /// Begins with facets.
     pub fn new(facets: &Facets) -> HiddenLine {
-        let all = 0..facets.triangles.len() as u32;
-        let drawn = |edge: &Edge| !edge.soft || is_outline(facets, edge);
-        let edges = (0..facets.edges.len() as u32).filter(|edge| drawn(&facets.edges[*edge as usize]));
-        let projected = project(facets, all, edges);
+        let sides = sides(facets);
+        let edges = drawn(facets, &sides);
+        let projected = project(facets, &edges);
         let closed = facets.solid && !projected.opened;
         let spots: Vec<Spot> = projected.spots.iter().map(Spot::new).collect();
-        let edges = straights(facets, &projected, &spots, closed);
+        let seen = |edge: &Edge| !closed || sides.get(&edge.ends).is_none_or(|side| side.toward > 0);
+        let lines = projected.lines.iter().filter(|line| seen(&edges[line.edge]));
+        let edges = lines.map(|line| Straight::new(line, &edges[line.edge], &spots)).collect();
         HiddenLine { grid: Grid::new(hiders(facets, &projected, &spots, closed)), edges, next: 0, segments: Vec::new() }
     }
 
@@ -126,37 +129,58 @@ impl HiddenLine {
     }
 }
 
-/// Whether an edge separates what is seen from its front and what is not, or ends a surface.
-fn is_outline(facets: &Facets, edge: &Edge) -> bool {
-    let mut toward = facets.faces_of(edge).map(|face| face.toward);
-    let first = toward.next();
-    first != toward.next()
+/// The triangles at a side: how many are seen from their front, and how many from their reverse.
+#[derive(Clone, Copy, Debug, Default)]
+struct Side {
+    toward: u32,
+    away: u32,
+    /// One of the faces.
+    face: u32,
 }
 
-fn straights(facets: &Facets, projected: &Projected, spots: &[Spot], closed: bool) -> Vec<Straight> {
-    let lines = projected.lines.iter().filter_map(|line| {
-        let edge = &facets.edges[line.edge as usize];
-        let hidden = closed && facets.faces_of(edge).all(|face| !face.toward);
-        let ends = line.spots.map(|spot| spots[spot as usize]);
-        (!hidden).then_some(Straight {
-            ends,
-            names: line.spots,
-            faces: edge.faces,
-            places: line.ends,
-            color: facets.color_of(edge),
-        })
-    });
-    lines.collect()
+/// The sides of all triangles, by their ends, the smaller number first.
+fn sides(facets: &Facets) -> HashMap<[u32; 2], Side> {
+    let mut sides: HashMap<[u32; 2], Side> = HashMap::with_capacity(facets.triangles.len() * 3 / 2);
+    for triangle in &facets.triangles {
+        let [a, b, c] = triangle.corners.map(|corner| facets.corners[corner as usize].point);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let side = sides.entry([from.min(to), from.max(to)]).or_default();
+            side.face = triangle.face;
+            *if triangle.toward { &mut side.toward } else { &mut side.away } += 1;
+        }
+    }
+    sides
+}
+
+/// The edges that are drawn as far as nothing hides them, in a fixed order.
+fn drawn(facets: &Facets, sides: &HashMap<[u32; 2], Side>) -> Vec<Edge> {
+    let bends = |side: &Side| side.toward > 0 && side.away > 0;
+    let is_outline = |side: &Side| bends(side) || side.toward + side.away == 1;
+    let polygons = facets.edges.iter();
+    let polygons = polygons.filter(|edge| !edge.soft || sides.get(&edge.ends).is_none_or(is_outline));
+    let mut edges: Vec<Edge> = polygons.map(|edge| Edge { color: facets.color_of(edge), ..*edge }).collect();
+    let outer: HashSet<[u32; 2]> = facets.edges.iter().map(|edge| edge.ends).collect();
+    let inner = sides.iter().filter(|(ends, side)| bends(side) && !outer.contains(*ends));
+    let mut inner: Vec<([u32; 2], u32)> = inner.map(|(ends, side)| (*ends, side.face)).collect();
+    inner.sort_unstable();
+    edges.extend(inner.into_iter().map(|(ends, face)| Edge {
+        ends,
+        faces: [Some(face), None],
+        corners: [[0; 2]; 2],
+        uses: [0; 2],
+        soft: true,
+        color: facets.faces[face as usize].color,
+    }));
+    edges
 }
 
 fn hiders(facets: &Facets, projected: &Projected, spots: &[Spot], closed: bool) -> Vec<Hider> {
     let largest = spots.iter().map(|spot| spot.nearness.abs()).fold(0.0, f64::max);
     let pieces = projected.pieces.iter().filter_map(|piece| {
-        let face = facets.triangles[piece.triangle as usize].face;
-        if closed && !facets.faces[face as usize].toward {
-            return None;
-        }
-        Hider::new(piece.spots, piece.spots.map(|spot| spots[spot as usize]), face, largest)
+        let triangle = &facets.triangles[piece.triangle as usize];
+        let corners = piece.spots.map(|spot| spots[spot as usize]);
+        let hides = triangle.toward || !closed;
+        hides.then(|| Hider::new(piece.spots, corners, triangle.face, largest)).flatten()
     });
     pieces.collect()
 }
@@ -325,6 +349,11 @@ impl Grid {
 }
 
 impl Straight {
+    fn new(line: &Line, edge: &Edge, spots: &[Spot]) -> Straight {
+        let ends = line.spots.map(|spot| spots[spot as usize]);
+        Straight { ends, names: line.spots, faces: edge.faces, places: line.ends, color: edge.color }
+    }
+
     /// A part of the edge in the coordinates of the node. Parameters run evenly on the screen.
     fn part(&self, from: f64, to: f64) -> Option<Segment> {
         let [(a, wa), (b, wb)] = self.places;

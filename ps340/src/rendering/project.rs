@@ -7,7 +7,10 @@
 //! *Nearness* grows towards the eye and changes evenly along straight lines on the screen: 1/w in perspective, and
 //! without, minus the depth. It does not use front and back boundary: those of a client may be 1e-15 and 1e15.
 
-use super::{Facets, facets::View};
+use super::{
+    Facets,
+    facets::{Edge, View},
+};
 use glam::{DVec2, DVec3, DVec4};
 use std::collections::HashMap;
 
@@ -43,8 +46,8 @@ pub struct Line {
     pub spots: [u32; 2],
     /// Both ends in the coordinates of the rendering node, homogeneous, and their w in clip space.
     pub ends: [(DVec4, f64); 2],
-    /// The edge.
-    pub edge: u32,
+    /// Which of the edges.
+    pub edge: usize,
 }
 
 /// What a view shows of facets.
@@ -77,16 +80,15 @@ struct Cutter {
 
 /// Cuts and projects.
 ///
-/// - `triangles`, `edges`: which of them, by number.
-pub fn project(facets: &Facets, triangles: impl Iterator<Item = u32>, edges: impl Iterator<Item = u32>) -> Projected {
+/// - `edges`: of which something may be drawn.
+pub fn project(facets: &Facets, edges: &[Edge]) -> Projected {
     let raw: Vec<Raw> =
         facets.points.iter().map(|p| Raw { clip: p.clip, eye: p.eye, local: p.local, view: p.view }).collect();
     let near = raw.iter().map(|p| p.clip.w).fold(0.0, f64::max) * NEAREST;
     let mut cutter = Cutter { raw, cuts: HashMap::new(), near };
     let mut projected = Projected::default();
     let mut polygon = Vec::new();
-    for triangle in triangles {
-        let facet = &facets.triangles[triangle as usize];
+    for (triangle, facet) in (0..).zip(&facets.triangles) {
         let view = &facets.views[facets.faces[facet.face as usize].view as usize];
         polygon.clear();
         polygon.extend(facet.corners.map(|corner| facets.corners[corner as usize].point));
@@ -95,8 +97,7 @@ pub fn project(facets: &Facets, triangles: impl Iterator<Item = u32>, edges: imp
             projected.pieces.push(Piece { spots: [polygon[0], polygon[k - 1], polygon[k]], triangle });
         }
     }
-    for edge in edges {
-        let facet = &facets.edges[edge as usize];
+    for (edge, facet) in edges.iter().enumerate() {
         let view = facet.faces[0].map_or(0, |face| facets.faces[face as usize].view);
         if let Some(spots) = cutter.cut_line(facet.ends, &facets.views[view as usize]) {
             let ends = spots.map(|spot| {

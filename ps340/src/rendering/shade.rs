@@ -49,7 +49,7 @@ impl Shading {
     ///
     /// - `kind`: one of the shaded ones.
     pub fn new(kind: Rendering, facets: Facets, environment: &ShadingEnvironment) -> Shading {
-        let projected = project(&facets, 0..facets.triangles.len() as u32, std::iter::empty());
+        let projected = project(&facets, &[]);
         let [_, _, width, height] = environment.viewport.map(|pixels| pixels as usize);
         let scan = Scan::new(&projected, width, height, environment.samples());
         let mut lit = Lit {
