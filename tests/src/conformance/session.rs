@@ -298,6 +298,11 @@ impl<'s> Session<'s> {
         if self.messages.is_empty() {
             self.synchronize()?;
         }
+        // What takes a few frames has the time to end, where time stands otherwise.
+        if self.messages.is_empty() && self.time_stands() {
+            self.order("idle 300")?;
+            self.synchronize()?;
+        }
         // Where time passes by itself, a message may still be on its way.
         if self.messages.is_empty() && !self.time_stands() {
             let deadline = Instant::now() + self.target.patience;
