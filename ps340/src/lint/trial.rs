@@ -211,7 +211,7 @@ mod tests {
             for statement in row.example.split_inclusive(';') {
                 text.push_str(&format!("N{}.X := {}\n", text.len(), statement.rsplit(":=").next().unwrap_or_default()));
             }
-            text.push_str("END_STRUCTURE;\n!RESET\n");
+            text.push_str("END_STRUCTURE;\n!RESET;\n");
         }
         text.push_str("VARIABLE V;\n");
         machine.step([Event::Attach(line), Event::Bytes(line, text.into_bytes())], 0);
