@@ -29,6 +29,8 @@ fn corners(polygon: &Polygon) -> Vec<DVec3> {
 /// What a z-buffer says of points.
 struct Judge {
     depth: Vec<(f64, u32)>,
+    /// The polygon of each triangle.
+    owners: Vec<usize>,
     matrix: glam::DMat4,
     margin: f64,
 }
@@ -36,32 +38,40 @@ struct Judge {
 impl Judge {
     fn new(polygons: &[Polygon], from: DVec3, margin: f64) -> Judge {
         let matrix = matrix(&view(from));
-        let mut triangles = Vec::new();
-        for polygon in polygons {
+        let (mut triangles, mut owners) = (Vec::new(), Vec::new());
+        for (number, polygon) in polygons.iter().enumerate() {
             let corners: Vec<DVec3> = corners(polygon).into_iter().map(|p| place(&matrix, p, SIZE)).collect();
-            triangles.extend((2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]));
+            for k in 2..corners.len() {
+                triangles.push([corners[0], corners[k - 1], corners[k]]);
+                owners.push(number);
+            }
         }
-        Judge { depth: z_buffer(&triangles, SIZE), matrix, margin }
+        Judge { depth: z_buffer(&triangles, SIZE), owners, matrix, margin }
     }
 
-    /// Whether a point is surely seen, or surely hidden; none if it is too close to say, or off the screen.
-    fn sees(&self, point: DVec3) -> Option<bool> {
+    /// The pixels around a point, and how near it is; none off the screen.
+    fn around(&self, point: DVec3) -> Option<(impl Iterator<Item = (f64, u32)> + '_, f64)> {
         let p = place(&self.matrix, point, SIZE);
         let inside = |c: f64| (2.0..SIZE as f64 - 2.0).contains(&c);
-        if !(inside(p.x) && inside(p.y)) {
-            return None;
-        }
         let (x, y) = (p.x as usize, p.y as usize);
-        let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| (x, y)));
-        let depths: Vec<f64> = around.map(|(x, y)| self.depth[y * SIZE + x].0).collect();
-        let (least, most) = depths.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
-        if least > p.z + self.margin {
-            Some(false)
-        } else if most < p.z + self.margin / 4.0 {
-            Some(true)
-        } else {
-            None
+        let pixels = move || (y - 1..=y + 1).flat_map(move |y| (x - 1..=x + 1).map(move |x| self.depth[y * SIZE + x]));
+        (inside(p.x) && inside(p.y)).then(|| (pixels(), p.z))
+    }
+
+    /// Whether everything around a point is clearly nearer.
+    fn hides(&self, point: DVec3) -> bool {
+        self.around(point).is_some_and(|(mut pixels, z)| pixels.all(|(depth, _)| depth > z + self.margin))
+    }
+
+    /// Whether its polygon is seen at a point, and nothing around is clearly nearer.
+    fn shows(&self, point: DVec3, polygon: usize) -> bool {
+        let Some((pixels, z)) = self.around(point) else { return false };
+        let (mut found, mut most) = (false, 0.0_f64);
+        for (depth, triangle) in pixels {
+            found |= self.owners.get(triangle as usize) == Some(&polygon);
+            most = most.max(depth);
         }
+        found && most < z + self.margin / 4.0
     }
 }
 
@@ -78,10 +88,10 @@ fn check(polygons: &[Polygon], lines: &[Segment], judge: &Judge) -> [usize; 2] {
         let [a, b] = segment.ends;
         whole.insert(key(a, b));
         let pixels = (place(&judge.matrix, a, SIZE) - place(&judge.matrix, b, SIZE)).truncate().length();
-        let steps = (4.0 * pixels).ceil().max(2.0) as usize;
+        let steps = (2.0 * pixels).ceil().max(2.0) as usize;
         for k in 0..=steps {
             let p = a.lerp(b, k as f64 / steps as f64);
-            assert_ne!(judge.sees(p), Some(false), "a line shows through at {p}");
+            assert!(!judge.hides(p), "a line shows through at {p}");
             let p = place(&judge.matrix, p, SIZE);
             if (0.0..SIZE as f64).contains(&p.x) && (0.0..SIZE as f64).contains(&p.y) {
                 drawn[p.y as usize * SIZE + p.x as usize] = true;
@@ -89,23 +99,21 @@ fn check(polygons: &[Polygon], lines: &[Segment], judge: &Judge) -> [usize; 2] {
         }
     }
     let mut counts = [0; 2];
-    for polygon in polygons {
+    for (number, polygon) in polygons.iter().enumerate() {
         let corners = corners(polygon);
         for (k, a) in corners.iter().enumerate() {
             let b = corners[(k + 1) % corners.len()];
             let is_whole = whole.contains(&key(*a, b));
             for t in [0.125, 0.375, 0.5, 0.75] {
                 let p = a.lerp(b, t);
-                match judge.sees(p) {
-                    Some(true) => {
-                        let place = place(&judge.matrix, p, SIZE);
-                        let (x, y) = (place.x as usize, place.y as usize);
-                        let near = (y - 1..=y + 1).any(|y| (x - 1..=x + 1).any(|x| drawn[y * SIZE + x]));
-                        assert!(is_whole || near, "a line is missing at {p}");
-                        counts[0] += 1;
-                    }
-                    Some(false) => counts[1] += 1,
-                    None => {}
+                if judge.hides(p) {
+                    counts[1] += 1;
+                } else if judge.shows(p, number) {
+                    let place = place(&judge.matrix, p, SIZE);
+                    let (x, y) = (place.x as usize, place.y as usize);
+                    let near = (y - 1..=y + 1).any(|y| (x - 1..=x + 1).any(|x| drawn[y * SIZE + x]));
+                    assert!(is_whole || near, "a line is missing at {p}");
+                    counts[0] += 1;
                 }
             }
         }
