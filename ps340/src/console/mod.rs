@@ -8,6 +8,7 @@ mod places;
 mod mapping;
 mod libraries;
 mod painter;
+mod puck;
 mod screens;
 mod keyboard;
 mod dials;

@@ -6,9 +6,17 @@ use crate::{
     port::{Arrival, Effect, ObjectId},
 };
 
+/// Why the short way ends before its budget.
+enum End {
+    /// What comes next goes the long way, or nothing is ready.
+    LongWay,
+    /// A message was lost at a full input, counted from 0.
+    Lost(ObjectId, usize),
+}
+
 impl Network {
     /// Fires the first of those that are ready, one after the other, as long as their results are worked out where
-    /// the messages lie and move from there along an only arc.
+    /// the messages lie and move from there along an only arc, to another function or out of the network.
     ///
     /// What happens is what happens with any other firing, in the same order, in half the steps.
     ///
@@ -17,68 +25,79 @@ impl Network {
     pub(super) fn run_in_place(&mut self, budget: u64, effects: &mut Vec<Effect>) -> u64 {
         let before = self.counters.firings;
         while let fired = self.counters.firings - before
-            && let Some((object, place)) = self.run_until_lost(budget - fired)
+            && let End::Lost(object, place) = self.run_until_lost(budget - fired, effects)
         {
             self.lose(object, place as u16 + 1, effects);
         }
         self.counters.firings - before
     }
 
-    /// Does the same until a message is lost at a full queue; returns at which.
+    /// Does the same until a message is lost at a full queue.
     #[inline(never)]
-    fn run_until_lost(&mut self, budget: u64) -> Option<(ObjectId, usize)> {
+    fn run_until_lost(&mut self, budget: u64, effects: &mut Vec<Effect>) -> End {
         let Network { instances, ports, backlog, ready, string_bytes, counters, .. } = self;
         let instances = instances.as_mut_slice();
         let ports = ports.items();
-        let mut lost = None;
+        let mut end = End::LongWay;
         let mut fired = 0;
-        while fired < budget && lost.is_none() {
+        while fired < budget && matches!(end, End::LongWay) {
             let Some(object) = ready.first() else { break };
             let Some(source) = instances.get(object.index()) else { break };
             let (Some(order), Some(arc), Some(row)) = (source.in_place, source.sole, source.row) else { break };
             let (Some(in_place), true) = (row.in_place, source.is_ready()) else { break };
-            // An arc from an instance to itself is of another sort.
-            let pair = instances.get_disjoint_mut([object.index(), arc.object.index()]);
-            let Ok([source, target]) = pair else { break };
-            let Some(place) = target.input(arc.input) else { break };
             let inputs = source.ports.range().start;
             let (message, constant) = match order {
                 Order::MessageFirst => (inputs, inputs + 1),
                 Order::ConstantFirst => (inputs + 1, inputs),
             };
-            let places = [message, constant, target.ports.range().start + place];
-            let Ok([queue, constant, port]) = ports.get_disjoint_mut(places) else { break };
-            let (Some(message), Some(constant)) = (queue.first_mut(), constant.first()) else { break };
-            if !port.accepts(message.kind())
-                || (*string_bytes > 0 && !port.is_active())
-                || !in_place(message, constant, order)
-            {
+            // An arc from an instance to itself is of another sort.
+            let pair = instances.get_disjoint_mut([object.index(), arc.object.index()]);
+            let Ok([source, target]) = pair else { break };
+            let mut arrival = Arrival::Kept;
+            let queue = if let Some(place) = target.input(arc.input) {
+                let places = [message, constant, target.ports.range().start + place];
+                let Ok([queue, constant, port]) = ports.get_disjoint_mut(places) else { break };
+                let (Some(message), Some(constant)) = (queue.first_mut(), constant.first()) else { break };
+                if !port.accepts(message.kind())
+                    || (*string_bytes > 0 && !port.is_active())
+                    || !in_place(message, constant, order)
+                {
+                    break;
+                }
+                arrival = port.arrive(message, backlog);
+                match arrival {
+                    Arrival::Awaited => target.note_arrival(port.is_active()),
+                    Arrival::Lost => end = End::Lost(arc.object, place),
+                    Arrival::Kept => {}
+                }
+                queue
+            } else if target.row.is_none() {
+                let Ok([queue, constant]) = ports.get_disjoint_mut([message, constant]) else { break };
+                let (Some(message), Some(constant)) = (queue.first_mut(), constant.first()) else { break };
+                if !in_place(message, constant, order) {
+                    break;
+                }
+                effects.push(Effect::Deliver { object: arc.object, input: arc.input, value: queue.take() });
+                queue
+            } else {
                 break;
-            }
+            };
             fired += 1;
             ready.drop_first();
-            let arrival = port.arrive(message, backlog);
             if queue.consume(backlog) {
                 source.missing += 1;
                 source.queued = false;
             } else {
                 ready.push_back(object);
             }
-            match arrival {
-                Arrival::Kept => {}
-                Arrival::Awaited => {
-                    target.note_arrival(port.is_active());
-                    if !target.queued && target.is_ready() {
-                        target.queued = true;
-                        ready.push_back(arc.object);
-                    }
-                }
-                Arrival::Lost => lost = Some((arc.object, place)),
+            if arrival == Arrival::Awaited && !target.queued && target.is_ready() {
+                target.queued = true;
+                ready.push_back(arc.object);
             }
         }
         counters.firings += fired;
         counters.deliveries += fired;
-        lost
+        end
     }
 }
 

@@ -147,9 +147,7 @@ impl Network {
         let (Some(ports), Some(outputs)) = (ports, outputs) else {
             return Err(SizeError::OutOfRange(row.name, shape.size));
         };
-        if id.index() >= self.instances.len() {
-            self.instances.resize_with(id.index() + 1, || Instance::VACANT);
-        }
+        self.make_room(id);
         let instance = &mut self.instances[id.index()];
         *instance = Instance {
             row: Some(row),
@@ -215,6 +213,7 @@ impl Network {
         };
         if arcs.connect(Destination { object: to, input }) {
             self.note_sole_arc(source);
+            self.make_room(to);
             Ok(())
         } else {
             Err(Fault { function, cause: Cause::TooManyArcs { output } })
@@ -288,6 +287,13 @@ impl Network {
     /// The instance of an object that is a function.
     fn instance(&self, id: ObjectId) -> Option<&Instance> {
         self.instances.get(id.index()).filter(|instance| instance.row.is_some())
+    }
+
+    /// Makes a place in the table of instances for an object, if there is none.
+    fn make_room(&mut self, id: ObjectId) {
+        if id.index() >= self.instances.len() {
+            self.instances.resize_with(id.index() + 1, || Instance::VACANT);
+        }
     }
 
     /// Notes in a function where the only arc from output 1 ends, after its arcs have changed.

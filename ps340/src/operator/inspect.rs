@@ -276,7 +276,7 @@ fn trace_line(machine: &Machine, line: &Trace) -> String {
 }
 
 /// A message as SEND has it, or as F:PRINT prints it if it has many numbers; the beginning of a long one.
-fn brief(value: &Value) -> String {
+pub fn brief(value: &Value) -> String {
     let text = match value.kind() {
         Kind::Boolean | Kind::Integer | Kind::Real | Kind::String => value.to_string(),
         _ => String::from_utf8_lossy(&print(value, false)).into_owned(),

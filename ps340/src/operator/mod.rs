@@ -9,7 +9,7 @@ mod perform;
 mod sight;
 
 pub use graph::{Language, Subject, title};
-pub use inspect::Inspection;
+pub use inspect::{Inspection, brief};
 pub use order::{Order, OrderError, OrderRow, Screen, parse, rows, unescape};
 pub use perform::{Outcome, Wait, perform};
 pub use sight::SightOrder;

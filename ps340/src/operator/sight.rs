@@ -182,9 +182,7 @@ fn phosphors(controls: &Controls) -> String {
 
 fn refresh(machine: &mut Machine) -> String {
     machine.renew_picture();
-    let refresh = machine.refresh();
-    let held = if machine.controls().steady && refresh.frames > 1 { ", held steady" } else { "" };
-    format!("{:.1} microseconds, {} Hz{held}", refresh.micros, refresh.rate() as f32)
+    machine.refresh().describe(machine.controls().steady)
 }
 
 /// Writes a picture or a drawing, by the ending of the file's name.

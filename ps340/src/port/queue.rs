@@ -156,7 +156,7 @@ impl Port {
     /// Takes the content of the first message of a queue, which stays as a husk until it is consumed; copies a
     /// constant.
     #[inline]
-    pub(super) fn take(&mut self) -> Value {
+    pub fn take(&mut self) -> Value {
         match &mut self.value {
             Value::Real(number) => Value::Real(*number),
             value if self.state & ACTIVE != 0 => std::mem::replace(value, HUSK),

@@ -25,10 +25,9 @@ mod fault;
 
 pub use fault::RasterFault;
 
-use protocol::raster::{LookupEntry, RASTER_HEIGHT, RASTER_WIDTH, RasterCommand, Run};
-
 use crate::picture::Picture;
-use protocol::raster::linear_from_srgb;
+use protocol::raster::{LookupEntry, RASTER_HEIGHT, RASTER_WIDTH, RasterCommand, Run, linear_from_srgb};
+use std::sync::Arc;
 
 /// Width in pixels.
 const WIDTH: usize = RASTER_WIDTH as usize;
@@ -40,8 +39,9 @@ const ENTRIES: usize = 256;
 /// The raster screen: pixels, lookup tables, window and current pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameBuffer {
-    /// Bottom line first, left to right.
-    pixels: Vec<[u8; 3]>,
+    /// Bottom line first, left to right. Shared with copies until one of them changes, so that a copy of a picture that
+    /// stands still costs nothing, and neither does the comparison with it.
+    pixels: Arc<[[u8; 3]]>,
     /// What each value of red, green and blue becomes.
     tables: [[u8; ENTRIES]; 3],
     window: Window,
@@ -67,7 +67,7 @@ impl FrameBuffer {
     pub fn new() -> Self {
         let ramp = std::array::from_fn(|entry| entry as u8);
         Self {
-            pixels: vec![[0; 3]; WIDTH * HEIGHT],
+            pixels: vec![[0; 3]; WIDTH * HEIGHT].into(),
             tables: [ramp; 3],
             window: Window { x: (0, WIDTH - 1), y: (0, HEIGHT - 1) },
             position: (0, 0),
@@ -82,7 +82,7 @@ impl FrameBuffer {
     pub fn apply(&mut self, command: &RasterCommand) -> Result<(), RasterFault> {
         match command {
             RasterCommand::Erase { color } => {
-                self.pixels.fill(*color);
+                Arc::make_mut(&mut self.pixels).fill(*color);
                 Ok(())
             }
             RasterCommand::Window { x_min, y_min, x_max, y_max } => {
@@ -105,7 +105,7 @@ impl FrameBuffer {
         if seen == 0 {
             return;
         }
-        let lines = self.pixels.chunks_exact_mut(WIDTH).skip(bottom);
+        let lines = Arc::make_mut(&mut self.pixels).chunks_exact_mut(WIDTH).skip(bottom);
         for (line, new) in lines.zip(pixels.chunks_exact(width as usize)) {
             line[left..left + seen].copy_from_slice(&new[..seen]);
         }
@@ -177,10 +177,11 @@ impl FrameBuffer {
     fn fill(&mut self, mut count: usize, color: [u8; 3]) {
         let Window { x: columns, y: lines } = self.window;
         let (mut x, mut y) = self.position;
+        let pixels = Arc::make_mut(&mut self.pixels);
         while count > 0 {
             let piece = count.min(columns.1 + 1 - x);
             let start = y * WIDTH + x;
-            self.pixels[start..start + piece].fill(color);
+            pixels[start..start + piece].fill(color);
             count -= piece;
             x += piece;
             if x > columns.1 {

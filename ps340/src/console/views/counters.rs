@@ -1,6 +1,6 @@
 //! Counters and rates.
 
-use super::{Asked, Orders, Shown, Ui, View};
+use super::{Asked, Orders, Shown, Ui, View, refresh_row};
 use crate::machine::Counters;
 
 /// Microseconds between two measurements of a rate.
@@ -34,7 +34,9 @@ impl View for CountersView {
         "Counters"
     }
 
-    fn ask(&self, _asked: &mut Asked) {}
+    fn ask(&self, asked: &mut Asked) {
+        asked.refresh = true;
+    }
 
     fn show(&mut self, ui: &mut Ui, shown: &Shown, _orders: &mut Orders) {
         self.measure(shown);
@@ -60,6 +62,7 @@ impl View for CountersView {
                 ui.monospace(value);
                 ui.end_row();
             }
+            refresh_row(ui, shown);
         });
         ui.separator();
         ui.label("Hosts");

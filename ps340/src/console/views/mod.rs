@@ -1,11 +1,13 @@
 //! Views of the machine's inside: one a part, beside the screens.
 
 mod counters;
+mod display;
 mod help;
 mod line;
 mod messages;
 mod network;
 mod structure;
+mod tablet;
 
 use super::orders::Orders;
 use crate::shell::{Asked, Shown};
@@ -28,7 +30,16 @@ pub fn all() -> Vec<Box<dyn View>> {
         Box::new(structure::StructureView::default()),
         Box::new(line::LineView::default()),
         Box::new(counters::CountersView::default()),
+        Box::new(display::DisplayView),
+        Box::new(tablet::TabletView::default()),
         Box::new(messages::MessagesView),
         Box::new(help::HelpView::default()),
     ]
+}
+
+/// A row of a grid: how long the beam needs for the picture, and how often it draws it.
+fn refresh_row(ui: &mut Ui, shown: &Shown) {
+    ui.label("refresh");
+    ui.monospace(shown.refresh.map_or("...".into(), |refresh| refresh.describe(shown.controls.steady)));
+    ui.end_row();
 }

@@ -12,7 +12,7 @@ pub use structure::NodeShown;
 pub use traffic::{Passed, Traffic};
 
 use crate::{
-    calligraphic::Controls,
+    calligraphic::{Controls, Refresh},
     line::LineId,
     machine::{Counters, KeyboardMode, Machine, Panel, PictureVersion, time_of_frame},
     raster::FrameBuffer,
@@ -34,6 +34,8 @@ pub struct Asked {
     pub traffic: bool,
     /// Whether the messages of the machine are shown.
     pub log: bool,
+    /// Whether the refresh of the display is shown.
+    pub refresh: bool,
 }
 
 /// What people see of the machine at a frame.
@@ -65,6 +67,8 @@ pub struct Shown {
     pub network: Arc<Vec<FunctionShown>>,
     /// The display structure as a tree.
     pub structure: Arc<Vec<NodeShown>>,
+    /// How long the beam needs for the picture, if that is asked.
+    pub refresh: Option<Refresh>,
     /// What passed on the host lines lately.
     pub traffic: Arc<Vec<Passed>>,
 }
@@ -162,6 +166,11 @@ impl Mirror {
                 || shown.log.last().map(String::as_str) != machine.log().last())
         {
             is_new |= renew(&mut shown.log, machine.log().map(str::to_owned).collect());
+        }
+        if asked.refresh {
+            let refresh = Some(machine.refresh());
+            is_new |= refresh != shown.refresh;
+            shown.refresh = refresh;
         }
         let mut traffic = lock(&self.traffic);
         if !asked.traffic {

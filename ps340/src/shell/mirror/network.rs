@@ -1,18 +1,14 @@
 //! The functions of the network as a window shows them.
 
 use crate::{
-    functions::printing::print,
     machine::Machine,
     network::{Activity, FunctionView, InputView},
-    operator::title,
+    operator::{brief, title},
 };
-use protocol::{Kind, Value};
 use std::collections::BTreeSet;
 
 /// Functions that are shown; of more, the first.
 const MAX_FUNCTIONS: usize = 400;
-/// Characters of a value that are shown.
-const SHOWN: usize = 40;
 
 /// A function.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,14 +74,4 @@ pub(super) fn functions(machine: &Machine, pattern: &str) -> Vec<FunctionShown> 
 fn input(view: InputView<'_>) -> InputShown {
     let first = view.first().map(brief).unwrap_or_default();
     InputShown { is_active: view.is_active(), waiting: if view.is_active() { view.len() } else { 0 }, first }
-}
-
-/// The beginning of a value as text.
-fn brief(value: &Value) -> String {
-    let text = match value.kind() {
-        Kind::Boolean | Kind::Integer | Kind::Real | Kind::String => value.to_string(),
-        _ => String::from_utf8_lossy(&print(value, false)).into_owned(),
-    };
-    let short: String = text.chars().take(SHOWN).collect();
-    if short.len() < text.len() { short + "..." } else { short }
 }

@@ -61,7 +61,8 @@ fn only_what_is_asked_for_is_copied() {
     mirror.pass(LINE, true, b"A", &machine);
     let shown = mirror.shown();
     assert!(shown.network.is_empty() && shown.structure.is_empty() && shown.traffic.is_empty());
-    mirror.ask(&Asked { network: Some("A".into()), structure: true, traffic: true, log: true });
+    assert_eq!(shown.refresh, None);
+    mirror.ask(&Asked { network: Some("A".into()), structure: true, traffic: true, log: true, refresh: true });
     mirror.pass(LINE, true, b"SEND 1 TO <1>A;", &machine);
     machine.step([Input::Bytes(LINE, b"SEND 1 TO <1>A;".to_vec())], 0);
     for _ in 0..READ_FRAMES {
@@ -83,6 +84,7 @@ fn only_what_is_asked_for_is_copied() {
     }
     let firings = mirror.shown().network.iter().find(|function| function.name == "A").map(|a| a.activity.firings);
     assert_eq!(firings, Some(1));
+    assert!(mirror.shown().refresh.is_some_and(|refresh| refresh.frames == 1 && refresh.micros > 1.0));
 }
 
 #[test]
