@@ -13,7 +13,7 @@ use std::{
 
 const LINE: LineId = LineId(1);
 const READ_BYTES: usize = 256 << 10;
-const RUNS: usize = 7;
+const RUNS: usize = 21;
 
 fn list(count: usize) -> Command {
     let points = (0..count).map(|i| [(i % 1000) as f32 / 999.0, (i / 1000) as f32 / 1e4, 0.125, 1.0]).collect();
@@ -71,6 +71,8 @@ fn machine_time(bytes: &[u8], count: usize) -> f64 {
 }
 
 fn main() {
+    // `cargo bench -p tests --bench line -- binary` measures one form alone.
+    let only = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
     println!("vectors over a loopback socket into the machine (itemized, 3D, best of {RUNS})");
     for count in [10_000, 100_000, 1_000_000] {
         let command = list(count);
@@ -79,6 +81,9 @@ fn main() {
         let mut binary = Vec::new();
         protocol::wire::write_commands([&command], &mut binary).expect("the list has a binary form");
         for (form, bytes) in [("text", &text), ("binary", &binary)] {
+            if only.as_ref().is_some_and(|only| only != form) {
+                continue;
+            }
             let raw = (0..RUNS).map(|_| through_socket(bytes, drop)).fold(f64::INFINITY, f64::min);
             let taken = machine_time(bytes, count);
             println!(
