@@ -11,7 +11,7 @@ use std::{
     ops::Range,
 };
 
-/// Bytes in a row.
+/// Bytes in a row, unless said otherwise.
 const ROW: usize = 16;
 /// Rows of one field that are shown; of a longer field, the first ones.
 const ROWS: usize = 4;
@@ -41,7 +41,7 @@ pub enum Sender {
 /// listing.finish(&mut text).unwrap();
 /// assert!(text.ends_with("command: DISPLAY A;\n"));
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Listing {
     frames: FrameDecoder,
     commands: CommandReader,
@@ -50,6 +50,22 @@ pub struct Listing {
     /// The line of a message that has not ended.
     message: Vec<u8>,
     offset: u64,
+    /// Bytes in a row.
+    width: usize,
+}
+
+impl Default for Listing {
+    fn default() -> Listing {
+        Listing {
+            frames: FrameDecoder::default(),
+            commands: CommandReader::default(),
+            binary: BinaryDecoder::default(),
+            sender: Sender::default(),
+            message: Vec::new(),
+            offset: 0,
+            width: ROW,
+        }
+    }
 }
 
 impl Listing {
@@ -58,15 +74,20 @@ impl Listing {
         Listing { sender, ..Listing::default() }
     }
 
+    /// The same with so many bytes in a row, at least 1; 16 if nothing is said.
+    pub fn with_row(self, bytes: usize) -> Listing {
+        Listing { width: bytes.max(1), ..self }
+    }
+
     /// Lists more of the stream; a frame is listed when it is complete.
     ///
     /// # Errors
     /// Those of `out`.
     pub fn push(&mut self, bytes: &[u8], out: &mut impl Write) -> fmt::Result {
-        let Listing { frames, commands, binary, sender, message, offset } = self;
+        let Listing { frames, commands, binary, sender, message, offset, width } = self;
         let mut result = Ok(());
         frames.feed(bytes, |frame| {
-            let mut rows = Rows { offset: *offset, out: &mut *out, result };
+            let mut rows = Rows { offset: *offset, width: *width, out: &mut *out, result };
             match (&frame, *sender) {
                 (Frame::Text(text), Sender::Machine) => rows.messages(text, message),
                 _ => rows.frame(frame, commands, binary),
@@ -82,7 +103,7 @@ impl Listing {
     /// # Errors
     /// Those of `out`.
     pub fn finish(&mut self, out: &mut impl Write) -> fmt::Result {
-        let mut rows = Rows { offset: self.offset, out, result: Ok(()) };
+        let mut rows = Rows { offset: self.offset, width: self.width, out, result: Ok(()) };
         if let Some(frame) = self.frames.finish() {
             rows.frame(frame, &mut self.commands, &mut self.binary);
             self.offset += frame.stream_length() as u64;
@@ -105,6 +126,7 @@ impl Listing {
 /// Writes the rows of a frame that begins at `offset`.
 struct Rows<'o, W> {
     offset: u64,
+    width: usize,
     out: &'o mut W,
     result: fmt::Result,
 }
@@ -261,34 +283,35 @@ impl<W: Write> Rows<'_, W> {
 
     /// Text at `at`, all of it.
     fn text(&mut self, at: usize, text: &[u8]) {
-        for (index, row) in text.chunks(ROW).enumerate() {
-            self.row(at + index * ROW, row, format_args!("\"{}\"", row.escape_ascii()));
+        for (index, row) in text.chunks(self.width).enumerate() {
+            self.row(at + index * self.width, row, format_args!("\"{}\"", row.escape_ascii()));
         }
     }
 
     /// A field at `at`; of a long one the beginning.
     fn field(&mut self, at: usize, bytes: &[u8], meaning: fmt::Arguments<'_>) {
-        let rows = bytes.len().div_ceil(ROW);
-        for (index, row) in bytes.chunks(ROW).take(ROWS).enumerate() {
+        let rows = bytes.len().div_ceil(self.width);
+        for (index, row) in bytes.chunks(self.width).take(ROWS).enumerate() {
             match index {
                 0 => self.row(at, row, meaning),
-                _ => self.row(at + index * ROW, row, format_args!("")),
+                _ => self.row(at + index * self.width, row, format_args!("")),
             }
         }
         if rows > ROWS {
-            self.note(format_args!("{} bytes more", bytes.len() - ROWS * ROW));
+            self.note(format_args!("{} bytes more", bytes.len() - ROWS * self.width));
         }
     }
 
     fn row(&mut self, at: usize, bytes: &[u8], meaning: fmt::Arguments<'_>) {
         let hex: Vec<String> = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        let line = format!("{:08x}  {:<48} {meaning}", self.offset + at as u64, hex.join(" "));
+        let hex_width = 3 * self.width;
+        let line = format!("{:08x}  {:<hex_width$} {meaning}", self.offset + at as u64, hex.join(" "));
         self.line(line.trim_end());
     }
 
     /// A row without bytes.
     fn note(&mut self, note: fmt::Arguments<'_>) {
-        self.line(&format!("{:58} {note}", ""));
+        self.line(&format!("{:1$} {note}", "", 10 + 3 * self.width));
     }
 
     fn line(&mut self, line: &str) {
@@ -428,6 +451,17 @@ mod tests {
              0000000a  0d 0a 44 49 53 50 4c 41 59 20 31 3b              \"\\r\\nDISPLAY 1;\"\n\
              \x20                                                          error: 2:9: expected a name, found `1`\n"
         );
+    }
+
+    #[test]
+    fn a_row_has_as_many_bytes_as_is_said() {
+        let mut text = String::new();
+        Listing::default().with_row(4).push(b"DISPLAY A;", &mut text).unwrap();
+        let rows: Vec<&str> = text.lines().collect();
+        assert_eq!(rows[0], "00000000  44 49 53 50  \"DISP\"");
+        assert_eq!(rows[2], "00000008  41 3b        \"A;\"");
+        assert_eq!(rows[3], "                       command: DISPLAY A;");
+        assert_eq!(rows.len(), 4);
     }
 
     /// The rows without bytes.

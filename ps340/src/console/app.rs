@@ -197,7 +197,7 @@ impl eframe::App for App {
             Panel::bottom("devices").show(ui, |ui| self.show_devices(ui, &shown));
         }
         if let Some(view) = self.view.and_then(|index| self.views.get_mut(index)) {
-            Panel::right("view").resizable(true).default_size(380.0).show(ui, |ui| {
+            Panel::right("view").resizable(true).default_size(440.0).show(ui, |ui| {
                 view.show(ui, &shown, &mut self.orders);
             });
         }

@@ -7,6 +7,8 @@ use std::{collections::BTreeMap, fmt::Write, sync::Arc};
 
 /// Lines of the listing that are shown; the latest.
 const MAX_LINES: usize = 2_000;
+/// Bytes in a row: few, so that their meaning has room beside them.
+const ROW: usize = 8;
 
 /// A listing of what passed lately.
 #[derive(Default)]
@@ -53,7 +55,8 @@ fn list(passed: &[Passed]) -> Vec<String> {
     let mut text = String::new();
     for piece in passed {
         let sender = if piece.from_host { Sender::Host } else { Sender::Machine };
-        let listing = listings.entry((piece.line, piece.from_host)).or_insert_with(|| Listing::of(sender));
+        let listing =
+            listings.entry((piece.line, piece.from_host)).or_insert_with(|| Listing::of(sender).with_row(ROW));
         let seconds = piece.micros as f64 / 1e6;
         let direction = if piece.from_host { "from" } else { "to" };
         // Writing into a string does not fail.
