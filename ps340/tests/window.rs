@@ -71,6 +71,8 @@ struct Desk {
     places: Arc<Mutex<HashMap<String, [i32; 2]>>>,
     operator: BufReader<TcpStream>,
     host: TcpStream,
+    /// The number that the X server gave the window.
+    window: String,
     _machine: Running,
 }
 
@@ -100,15 +102,19 @@ impl Desk {
             stream
         };
         let operator = BufReader::new(connect(&operator));
-        let desk = Desk { host: connect(&line), display, places, operator, _machine: machine };
+        let mut desk =
+            Desk { host: connect(&line), display, places, operator, window: String::new(), _machine: machine };
         desk.place("vector screen");
         // Without a window manager nobody gives the window the keyboard; it is there a moment after its first picture.
-        let focus = ["search", "--onlyvisible", "--limit", "1", "--name", "^PS 340$", "windowfocus", "--sync"];
+        let search = ["search", "--onlyvisible", "--limit", "1", "--name", "^PS 340$"];
         let begin = Instant::now();
-        while !desk.display.command("xdotool").args(focus).status().expect("xdotool runs").success() {
+        while desk.window.is_empty() {
             assert!(begin.elapsed() < PATIENCE, "the window is not there");
             std::thread::sleep(Duration::from_millis(100));
+            let found = desk.display.command("xdotool").args(search).output().expect("xdotool runs");
+            desk.window = String::from_utf8_lossy(&found.stdout).trim().to_owned();
         }
+        desk.display.act(&format!("windowfocus --sync {}", desk.window));
         Some(desk)
     }
 
@@ -125,6 +131,12 @@ impl Desk {
             assert!(begin.elapsed() < PATIENCE, "the {device} is not shown");
             std::thread::sleep(Duration::from_millis(500));
         }
+    }
+
+    fn click(&self, device: &str) {
+        let [x, y] = self.place(device);
+        self.display.act(&format!("mousemove {x} {y}"));
+        self.display.act("click 1");
     }
 
     fn order(&mut self, order: &str) -> String {
@@ -207,15 +219,12 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     );
     desk.expect("show LATER", "VECTOR_LIST");
     let [x, y] = desk.place("vector screen");
-    desk.display.act(&format!("mousemove {x} {y}"));
-    desk.display.act("click 1");
+    desk.click("vector screen");
     desk.display.act("key F3");
     desk.expect("message 60", "ok 3");
 
     // A lighted button that is clicked.
-    let [button_x, button_y] = desk.place("button 7");
-    desk.display.act(&format!("mousemove {button_x} {button_y}"));
-    desk.display.act("click 1");
+    desk.click("button 7");
     desk.expect("message 60", "ok 7");
 
     // The word OPEN of the menu is picked with the puck.
@@ -235,4 +244,34 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     desk.display.act("type --delay 60 TYPED:=F:PRINT;");
     desk.display.act("key Return");
     desk.expect("show TYPED", "PRINT");
+
+    // The pane of the tablet: the puck in the middle of its right half.
+    desk.tell("CONNECT TABLETIN<1>:<1>TEXT; CONNECT BUTTONSIN<1>:<1>TEXT;\n");
+    desk.click("view Tablet");
+    let [x, y] = desk.place("tablet");
+    desk.display.act(&format!("mousemove {} {y}", x + 60));
+    desk.expect("message 60", "ok V 0.");
+
+    // The knob of the brightness at its lowest.
+    desk.click("view Display");
+    let [x, y] = desk.place("knob brightness");
+    desk.display.act(&format!("mousemove {} {y}", x + 30));
+    desk.display.act("mousedown 1");
+    desk.display.act(&format!("mousemove {} {y}", x - 20));
+    desk.display.act("mouseup 1");
+    desk.expect("knob", "brightness 0,");
+    desk.click("view Display");
+
+    // From a pixel to 8K and back, the window shows what it is given.
+    let before = desk.place("button 9");
+    for size in ["1 1", "7680 4320", "1280 860"] {
+        desk.display.act(&format!("windowsize {} {size}", desk.window));
+        desk.expect("refresh", "Hz");
+    }
+    let begin = Instant::now();
+    while desk.place("button 9") != before {
+        assert!(begin.elapsed() < PATIENCE, "the window is not as it was");
+    }
+    desk.click("button 9");
+    desk.expect("message 60", "ok 9");
 }

@@ -7,6 +7,7 @@ use super::{
     mapping::Mapping,
     orders::Orders,
     pad::Pad,
+    places,
     screens::{RasterScreen, VectorScreen},
     views::{self, View},
 };
@@ -123,7 +124,9 @@ impl App {
             ui.separator();
             for (index, view) in self.views.iter().enumerate() {
                 let is_open = self.view == Some(index);
-                if ui.selectable_label(is_open, view.title()).clicked() {
+                let tab = ui.selectable_label(is_open, view.title());
+                places::note(ui, &format!("view {}", view.title()), tab.rect.center());
+                if tab.clicked() {
                     self.view = (!is_open).then_some(index);
                 }
             }

@@ -1,8 +1,11 @@
 //! The knobs of the display, its phosphor, and how the beam keeps up.
 
 use super::{Asked, Orders, Shown, Ui, View, refresh_row};
-use crate::calligraphic::{KNOBS, PHOSPHORS, SCREENS};
-use egui::{ComboBox, Slider};
+use crate::{
+    calligraphic::{KNOBS, PHOSPHORS, SCREENS},
+    console::places,
+};
+use egui::{ComboBox, Slider, vec2};
 
 /// What a person sets at the display.
 pub struct DisplayView;
@@ -22,7 +25,9 @@ impl View for DisplayView {
             for knob in KNOBS {
                 ui.label(knob.name);
                 let mut at = knob.get(controls);
-                if ui.add(Slider::new(&mut at, 0.0..=1.0).fixed_decimals(2)).changed() {
+                let slider = ui.add(Slider::new(&mut at, 0.0..=1.0).fixed_decimals(2));
+                places::note(ui, &format!("knob {}", knob.name), slider.rect.left_center() + vec2(2.0, 0.0));
+                if slider.changed() {
                     orders.give(format!("knob {} {at}", knob.name));
                 }
                 ui.end_row();
