@@ -78,8 +78,7 @@ impl App {
         App {
             mirror,
             orders: Orders::new(orders),
-            mapping: appearance.mapping,
-            vector: VectorScreen::new(context.clone()),
+            vector: VectorScreen::new(context.clone(), appearance.mapping.mouse()),
             raster: RasterScreen::default(),
             raster_place: RasterPlace::default(),
             raster_seen: false,
@@ -87,9 +86,10 @@ impl App {
             pad: Pad::new(context),
             row: Row::default(),
             devices: true,
-            views: views::all(),
+            views: views::all(appearance.mapping.mouse()),
             view: None,
             drawn_by,
+            mapping: appearance.mapping,
         }
     }
 

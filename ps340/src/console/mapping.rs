@@ -1,7 +1,8 @@
-//! What keys of the window and of a game controller do: a table from a file, each entry an order of the operator.
+//! What keys of the window, the mouse and a game controller do: a table from a file, each entry an order of the
+//! operator.
 
 use crate::operator::{self, Order, OrderError};
-use egui::{Key, Modifiers};
+use egui::{Key, Modifiers, PointerButton};
 use std::collections::HashMap;
 
 /// The table that is in force without a file. A file changes or adds entries.
@@ -16,10 +17,38 @@ struct Chord {
     alt: bool,
 }
 
-/// What keys, and the buttons and axes of a game controller, do.
+/// What a button of the mouse does over a picture of the tablet.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Click {
+    /// It is a button of the puck, with this code, as long as it is down.
+    Puck(u8),
+    /// An order, when it goes down.
+    Order(String),
+}
+
+/// What the mouse does over a picture of the tablet, besides moving the puck.
+#[derive(Clone, Debug, Default)]
+pub struct Mouse {
+    /// In the order of [`MOUSE_BUTTONS`].
+    buttons: [Option<Click>; MOUSE_BUTTONS.len()],
+    /// Orders of a step of the wheel, up and down.
+    wheel: [Option<String>; 2],
+}
+
+/// The buttons of a mouse by name.
+const MOUSE_BUTTONS: [(&str, PointerButton); 5] = [
+    ("left", PointerButton::Primary),
+    ("middle", PointerButton::Middle),
+    ("right", PointerButton::Secondary),
+    ("back", PointerButton::Extra1),
+    ("forward", PointerButton::Extra2),
+];
+
+/// What keys, the mouse, and the buttons and axes of a game controller, do.
 #[derive(Clone, Debug)]
 pub struct Mapping {
     keys: HashMap<Chord, String>,
+    mouse: Mouse,
     /// Orders by button.
     buttons: HashMap<u8, String>,
     /// Dial, and its turns a second at the end of the way, by axis.
@@ -43,7 +72,7 @@ pub enum MappingProblem {
     #[error("there is no '=' between a key and an order")]
     NoEquals,
     /// A key that is not known.
-    #[error("'{0}' is no key; examples: F1, Ctrl+Alt+C, Up, pad button 0, pad axis 1")]
+    #[error("'{0}' is no key; examples: F1, Ctrl+Alt+C, Up, mouse left, wheel up, pad button 0, pad axis 1")]
     Key(String),
     /// The order is none.
     #[error(transparent)]
@@ -55,7 +84,8 @@ pub enum MappingProblem {
 
 impl Default for Mapping {
     fn default() -> Mapping {
-        let mut mapping = Mapping { keys: HashMap::new(), buttons: HashMap::new(), axes: HashMap::new() };
+        let mut mapping =
+            Mapping { keys: HashMap::new(), mouse: Mouse::default(), buttons: HashMap::new(), axes: HashMap::new() };
         let read = mapping.read(DEFAULT_MAPPING);
         debug_assert!(read.is_ok(), "{read:?}");
         mapping
@@ -92,6 +122,15 @@ impl Mapping {
         } else if let Some(number) = key.strip_prefix("pad button ") {
             let button = number.trim().parse().map_err(|_| unknown())?;
             put(&mut self.buttons, button, order);
+        } else if let Some(name) = key.strip_prefix("mouse ") {
+            let place = MOUSE_BUTTONS.iter().position(|row| row.0.eq_ignore_ascii_case(name.trim()));
+            self.mouse.buttons[place.ok_or_else(unknown)?] = parsed.map(|parsed| match parsed {
+                Order::PuckPress(code) => Click::Puck(code),
+                _ => Click::Order(order.into()),
+            });
+        } else if let Some(direction) = key.strip_prefix("wheel ") {
+            let place = ["up", "down"].iter().position(|name| name.eq_ignore_ascii_case(direction.trim()));
+            self.mouse.wheel[place.ok_or_else(unknown)?] = parsed.map(|_| order.into());
         } else {
             put(&mut self.keys, Chord::named(key).ok_or_else(unknown)?, order);
         }
@@ -104,6 +143,11 @@ impl Mapping {
         self.keys.get(&chord).map(String::as_str)
     }
 
+    /// What the mouse does.
+    pub fn mouse(&self) -> &Mouse {
+        &self.mouse
+    }
+
     /// The order of a button of a game controller.
     pub fn button(&self, button: u8) -> Option<&str> {
         self.buttons.get(&button).map(String::as_str)
@@ -112,6 +156,19 @@ impl Mapping {
     /// The dial that an axis of a game controller turns, and its turns a second at the end of the way.
     pub fn axis(&self, axis: u8) -> Option<(u8, f64)> {
         self.axes.get(&axis).copied()
+    }
+}
+
+impl Mouse {
+    /// What a button does.
+    pub fn button(&self, button: PointerButton) -> Option<&Click> {
+        let place = MOUSE_BUTTONS.iter().position(|row| row.1 == button)?;
+        self.buttons[place].as_ref()
+    }
+
+    /// The order of a step of the wheel.
+    pub fn wheel(&self, is_up: bool) -> Option<&str> {
+        self.wheel[usize::from(!is_up)].as_deref()
     }
 }
 
@@ -151,6 +208,8 @@ mod tests {
         assert_eq!(mapping.key(Key::ArrowUp, Modifiers::NONE), Some("key up"));
         assert_eq!(mapping.axis(0), Some((2, 0.5)));
         assert_eq!(mapping.button(3), Some("key 4"));
+        assert_eq!(mapping.mouse().button(PointerButton::Secondary), Some(&Click::Puck(4)));
+        assert_eq!(mapping.mouse().wheel(true), None);
     }
 
     #[test]
@@ -161,6 +220,11 @@ mod tests {
         assert_eq!(mapping.key(Key::Q, Modifiers::CTRL | Modifiers::ALT), Some("quit"));
         assert_eq!(mapping.key(Key::F2, Modifiers::NONE), None);
         assert_eq!(mapping.axis(2), Some((8, -1.0)));
+        mapping.read("mouse right = key 5\nmouse middle =\nwheel down = dial 4 -0.02\n").unwrap();
+        let mouse = mapping.mouse();
+        assert_eq!(mouse.button(PointerButton::Secondary), Some(&Click::Order("key 5".into())));
+        assert_eq!(mouse.button(PointerButton::Middle), None);
+        assert_eq!((mouse.wheel(true), mouse.wheel(false)), (None, Some("dial 4 -0.02")));
     }
 
     #[test]
@@ -171,5 +235,6 @@ mod tests {
         assert!(wrong("F1 = kee 1").contains("did you mean 'key'"));
         assert!(wrong("pad axis 1 = key 1").contains("an axis turns a dial"));
         assert!(wrong("pad button x = key 1").contains("no key"));
+        assert!(wrong("mouse up = key 1").contains("no key") && wrong("wheel left = key 1").contains("no key"));
     }
 }

@@ -1,20 +1,23 @@
 //! The puck of the tablet, which the mouse is over the vector screen and over the picture of the tablet.
 
-use super::orders::Orders;
-use egui::{Event, PointerButton, Pos2, Rect, Response, Ui};
+use super::{
+    mapping::{Click, Mouse},
+    orders::Orders,
+};
+use egui::{Event, MouseWheelUnit, Pos2, Rect, Response, Ui};
 
-/// The mouse buttons with the codes of the puck's buttons.
-pub const PUCK_BUTTONS: [(PointerButton, u8); 5] = [
-    (PointerButton::Primary, 1),
-    (PointerButton::Middle, 2),
-    (PointerButton::Secondary, 4),
-    (PointerButton::Extra1, 8),
-    (PointerButton::Extra2, 8),
-];
+/// Points of the wheel that count as a step.
+const POINTS_PER_STEP: f32 = 50.0;
+/// Most steps that one movement of the wheel makes.
+const MOST_STEPS: f32 = 100.0;
 
 /// The puck, which the mouse is while it is over a picture of the tablet.
 #[derive(Debug, Default)]
 pub struct Puck {
+    /// What buttons and wheel of the mouse do.
+    mouse: Mouse,
+    /// Steps of the wheel that are not whole yet.
+    wheel: f32,
     /// Where it is, if it is on the tablet.
     place: Option<[f32; 2]>,
     /// The codes of the buttons that are down.
@@ -34,9 +37,14 @@ impl Puck {
         }
     }
 
+    /// A puck that is off the tablet when the mouse is.
+    pub fn new(mouse: &Mouse) -> Puck {
+        Puck { mouse: mouse.clone(), ..Puck::default() }
+    }
+
     /// A puck that lies where the mouse leaves it, until it is taken off.
-    pub fn that_stays() -> Puck {
-        Puck { stays: true, ..Puck::default() }
+    pub fn that_stays(mouse: &Mouse) -> Puck {
+        Puck { stays: true, ..Puck::new(mouse) }
     }
 
     /// Takes it off the tablet.
@@ -66,16 +74,21 @@ impl Puck {
                 Event::PointerMoved(at) => self.go(Some(*at), area, &mut orders),
                 Event::PointerGone => self.go(None, area, &mut orders),
                 Event::PointerButton { pos, button, pressed, .. } => {
-                    let code = PUCK_BUTTONS.iter().find(|(name, _)| name == button).map_or(0, |(_, code)| *code);
                     self.go(Some(*pos), area, &mut orders);
-                    match pressed {
-                        true if area.contains(*pos) => self.press(self.pressed | code, &mut orders),
-                        true => {}
-                        false => {
-                            self.press(self.pressed & !code, &mut orders);
-                            self.go(Some(*pos), area, &mut orders);
-                        }
+                    let is_here = *pressed && area.contains(*pos);
+                    match self.mouse.button(*button) {
+                        Some(Click::Puck(code)) if is_here => self.press(self.pressed | code, &mut orders),
+                        Some(Click::Puck(code)) if !pressed => self.press(self.pressed & !code, &mut orders),
+                        Some(Click::Order(order)) if is_here => orders.push(order.clone()),
+                        _ => {}
                     }
+                    if !pressed {
+                        self.go(Some(*pos), area, &mut orders);
+                    }
+                }
+                Event::MouseWheel { unit, delta, .. } if self.place.is_some() => {
+                    let steps = if *unit == MouseWheelUnit::Point { delta.y / POINTS_PER_STEP } else { delta.y };
+                    self.roll(steps, &mut orders);
                 }
                 _ => {}
             }
@@ -99,6 +112,15 @@ impl Puck {
         }
     }
 
+    fn roll(&mut self, steps: f32, orders: &mut Vec<String>) {
+        self.wheel += steps;
+        let whole = self.wheel.trunc();
+        self.wheel -= whole;
+        if let Some(order) = self.mouse.wheel(whole > 0.0) {
+            orders.extend((0..whole.abs().min(MOST_STEPS) as u32).map(|_| order.to_owned()));
+        }
+    }
+
     fn press(&mut self, pressed: u8, orders: &mut Vec<String>) {
         if pressed != self.pressed {
             self.pressed = pressed;
@@ -116,6 +138,8 @@ fn place(at: Pos2, area: Rect) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::console::mapping::Mapping;
+    use egui::{Modifiers, MouseWheelSource, PointerButton, TouchPhase, vec2};
 
     #[test]
     fn the_corners_of_the_screen_are_those_of_the_tablet() {
@@ -135,7 +159,8 @@ mod tests {
             pressed,
             modifiers: Default::default(),
         };
-        let mut puck = Puck::default();
+        let mapping = Mapping::default();
+        let mut puck = Puck::new(mapping.mouse());
         let mut orders = |events: &[Event]| puck.orders(events, area).join("; ");
         let click = [Event::PointerMoved(Pos2::new(150.0, 100.0)), button(true, 150.0), button(false, 150.0)];
         assert_eq!(orders(&click), "puck move 0.5 0; puck press 2; puck release");
@@ -143,8 +168,23 @@ mod tests {
         let drawn = [button(true, 150.0), Event::PointerMoved(Pos2::new(300.0, 100.0)), button(false, 300.0)];
         assert_eq!(orders(&drawn), "puck press 2; puck move 1 0; puck release; puck away");
         assert_eq!(orders(&[button(true, 300.0), button(false, 300.0), Event::PointerGone]), "");
+        // The wheel and a button that are mapped to orders.
+        let mut mapping = Mapping::default();
+        mapping.read("wheel up = dial 4 0.02\nmouse middle = key 5").expect("good lines");
+        let mut puck = Puck::new(mapping.mouse());
+        let roll = |y| Event::MouseWheel {
+            unit: MouseWheelUnit::Line,
+            delta: vec2(0.0, y),
+            phase: TouchPhase::Move,
+            source: MouseWheelSource::Unknown,
+            modifiers: Modifiers::NONE,
+        };
+        assert_eq!(puck.orders(&[roll(3.0)], area).join("; "), "");
+        let events =
+            [Event::PointerMoved(Pos2::new(150.0, 100.0)), roll(0.5), roll(1.5), roll(-1.0), button(true, 150.0)];
+        assert_eq!(puck.orders(&events, area).join("; "), "puck move 0.5 0; dial 4 0.02; dial 4 0.02; key 5");
         // One that stays is left where it was when the mouse goes.
-        let mut puck = Puck::that_stays();
+        let mut puck = Puck::that_stays(mapping.mouse());
         let left = puck.orders(&[Event::PointerMoved(Pos2::new(150.0, 100.0)), Event::PointerGone], area);
         assert_eq!((left.join("; ").as_str(), puck.place()), ("puck move 0.5 0", Some([0.5, 0.0])));
     }

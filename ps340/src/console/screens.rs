@@ -2,7 +2,7 @@
 
 use super::{
     keyboard,
-    mapping::Mapping,
+    mapping::{Mapping, Mouse},
     orders::Orders,
     painter::{Painter, Wanted},
     places,
@@ -27,8 +27,8 @@ pub struct VectorScreen {
 
 impl VectorScreen {
     /// A dark screen.
-    pub fn new(context: egui::Context) -> VectorScreen {
-        VectorScreen { painter: Painter::new(context), texture: None, puck: Puck::default() }
+    pub fn new(context: egui::Context, mouse: &Mouse) -> VectorScreen {
+        VectorScreen { painter: Painter::new(context), texture: None, puck: Puck::new(mouse) }
     }
 
     /// Shows the screen as the largest square of the space that is left, and orders what puck and keyboard do.

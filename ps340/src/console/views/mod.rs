@@ -9,7 +9,7 @@ mod network;
 mod structure;
 mod tablet;
 
-use super::orders::Orders;
+use super::{mapping::Mouse, orders::Orders};
 use crate::shell::{Asked, Shown};
 use egui::Ui;
 
@@ -24,14 +24,16 @@ pub trait View {
 }
 
 /// Every view, in the order of their tabs.
-pub fn all() -> Vec<Box<dyn View>> {
+///
+/// - `mouse`: what the mouse does over the tablet.
+pub fn all(mouse: &Mouse) -> Vec<Box<dyn View>> {
     vec![
         Box::new(network::NetworkView::default()),
         Box::new(structure::StructureView::default()),
         Box::new(line::LineView::default()),
         Box::new(counters::CountersView::default()),
         Box::new(display::DisplayView),
-        Box::new(tablet::TabletView::default()),
+        Box::new(tablet::TabletView::new(mouse)),
         Box::new(messages::MessagesView),
         Box::new(help::HelpView::default()),
     ]

@@ -1,23 +1,23 @@
 //! The tablet as a pane of its own: the mouse over it is the puck, which stays where it is left.
 
 use super::{Asked, Orders, Shown, Ui, View};
-use crate::console::{
-    places,
-    puck::{PUCK_BUTTONS, Puck},
-};
+use crate::console::{mapping::Mouse, places, puck::Puck};
 use egui::{Color32, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Vec2, WidgetInfo, vec2};
 
 /// Lines of the grid on the tablet, across.
 const GRID: usize = 11;
+/// The codes of the puck's buttons.
+const BUTTONS: [u8; 4] = [1, 2, 4, 8];
 
 /// The tablet with the puck on it.
 pub struct TabletView {
     puck: Puck,
 }
 
-impl Default for TabletView {
-    fn default() -> TabletView {
-        TabletView { puck: Puck::that_stays() }
+impl TabletView {
+    /// A tablet whose puck does what `mouse` says.
+    pub fn new(mouse: &Mouse) -> TabletView {
+        TabletView { puck: Puck::that_stays(mouse) }
     }
 }
 
@@ -31,7 +31,7 @@ impl View for TabletView {
     fn show(&mut self, ui: &mut Ui, _shown: &Shown, orders: &mut Orders) {
         ui.weak("The mouse is the puck. It stays where you leave it; its buttons are those of the mouse, or these:");
         ui.horizontal(|ui| {
-            for (_, code) in &PUCK_BUTTONS[..4] {
+            for code in BUTTONS {
                 let response = ui.button(format!("  {code}  "));
                 if response.clicked() && self.puck.place().is_some() {
                     orders.give(format!("puck press {code}"));
@@ -73,7 +73,7 @@ fn paint(ui: &Ui, area: Rect, puck: &Puck) {
     }
     let body = Rect::from_center_size(at + vec2(0.0, 40.0), vec2(34.0, 46.0));
     painter.rect(body, 6.0, Color32::from_gray(60), Stroke::new(1.0, ink), StrokeKind::Inside);
-    for (place, (_, code)) in PUCK_BUTTONS[..4].iter().enumerate() {
+    for (place, code) in BUTTONS.into_iter().enumerate() {
         let offset = vec2((place % 2) as f32 * 14.0 - 7.0, (place / 2) as f32 * 14.0 - 9.0);
         let lit = puck.pressed() & code != 0;
         let colour = if lit { Color32::WHITE } else { Color32::from_gray(110) };
