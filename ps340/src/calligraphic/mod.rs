@@ -34,7 +34,10 @@
 mod bins;
 mod controls;
 mod display;
+mod drawer;
 mod exposure;
+#[cfg(feature = "window")]
+mod gpu;
 mod light;
 mod optics;
 mod phosphor;
@@ -46,7 +49,10 @@ mod widest;
 
 pub use controls::{Controls, KNOBS, Knob, SCREENS};
 pub use display::Display;
+pub use drawer::Drawer;
 pub use exposure::Exposure;
+#[cfg(feature = "window")]
+pub use gpu::{Gpu, GpuError};
 pub use light::Light;
 pub use phosphor::{Component, PHOSPHORS, Phosphor, phosphor};
 pub use print::{svg, text};
