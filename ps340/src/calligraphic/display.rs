@@ -123,11 +123,6 @@ impl Display {
         changed || (frame > written.frame && !self.stands(&written))
     }
 
-    /// Whether it must be shown every frame in which its strokes change, as what it shows depends on the past.
-    pub fn remembers(&self) -> bool {
-        !self.emission.slow.is_empty() || !self.controls.steady
-    }
-
     /// Lets time go to a frame, in which the picture is `strokes`. Frames before it had the strokes of before.
     ///
     /// - `version`: the same number for the same strokes.

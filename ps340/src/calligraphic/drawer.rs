@@ -1,7 +1,7 @@
 //! Who writes the light of the strokes: the processor, or a graphics processor.
 
 #[cfg(feature = "window")]
-use super::gpu::Gpu;
+use super::gpu::{Gpu, GpuError};
 use super::{Light, bins::Bins};
 use crate::traversal::Stroke;
 #[cfg(feature = "window")]
@@ -30,6 +30,44 @@ impl Drawer {
             return;
         }
         light.write(bins, strokes);
+    }
+}
+
+/// Who is to write the light of the strokes.
+#[cfg(feature = "window")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Choice {
+    /// A graphics processor, if there is one that is no software, and a window that it is worth while for; else the
+    /// processor.
+    Auto,
+    /// The processor: the same picture to the bit everywhere.
+    Cpu,
+    /// A graphics processor, even one that is software.
+    Gpu,
+}
+
+#[cfg(feature = "window")]
+impl Choice {
+    /// Who writes the light.
+    ///
+    /// - `has_window`: whether somebody waits for pictures. Without a window few are made, in files, and these are to be
+    ///   the same everywhere.
+    ///
+    /// # Errors
+    /// Why a graphics processor that must be is not there.
+    pub fn drawer(self, has_window: bool) -> Result<Drawer, GpuError> {
+        let opened = match (self, has_window) {
+            (Choice::Gpu, _) => Gpu::open(true)?,
+            (Choice::Auto, true) => match Gpu::open(false) {
+                Ok(gpu) => gpu,
+                Err(error) => {
+                    tracing::debug!("{error}");
+                    return Ok(Drawer::Processor);
+                }
+            },
+            (Choice::Auto, false) | (Choice::Cpu, _) => return Ok(Drawer::Processor),
+        };
+        Ok(Drawer::Gpu(Arc::new(opened)))
     }
 }
 

@@ -66,7 +66,7 @@ pub(super) const ROWS: &[OrderRow] = &[
     OrderRow {
         word: "refresh",
         arguments: "",
-        summary: "how long the beam needs for the picture, and how often it draws it",
+        summary: "how long the beam needs for the picture, how often it draws it, and which processor makes its light",
         read: |_| Ok(Order::Sight(SightOrder::Refresh)),
     },
 ];
@@ -184,7 +184,8 @@ fn refresh(machine: &mut Machine) -> String {
     machine.renew_picture();
     let refresh = machine.refresh();
     let held = if machine.controls().steady && refresh.frames > 1 { ", held steady" } else { "" };
-    format!("{:.1} microseconds, {} Hz{held}", refresh.micros, refresh.rate() as f32)
+    let drawer = machine.screen().drawer();
+    format!("{:.1} microseconds, {} Hz{held}, drawn by {drawer}", refresh.micros, refresh.rate() as f32)
 }
 
 /// Writes a picture or a drawing, by the ending of the file's name.
