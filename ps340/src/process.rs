@@ -1,7 +1,7 @@
 //! The process `ps340`: arguments, log and exit codes around the shell.
 
 #[cfg(feature = "window")]
-use crate::console;
+use crate::{calligraphic::Choice, console};
 use crate::{
     cli,
     line::LineAddress,
@@ -60,6 +60,10 @@ struct Arguments {
     #[cfg(feature = "window")]
     #[arg(long)]
     window: bool,
+    /// Who draws the light of the vector screen.
+    #[cfg(feature = "window")]
+    #[arg(long, value_enum, default_value = "auto")]
+    beam: Choice,
     /// Changes what keys of the window do; 'ps340 mapping' prints the table that is in force without a file.
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE", requires = "window")]
@@ -116,7 +120,17 @@ pub fn main() -> ExitCode {
         PlainText::Terminal => KeyboardMode::Terminal,
     };
     let settings = Settings { plain_text: arguments.plain_text, keyboard: arguments.keyboard.unwrap_or(usual) };
-    let options = Options { listen, capture: arguments.capture, operator, clock: arguments.clock, settings };
+    #[cfg(feature = "window")]
+    let drawer = match arguments.beam.drawer(arguments.window) {
+        Ok(drawer) => drawer,
+        Err(error) => {
+            eprintln!("ps340: --beam gpu: {error}");
+            return ExitCode::from(1);
+        }
+    };
+    #[cfg(not(feature = "window"))]
+    let drawer = crate::calligraphic::Drawer::Processor;
+    let options = Options { listen, capture: arguments.capture, operator, clock: arguments.clock, settings, drawer };
     // What is not for a host must not stand in its stream.
     let say = |line: &str| match stdio_lines {
         0 => {

@@ -76,6 +76,11 @@ impl Controls {
         Beam { blur: 10.0_f32.powf(1.0 - self.focus), contrast: 2.0 * self.contrast, ..Beam::new(width, height) }
     }
 
+    /// Whether what is seen depends on what was seen before, so that a display must be shown every frame.
+    pub fn remembers(&self) -> bool {
+        !self.steady || self.phosphor.glows()
+    }
+
     /// The response of the picture.
     pub fn exposure(&self) -> Exposure {
         let factor = 2.0 * self.brightness;

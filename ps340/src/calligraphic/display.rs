@@ -14,6 +14,7 @@
 //! What a display shows first is taken to have stood there for long.
 
 use super::bins::Bins;
+use super::drawer::Drawer;
 use super::exposure::Exposure;
 use super::light::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile};
 use super::phosphor::Emission;
@@ -39,6 +40,7 @@ pub struct Display {
     size: [u32; 2],
     emission: Emission,
     light: Light,
+    drawer: Drawer,
     bins: Bins,
     /// Red, green, blue and 255 of each pixel.
     rgba: Vec<u8>,
@@ -64,19 +66,29 @@ struct Written {
 }
 
 impl Display {
-    /// A dark display of some width and height in pixels, at most [`super::MAX_SIZE`].
+    /// A dark display of some width and height in pixels, at most [`super::MAX_SIZE`], whose light the processor writes.
     pub fn new(controls: Controls, size: [u32; 2]) -> Self {
+        Self::drawn_by(Drawer::Processor, controls, size)
+    }
+
+    /// The same with somebody who writes its light.
+    pub fn drawn_by(drawer: Drawer, controls: Controls, size: [u32; 2]) -> Self {
         let emission = controls.phosphor.emission();
         let light = controls.beam(size).dark(controls.phosphor.guns());
         let size = [light.width(), light.height()];
         let rgba = [0, 0, 0, 255].repeat(size[0] as usize * size[1] as usize);
         let bins = Bins::default();
-        Self { controls, size, emission, light, bins, rgba, written: None, stale: false, unexposed: false }
+        Self { controls, size, emission, light, drawer, bins, rgba, written: None, stale: false, unexposed: false }
     }
 
     /// Its settings.
     pub fn controls(&self) -> &Controls {
         &self.controls
+    }
+
+    /// Who writes its light.
+    pub fn drawer(&self) -> &Drawer {
+        &self.drawer
     }
 
     /// Width and height in pixels.
@@ -88,7 +100,7 @@ impl Display {
     pub fn set_controls(&mut self, controls: Controls) {
         let before = std::mem::replace(&mut self.controls, controls);
         if controls.phosphor != before.phosphor || controls.screen != before.screen {
-            *self = Self::new(controls, self.size);
+            *self = Self::drawn_by(self.drawer.clone(), controls, self.size);
             return;
         }
         let optics = controls.beam(self.size).optics();
@@ -100,7 +112,7 @@ impl Display {
     /// Gives the picture another size; it begins dark.
     pub fn resize(&mut self, size: [u32; 2]) {
         if size.map(|pixels| pixels.clamp(1, super::MAX_SIZE)) != self.size {
-            *self = Self::new(self.controls, size);
+            *self = Self::drawn_by(self.drawer.clone(), self.controls, size);
         }
     }
 
@@ -111,18 +123,13 @@ impl Display {
         changed || (frame > written.frame && !self.stands(&written))
     }
 
-    /// Whether it must be shown every frame in which its strokes change, as what it shows depends on the past.
-    pub fn remembers(&self) -> bool {
-        !self.emission.slow.is_empty() || !self.controls.steady
-    }
-
     /// Lets time go to a frame, in which the picture is `strokes`. Frames before it had the strokes of before.
     ///
     /// - `version`: the same number for the same strokes.
     /// - `frame`: frames of 1/60 s; a frame before the one that is shown counts as that.
     pub fn show(&mut self, strokes: &[Stroke], version: u64, frame: u64) {
         let Some(mut written) = self.written else {
-            self.light.write(&mut self.bins, strokes);
+            self.drawer.write(&mut self.light, &mut self.bins, strokes);
             let period = self.period(strokes);
             self.glow(1, f64::INFINITY, period, 0);
             self.written = Some(Written { version, frame, refreshed: frame, period, stood: u64::MAX / 2 });
@@ -148,7 +155,7 @@ impl Display {
             let since = written.frame + elapsed - last;
             if changed {
                 self.glow(last - written.frame, (refreshes - 1) as f64, written.period, written.period);
-                self.light.write(&mut self.bins, strokes);
+                self.drawer.write(&mut self.light, &mut self.bins, strokes);
                 self.glow(since, 1.0, 1, since);
                 written = Written { version, period: self.period(strokes), stood: 0, ..written };
                 self.stale = false;
@@ -160,7 +167,7 @@ impl Display {
             // No refresh begins; what one in this very frame writes may still change.
             self.glow(elapsed, 0.0, 1, 0);
             if changed && elapsed == 0 && written.refreshed == written.frame {
-                self.light.write(&mut self.bins, strokes);
+                self.drawer.write(&mut self.light, &mut self.bins, strokes);
                 written = Written { version, period: self.period(strokes), stood: 0, ..written };
                 self.stale = false;
             }

@@ -10,8 +10,11 @@
 //! A stroke of no length is a dot, during which the beam dwells as long as it takes to write
 //! [`Beam::dot_length`]. The formula of the stroke, divided by its length, has the dot as its limit.
 //!
+//! The processor adds the light up in tiles, or a graphics processor in a texture (`gpu`); [`Drawer`] says who.
+//!
 //! From there on: the phosphor gives the light colour and duration (`phosphor`), the length of the list decides how
-//! often it is drawn (`refresh`), and the exposure makes pixels of it (`exposure`); [`Display`] holds all this over time.
+//! often it is drawn (`refresh`), and the exposure makes pixels of it (`exposure`); [`Display`] holds all this over time,
+//! and [`Screen`] is the one display that window and files show.
 //!
 //! # Energy
 //! A stroke deposits length times mean intensity times colour, whatever its angle, place and the size of
@@ -23,7 +26,7 @@
 //!
 //! # Cost
 //! Strokes are sorted into tiles of 64 by 32 pixels. A tile without light costs nothing, in memory either, and a picture
-//! that stands still costs nothing at all.
+//! that stands still costs nothing at all. A graphics processor adds the cost of its way back: 16 bytes a pixel, lit or not.
 //!
 //! # Not modelled
 //! The growth of the spot with the current and towards the corners, the pattern of the shadow mask, halation in the
@@ -34,23 +37,33 @@
 mod bins;
 mod controls;
 mod display;
+mod drawer;
 mod exposure;
+#[cfg(feature = "window")]
+mod gpu;
 mod light;
 mod optics;
 mod phosphor;
 mod print;
 mod refresh;
+mod screen;
 mod spot;
 mod track;
 mod widest;
 
 pub use controls::{Controls, KNOBS, Knob, SCREENS};
 pub use display::Display;
+#[cfg(feature = "window")]
+pub use drawer::Choice;
+pub use drawer::Drawer;
 pub use exposure::Exposure;
+#[cfg(feature = "window")]
+pub use gpu::{Gpu, GpuError};
 pub use light::Light;
 pub use phosphor::{Component, PHOSPHORS, Phosphor, phosphor};
 pub use print::{svg, text};
 pub use refresh::{POSITIONING_SPEED, Refresh, SETTLING_TIME, STARTING_TIME, WRITING_SPEED};
+pub use screen::{DISPLAY_SIZE, Scene, Screen, Seen};
 
 use crate::traversal::Stroke;
 use bins::Bins;

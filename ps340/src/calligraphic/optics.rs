@@ -91,19 +91,21 @@ impl Optics {
     /// The same for the columns alone, of that part of the stroke whose light can reach rows from `top` to `bottom`.
     pub fn columns_touched(&self, stroke: &Stroke, top: usize, bottom: usize) -> Option<[usize; 2]> {
         let (start, end, _) = self.beam(stroke)?;
-        let (dx, dy) = (end[0] - start[0], end[1] - start[1]);
+        let dx = end[0] - start[0];
         let (high, low) = (top as f64 - self.reach, bottom as f64 + 1.0 + self.reach);
-        // From which to which part of the stroke it is between high and low.
-        let mut parts = [0.0f64, 1.0];
-        if dy != 0.0 {
-            let cuts = [(high - start[1]) / dy, (low - start[1]) / dy];
-            parts = [parts[0].max(cuts[0].min(cuts[1])), parts[1].min(cuts[0].max(cuts[1]))];
-        }
-        if parts[0] > parts[1] {
-            return None;
-        }
+        let mut parts = [0.0, 1.0];
+        between([start[1], end[1]], [high, low], &mut parts)?;
         let ends = parts.map(|part| start[0] + part * dx);
         self.pixels(0, ends[0].min(ends[1]) - self.reach, ends[0].max(ends[1]) + self.reach)
+    }
+
+    /// First and last place of the part of a stroke whose light can reach the picture; `None` if there is none.
+    pub fn seen(&self, start: [f64; 2], end: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+        let mut parts = [0.0, 1.0];
+        for axis in [0, 1] {
+            between([start[axis], end[axis]], [-self.reach, self.size[axis] as f64 + self.reach], &mut parts)?;
+        }
+        Some(parts.map(|part| [0, 1].map(|axis| start[axis] + part * (end[axis] - start[axis]))))
     }
 
     /// The pixels with centres from `low` to `high`, as far as the picture goes.
@@ -127,4 +129,17 @@ impl Optics {
         let current = if self.contrast == 1.0 { intensity } else { 1.0 + self.contrast * (intensity - 1.0) };
         self.peak * current
     }
+}
+
+/// Narrows parts of a stroke, 0..=1, to those that lie between two bounds; `None` if none does.
+///
+/// - `ends`: a coordinate of its start and end; `bounds`: of the lower and the upper bound.
+fn between(ends: [f64; 2], bounds: [f64; 2], parts: &mut [f64; 2]) -> Option<()> {
+    let way = ends[1] - ends[0];
+    if way == 0.0 {
+        return (bounds[0] <= ends[0] && ends[0] <= bounds[1]).then_some(());
+    }
+    let cuts = bounds.map(|bound| (bound - ends[0]) / way);
+    *parts = [parts[0].max(cuts[0].min(cuts[1])), parts[1].min(cuts[0].max(cuts[1]))];
+    (parts[0] <= parts[1]).then_some(())
 }

@@ -37,6 +37,16 @@ pub struct Component {
     pub part: f64,
 }
 
+impl Component {
+    /// What is left of its light after a frame.
+    fn keep(&self) -> f64 {
+        (-FRAME_SECONDS / self.decay).exp()
+    }
+}
+
+/// What is left after a frame of light that is not over by then.
+const SEEN: f64 = 1e-3;
+
 const fn component(gun: usize, chromaticity: [f64; 2], decay: f64, part: f64) -> Component {
     Component { gun, chromaticity, decay, part }
 }
@@ -116,14 +126,19 @@ impl Phosphor {
         self.components.iter().map(|component| component.gun + 1).max().unwrap_or(1)
     }
 
+    /// Whether some of its light lasts longer than a frame.
+    pub fn glows(&self) -> bool {
+        self.components.iter().any(|component| component.keep() > SEEN)
+    }
+
     /// What the components send out in frames, in the colours of the display.
     pub(super) fn emission(&self) -> Emission {
         let colors = self.colors();
         let mut emission = Emission { prompt: [[0.0; 3]; 3], slow: Vec::new() };
         for (component, color) in self.components.iter().zip(colors) {
             let color = color.map(|channel| (channel * component.part) as f32);
-            let keep = (-FRAME_SECONDS / component.decay).exp();
-            if keep > 1e-3 {
+            let keep = component.keep();
+            if keep > SEEN {
                 emission.slow.push(Slow { gun: component.gun, color, keep: keep as f32 });
             } else {
                 let sum = &mut emission.prompt[component.gun];

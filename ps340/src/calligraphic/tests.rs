@@ -27,7 +27,7 @@ fn numbers(mut seed: u64) -> impl FnMut() -> f32 {
 }
 
 /// Strokes of every length, direction and place, in colours.
-fn jumble(count: usize) -> Vec<Stroke> {
+pub(super) fn jumble(count: usize) -> Vec<Stroke> {
     let mut next = numbers(5);
     let place = |next: &mut dyn FnMut() -> f32| [next() * 2.4 - 1.2, next() * 2.4 - 1.2];
     (0..count)
@@ -41,7 +41,7 @@ fn jumble(count: usize) -> Vec<Stroke> {
 }
 
 /// The largest difference of two screens, over the largest light.
-fn difference(one: &Light, other: &Light) -> f64 {
+pub(super) fn difference(one: &Light, other: &Light) -> f64 {
     let (one, other) = (pixels(one), pixels(other));
     let peak = one.iter().fold(0.0f32, |peak, light| peak.max(*light));
     let pairs = one.iter().zip(&other);

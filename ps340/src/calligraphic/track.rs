@@ -23,24 +23,24 @@ const ENDLESS: f32 = 1e9;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
     /// u at the centre of the tile's first pixel.
-    u: f32,
+    pub u: f32,
     /// Distance from there to the end.
-    rest: f32,
+    pub rest: f32,
     /// v there.
-    v: f32,
+    pub v: f32,
     /// Growth of u for one pixel to the right and one downwards: the direction over the spot.
-    step: [f32; 2],
+    pub step: [f32; 2],
     /// In spots.
     length: f32,
-    current: Current,
-    color: [f32; 3],
+    pub current: Current,
+    pub color: [f32; 3],
     /// First and last row of the tile that light can reach.
     rows: [usize; 2],
 }
 
 /// How the light depends on u.
 #[derive(Clone, Copy, Debug)]
-enum Current {
+pub(super) enum Current {
     /// A dot, or a stroke so short that it is one: times this polynomial of the distance from the middle.
     Point([f32; 5]),
     /// Both ends may act on the same pixel. Current at the start, gain per spot.

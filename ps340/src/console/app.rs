@@ -47,7 +47,7 @@ pub struct App {
     devices: bool,
     views: Vec<Box<dyn View>>,
     view: Option<usize>,
-    /// What draws, in words.
+    /// What draws the window, in words.
     drawn_by: String,
 }
 
@@ -74,11 +74,11 @@ impl App {
             }
             None => "no graphics adapter".into(),
         };
-        tracing::info!("the window is drawn by {drawn_by}, the vector screen by the processor");
+        tracing::info!("the window is drawn by {drawn_by}");
         App {
-            mirror,
             orders: Orders::new(orders),
-            vector: VectorScreen::new(context.clone(), appearance.mapping.mouse()),
+            vector: VectorScreen::new(context.clone(), mirror.screen().clone(), appearance.mapping.mouse()),
+            mirror,
             raster: RasterScreen::default(),
             raster_place: RasterPlace::default(),
             raster_seen: false,
@@ -131,7 +131,11 @@ impl App {
                 }
             }
             ui.separator();
-            ui.weak(format!("{} strokes", shown.strokes.len())).on_hover_text(&self.drawn_by);
+            ui.weak(format!("{} strokes", shown.scene.strokes.len())).on_hover_text(format!(
+                "the window is drawn by {}, the vector screen by {}",
+                self.drawn_by,
+                self.mirror.screen().drawer()
+            ));
             if let Some(failure) = &self.orders.failure
                 && ui.link(RichText::new(failure).color(Color32::from_rgb(255, 120, 100))).clicked()
             {

@@ -1,6 +1,6 @@
 //! The console: a window with both screens and every device of the machine.
 //!
-//! It is the only user of egui, eframe and wgpu, and owns no state of the machine: it sees by a mirror
+//! It is the only user of egui and eframe, and owns no state of the machine: it sees by a mirror
 //! ([`crate::shell::Mirror`]) and acts by orders, as an operator on a line does.
 
 mod orders;
@@ -75,7 +75,7 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
             context.request_repaint();
         }
     };
-    let mirror = Arc::new(Mirror::new(wake));
+    let mirror = Arc::new(Mirror::new(options.drawer.clone(), wake));
     let (sender, orders) = mpsc::channel();
     let window = Window { mirror: mirror.clone(), orders };
     std::thread::scope(|scope| {

@@ -1,31 +1,22 @@
 //! The thread that draws the vector screen, so that neither the machine nor the window waits for it.
 
-use crate::{
-    calligraphic::{Controls, Display},
-    machine::PictureVersion,
-    traversal::Stroke,
-};
+use crate::calligraphic::{Scene, Screen};
 use egui::ColorImage;
 use std::sync::{Arc, Condvar, Mutex};
 
 /// What is to be drawn.
 #[derive(Clone)]
 pub struct Wanted {
-    /// Which picture the strokes are.
-    pub version: PictureVersion,
-    /// What to draw.
-    pub strokes: Arc<Vec<Stroke>>,
-    /// Knobs, phosphor, and which screen.
-    pub controls: Controls,
-    /// The frame of the machine.
-    pub frame: u64,
+    /// What to show.
+    pub scene: Scene,
     /// Width and height in pixels.
     pub size: [u32; 2],
 }
 
 impl Wanted {
     fn is(&self, other: &Wanted) -> bool {
-        self.version == other.version && self.size == other.size && self.controls == other.controls
+        let numbers = |wanted: &Wanted| (wanted.scene.version, wanted.scene.settings, wanted.size);
+        numbers(self) == numbers(other)
     }
 }
 
@@ -46,11 +37,11 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Starts the thread; it asks `context` for a repaint after each picture.
-    pub fn new(context: egui::Context) -> Painter {
+    /// Starts the thread, which draws on `screen`; it asks `context` for a repaint after each picture.
+    pub fn new(context: egui::Context, screen: Arc<Screen>) -> Painter {
         let easel = Arc::new((Mutex::new(Easel::default()), Condvar::new()));
         let shared = easel.clone();
-        std::thread::spawn(move || paint(&shared, &context));
+        std::thread::spawn(move || paint(&shared, &context, &screen));
         Painter { easel, asked: None }
     }
 
@@ -58,8 +49,8 @@ impl Painter {
     pub fn want(&mut self, wanted: Wanted) {
         let same = self.asked.as_ref().is_some_and(|asked| asked.is(&wanted));
         // A display that remembers goes along with every frame.
-        let goes_on =
-            lock(&self.easel.0).remembers && self.asked.as_ref().is_none_or(|asked| asked.frame != wanted.frame);
+        let goes_on = lock(&self.easel.0).remembers
+            && self.asked.as_ref().is_none_or(|asked| asked.scene.frame != wanted.scene.frame);
         if same && !goes_on {
             return;
         }
@@ -84,9 +75,8 @@ impl Drop for Painter {
 }
 
 /// The thread.
-fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context) {
-    let mut display: Option<Display> = None;
-    let mut versions = Versions::default();
+fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context, screen: &Screen) {
+    let mut latest = None;
     loop {
         let mut guard = lock(easel);
         let wanted = loop {
@@ -99,23 +89,18 @@ fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context) {
             guard = changed.wait(guard).unwrap_or_else(|poisoned| poisoned.into_inner());
         };
         drop(guard);
-        let display = display.get_or_insert_with(|| Display::new(wanted.controls, wanted.size));
-        display.resize(wanted.size);
-        if *display.controls() != wanted.controls {
-            display.set_controls(wanted.controls);
-        }
-        let version = versions.number(wanted.version);
-        let awaits = display.awaits(version, wanted.frame);
-        if awaits {
-            display.show(&wanted.strokes, version, wanted.frame);
-        }
-        let size = display.size().map(|pixels| pixels as usize);
+        let (image, remembers) = screen.look(&wanted.scene, Some(wanted.size), |seen| {
+            let is_new = latest.replace(seen.shown) != Some(seen.shown);
+            let size = seen.display.size().map(|pixels| pixels as usize);
+            let image = || Arc::new(ColorImage::from_rgba_unmultiplied(size, seen.display.frame()));
+            (is_new.then(image), seen.goes_on)
+        });
+        let again = remembers || image.is_some();
         let mut guard = lock(easel);
-        guard.remembers = display.remembers() && display.awaits(version, wanted.frame + 1);
-        if awaits {
-            guard.painted = Some(Arc::new(ColorImage::from_rgba_unmultiplied(size, display.frame())));
+        guard.remembers = remembers;
+        if image.is_some() {
+            guard.painted = image;
         }
-        let again = guard.remembers || awaits;
         drop(guard);
         if again {
             context.request_repaint();
@@ -123,23 +108,86 @@ fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context) {
     }
 }
 
-/// Numbers for versions, as the display wants them.
-#[derive(Default)]
-struct Versions {
-    latest: PictureVersion,
-    number: u64,
-}
-
-impl Versions {
-    fn number(&mut self, version: PictureVersion) -> u64 {
-        if version != self.latest {
-            self.latest = version;
-            self.number += 1;
-        }
-        self.number
-    }
-}
-
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        calligraphic::{Controls, phosphor},
+        line::LineId,
+        machine::{Input, Machine, Settings},
+    };
+    use std::time::{Duration, Instant};
+
+    /// What the window shows of the scene, once it is drawn.
+    fn painted(painter: &mut Painter, machine: &mut Machine, size: [u32; 2]) -> Arc<ColorImage> {
+        painter.want(Wanted { scene: machine.scene().clone(), size });
+        let begin = Instant::now();
+        loop {
+            if let Some(image) = painter.take() {
+                return image;
+            }
+            assert!(begin.elapsed() < Duration::from_secs(60), "nothing was painted");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    fn rgb(image: &ColorImage) -> Vec<u8> {
+        image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect()
+    }
+
+    #[test]
+    fn a_picture_that_is_ordered_holds_the_bytes_of_the_window_at_every_frame() {
+        let size = [90, 70];
+        for (name, steady) in [("P22", true), ("P22", false), ("P39", true), ("P7", false), ("P31", true)] {
+            let mut machine = Machine::new(Settings::default());
+            let screen = Arc::new(Screen::default());
+            machine.share_screen(screen.clone(), true);
+            let mut painter = Painter::new(egui::Context::default(), screen);
+            let controls = Controls { phosphor: phosphor(name).unwrap(), steady, ..Controls::default() };
+            machine.set_controls(controls);
+            machine.step([Input::Attach(LineId(1))], 0);
+            let mut glow = 0;
+            for turn in 0..8 {
+                let text = format!("V := VECTOR_LIST N = 2 -0.5,0.{turn} 0.5,-0.{turn}; DISPLAY V;");
+                machine.step([Input::Bytes(LineId(1), text.into_bytes())], 0);
+                machine.next_frame();
+                if turn == 5 {
+                    machine.set_controls(Controls { brightness: 0.7, ..controls });
+                }
+                if turn == 6 {
+                    // A frame that the window leaves out.
+                    machine.next_frame();
+                }
+                let window = rgb(&painted(&mut painter, &mut machine, size));
+                assert!(window.iter().any(|byte| *byte > 50), "{name} {turn}");
+                assert_eq!(machine.vector_picture(None).to_srgb(), window, "{name} {turn}");
+                assert_eq!(machine.vector_picture(Some(size)).to_srgb(), window, "{name} {turn}");
+                glow += usize::from(window != alone(&mut machine, size));
+            }
+            assert_eq!(glow > 4, name != "P22", "{name}: {glow} pictures have afterglow");
+        }
+    }
+
+    /// The picture of now without a past.
+    fn alone(machine: &mut Machine, size: [u32; 2]) -> Vec<u8> {
+        let screen = Screen::default();
+        screen.look(machine.scene(), Some(size), |seen| seen.display.picture().to_srgb())
+    }
+
+    #[test]
+    fn a_picture_that_was_ordered_first_is_what_the_window_shows_then() {
+        let mut machine = Machine::new(Settings::default());
+        let screen = Arc::new(Screen::default());
+        machine.share_screen(screen.clone(), true);
+        let mut painter = Painter::new(egui::Context::default(), screen);
+        let text = "V := VECTOR_LIST N = 2 -0.5,0 0.5,0.2; DISPLAY V;";
+        machine.step([Input::Attach(LineId(1)), Input::Bytes(LineId(1), text.into())], 0);
+        machine.next_frame();
+        let ordered = machine.vector_picture(Some([64, 64])).to_srgb();
+        assert_eq!(rgb(&painted(&mut painter, &mut machine, [64, 64])), ordered);
+    }
 }

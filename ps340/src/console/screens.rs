@@ -8,7 +8,7 @@ use super::{
     places,
     puck::Puck,
 };
-use crate::{raster::FrameBuffer, shell::Shown};
+use crate::{calligraphic::Screen, raster::FrameBuffer, shell::Shown};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, TextureHandle,
     TextureOptions, Ui, Vec2, WidgetInfo, vec2,
@@ -26,9 +26,9 @@ pub struct VectorScreen {
 }
 
 impl VectorScreen {
-    /// A dark screen.
-    pub fn new(context: egui::Context, mouse: &Mouse) -> VectorScreen {
-        VectorScreen { painter: Painter::new(context), texture: None, puck: Puck::new(mouse) }
+    /// A window on a screen.
+    pub fn new(context: egui::Context, screen: Arc<Screen>, mouse: &Mouse) -> VectorScreen {
+        VectorScreen { painter: Painter::new(context, screen), texture: None, puck: Puck::new(mouse) }
     }
 
     /// Shows the screen as the largest square of the space that is left, and orders what puck and keyboard do.
@@ -37,13 +37,7 @@ impl VectorScreen {
         let (space, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         let area = Rect::from_center_size(space.center(), Vec2::splat(side));
         let pixels = (side * ui.pixels_per_point()).round().clamp(1.0, MAX_PIXELS);
-        self.painter.want(Wanted {
-            version: shown.picture,
-            strokes: shown.strokes.clone(),
-            controls: shown.controls,
-            frame: shown.frame,
-            size: [pixels as u32; 2],
-        });
+        self.painter.want(Wanted { scene: shown.scene.clone(), size: [pixels as u32; 2] });
         if let Some(image) = self.painter.take() {
             put(&mut self.texture, ui, "vector screen", image, TextureOptions::LINEAR);
         }

@@ -25,7 +25,6 @@ pub use devices::Event;
 pub use host_line::PlainText;
 pub use keyboard::{Key, KeyboardMode};
 pub use panel::Panel;
-pub use sight::{DISPLAY_SIZE, PictureVersion};
 pub use speech::REPORTS_PER_FRAME;
 pub use tablet::TabletEvent;
 

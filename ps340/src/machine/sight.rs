@@ -1,34 +1,35 @@
 //! What is seen of the machine: the display with its settings, and which strokes it shows.
 //!
 //! The light on the screen is made when somebody looks. Only where what is seen depends on what was seen before, with a
-//! phosphor that glows on or a picture that may flicker, does the display go along with every frame.
+//! phosphor that glows on or a picture that may flicker, does the display go along with every frame: by the machine, or
+//! by the window that shares the screen ([`Machine::share_screen`]), as fast as it can.
 
 use super::Machine;
 use crate::{
-    calligraphic::{Controls, Display, Refresh},
+    calligraphic::{Controls, Display, Refresh, Scene, Screen},
     picture::Picture,
 };
-use std::cell::Cell;
+use std::{cell::Cell, sync::Arc};
 
-/// Width and height of the display if nobody says otherwise, in pixels.
-pub const DISPLAY_SIZE: [u32; 2] = [1024, 1024];
-
-/// The display, once somebody has looked.
+/// The display, and what it is to show.
 #[derive(Debug, Default)]
 pub(super) struct Sight {
+    screen: Arc<Screen>,
+    /// Whether somebody else lets the screen go along with the frames.
+    is_watched: bool,
     controls: Controls,
-    display: Option<Box<Display>>,
-    /// Of what the strokes were made.
+    /// Changes with them.
+    settings: u64,
+    /// What was to be shown lately, and of what its strokes were made.
+    scene: Scene,
     of: Option<PictureVersion>,
-    /// Changes with it.
-    version: u64,
     /// The refresh that was reckoned last, and of what.
     refresh: Cell<Option<(PictureVersion, Refresh)>>,
 }
 
 /// Of what the strokes on the screen are made: other strokes have another version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PictureVersion {
+struct PictureVersion {
     updates: u64,
     overlay: u64,
     graphics: bool,
@@ -37,6 +38,19 @@ pub struct PictureVersion {
 }
 
 impl Machine {
+    /// Takes another screen to show the picture on.
+    ///
+    /// - `is_watched`: whether its other owner looks at it in every frame.
+    pub fn share_screen(&mut self, screen: Arc<Screen>, is_watched: bool) {
+        self.sight.screen = screen;
+        self.sight.is_watched = is_watched;
+    }
+
+    /// The screen that shows the picture.
+    pub fn screen(&self) -> &Screen {
+        &self.sight.screen
+    }
+
     /// Knobs, phosphor, and which screen is looked at.
     pub fn controls(&self) -> &Controls {
         &self.sight.controls
@@ -46,15 +60,10 @@ impl Machine {
     pub fn set_controls(&mut self, controls: Controls) {
         let other_screen = controls.screen != self.sight.controls.screen;
         self.sight.controls = controls;
+        self.sight.settings += 1;
         if other_screen {
             self.tube.forget_overlay();
             self.update_overlay();
-        }
-        if let Some(display) = &mut self.sight.display {
-            display.set_controls(controls);
-        } else {
-            let display = Box::new(Display::new(controls, DISPLAY_SIZE));
-            self.sight.display = display.remembers().then_some(display);
         }
     }
 
@@ -74,8 +83,7 @@ impl Machine {
         refresh
     }
 
-    /// Which picture the vector screen shows.
-    pub fn picture_version(&self) -> PictureVersion {
+    fn picture_version(&self) -> PictureVersion {
         PictureVersion {
             updates: self.counters.updates,
             overlay: self.tube.overlay_version(),
@@ -85,55 +93,54 @@ impl Machine {
         }
     }
 
+    /// What the vector screen is to show now.
+    pub fn scene(&mut self) -> &Scene {
+        let key = self.picture_version();
+        if self.sight.of != Some(key) {
+            let strokes = Arc::new(self.visible_strokes().into_owned());
+            self.sight.of = Some(key);
+            self.sight.scene.version += 1;
+            self.sight.scene.strokes = strokes;
+        }
+        let Sight { scene, settings, controls, .. } = &mut self.sight;
+        (scene.frame, scene.settings, scene.controls) = (self.frame, *settings, *controls);
+        scene
+    }
+
     /// The pixels of the vector screen now, red, green, blue (sRGB) and 255, row after row from the top.
     ///
     /// - `size`: width and height in pixels, at most [`crate::calligraphic::MAX_SIZE`].
-    pub fn vector_frame(&mut self, size: [u32; 2]) -> &[u8] {
-        self.look(size).frame()
+    pub fn vector_frame(&mut self, size: [u32; 2]) -> Vec<u8> {
+        self.renew_picture();
+        self.look(Some(size), |display| display.frame().to_vec())
     }
 
-    /// The vector screen now: what [`Machine::vector_frame`] shows, in linear floats.
+    /// The vector screen now: what [`Machine::vector_frame`] shows, and the window, in linear floats.
     ///
     /// - `size`: width and height in pixels; those of the display if none are given. A picture of another size shows
     ///   no afterglow.
     pub fn vector_picture(&mut self, size: Option<[u32; 2]>) -> Picture {
-        let standing = self.sight.display.as_ref().map(|display| display.size());
-        let wanted = size.or(standing).unwrap_or(DISPLAY_SIZE);
-        if standing.is_none_or(|standing| standing == wanted) {
-            return self.look(wanted).picture();
-        }
         self.renew_picture();
-        let mut display = Display::new(self.sight.controls, wanted);
-        display.show(&self.visible_strokes(), 0, self.frame);
-        display.picture()
+        let standing = self.sight.screen.size();
+        if let Some(size) = size.filter(|size| standing.is_some_and(|standing| standing != *size)) {
+            let drawer = self.sight.screen.drawer().clone();
+            let mut display = Display::drawn_by(drawer, self.sight.controls, size);
+            display.show(&self.visible_strokes(), 0, self.frame);
+            return display.picture();
+        }
+        self.look(size, Display::picture)
     }
 
-    /// The display with the picture of now.
-    fn look(&mut self, size: [u32; 2]) -> &Display {
-        self.renew_picture();
-        let made = || Box::new(Display::new(self.sight.controls, size));
-        let mut display = self.sight.display.take().unwrap_or_else(made);
-        display.resize(size);
-        self.show(&mut display);
-        self.sight.display.insert(display)
+    /// Looks at the display with the scene of now.
+    fn look<T>(&mut self, size: Option<[u32; 2]>, see: impl FnOnce(&Display) -> T) -> T {
+        self.scene();
+        self.sight.screen.look(&self.sight.scene, size, |seen| see(seen.display))
     }
 
     /// Lets a display that remembers go along with the frame.
     pub(super) fn follow_frame(&mut self) {
-        if let Some(mut display) = self.sight.display.take_if(|display| display.remembers()) {
-            self.show(&mut display);
-            self.sight.display = Some(display);
-        }
-    }
-
-    fn show(&mut self, display: &mut Display) {
-        let key = self.picture_version();
-        if self.sight.of != Some(key) {
-            self.sight.of = Some(key);
-            self.sight.version += 1;
-        }
-        if display.awaits(self.sight.version, self.frame) {
-            display.show(&self.visible_strokes(), self.sight.version, self.frame);
+        if self.sight.controls.remembers() && !self.sight.is_watched {
+            self.look(None, |_| ());
         }
     }
 }

@@ -62,11 +62,11 @@ fn each_screen_shows_what_is_set_for_it() {
 fn the_picture_of_a_file_is_that_of_the_window() {
     let mut machine = machine("V := VECTOR_LIST N = 3 -0.5,0 0.5,0.3 0.1,-0.7; DISPLAY V;");
     machine.set_controls(Controls { phosphor: phosphor("P39").unwrap(), ..Controls::default() });
-    let window = machine.vector_frame([200, 120]).to_vec();
+    let window = machine.vector_frame([200, 120]);
     for text in [&b"REMOVE V;"[..], b"", b"DISPLAY V;"] {
         machine.step([Input::Bytes(LineId(1), text.to_vec())], 0);
         machine.next_frame();
-        let pixels = machine.vector_frame([200, 120]).to_vec();
+        let pixels = machine.vector_frame([200, 120]);
         let rgb: Vec<u8> = pixels.chunks_exact(4).flat_map(|pixel| pixel[..3].to_vec()).collect();
         for size in [None, Some([200, 120])] {
             assert_eq!(machine.vector_picture(size).to_srgb(), rgb);
@@ -75,7 +75,7 @@ fn the_picture_of_a_file_is_that_of_the_window() {
     }
     assert_ne!(window, machine.vector_frame([200, 120]));
     // Another size disturbs nothing.
-    let before = machine.vector_frame([200, 120]).to_vec();
+    let before = machine.vector_frame([200, 120]);
     assert_eq!(machine.vector_picture(Some([50, 70])).width(), 50);
     assert_eq!(machine.vector_frame([200, 120]), before);
 }

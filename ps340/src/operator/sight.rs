@@ -66,7 +66,7 @@ pub(super) const ROWS: &[OrderRow] = &[
     OrderRow {
         word: "refresh",
         arguments: "",
-        summary: "how long the beam needs for the picture, and how often it draws it",
+        summary: "how long the beam needs for the picture, how often it draws it, and which processor makes its light",
         read: |_| Ok(Order::Sight(SightOrder::Refresh)),
     },
 ];
@@ -182,7 +182,8 @@ fn phosphors(controls: &Controls) -> String {
 
 fn refresh(machine: &mut Machine) -> String {
     machine.renew_picture();
-    machine.refresh().describe(machine.controls().steady)
+    let refresh = machine.refresh().describe(machine.controls().steady);
+    format!("{refresh}, drawn by {}", machine.screen().drawer())
 }
 
 /// Writes a picture or a drawing, by the ending of the file's name.

@@ -253,7 +253,7 @@ fn the_display_is_set_by_orders() {
     assert_eq!(performed(&mut machine, "phosphor p31"), "P31");
     let phosphors = performed(&mut machine, "phosphor");
     assert!(phosphors.contains("\n* P31 ") && phosphors.starts_with("  P22 "), "{phosphors}");
-    assert_eq!(performed(&mut machine, "refresh"), "0.0 microseconds, 60 Hz");
+    assert_eq!(performed(&mut machine, "refresh"), "0.0 microseconds, 60 Hz, drawn by the processor");
 }
 
 #[test]

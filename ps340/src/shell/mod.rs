@@ -6,6 +6,7 @@ mod turns;
 pub use mirror::{ArcShown, Asked, FunctionShown, InputShown, Mirror, NodeShown, Passed, Shown};
 
 use crate::{
+    calligraphic::Drawer,
     line::{
         Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, Source, Surroundings,
         serve_operators, serve_stdio, serve_window,
@@ -53,6 +54,8 @@ pub struct Options {
     pub clock: Clock,
     /// Of the machine.
     pub settings: Settings,
+    /// Who writes the light of the vector screen.
+    pub drawer: Drawer,
 }
 
 /// A window on the machine: it sees by a mirror, and gives orders as an operator does.

@@ -2,6 +2,7 @@
 
 use super::{Clock, End, Mirror, Operator, Options, WAITING_EVENTS};
 use crate::{
+    calligraphic::Screen,
     line::{Capture, Interface, LineEvent, LineId, OperatorLine, Reply, Writer},
     machine::{Input, Machine, Micros, time_of_frame},
     operator::{Order, Outcome, Wait, parse, perform, reply},
@@ -52,8 +53,12 @@ impl Turns {
         inbox: mpsc::Receiver<LineEvent>,
     ) -> io::Result<Turns> {
         let sources = options.listen.len() + usize::from(options.operator != Operator::None || mirror.is_some());
+        let mut machine = Machine::new(options.settings);
+        let alone = || Arc::new(Screen::new(options.drawer.clone()));
+        machine.share_screen(mirror.as_ref().map_or_else(alone, |mirror| mirror.screen().clone()), mirror.is_some());
+        tracing::info!("the vector screen is drawn by {}", options.drawer);
         Ok(Turns {
-            machine: Machine::new(options.settings),
+            machine,
             mirror,
             capture,
             inbox,

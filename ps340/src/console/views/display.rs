@@ -20,7 +20,7 @@ impl View for DisplayView {
     }
 
     fn show(&mut self, ui: &mut Ui, shown: &Shown, orders: &mut Orders) {
-        let controls = &shown.controls;
+        let controls = &shown.scene.controls;
         egui::Grid::new("display").num_columns(2).show(ui, |ui| {
             for knob in KNOBS {
                 ui.label(knob.name);

@@ -42,6 +42,6 @@ pub fn all(mouse: &Mouse) -> Vec<Box<dyn View>> {
 /// A row of a grid: how long the beam needs for the picture, and how often it draws it.
 fn refresh_row(ui: &mut Ui, shown: &Shown) {
     ui.label("refresh");
-    ui.monospace(shown.refresh.map_or("...".into(), |refresh| refresh.describe(shown.controls.steady)));
+    ui.monospace(shown.refresh.map_or("...".into(), |refresh| refresh.describe(shown.scene.controls.steady)));
     ui.end_row();
 }

@@ -12,11 +12,10 @@ pub use structure::NodeShown;
 pub use traffic::{Passed, Traffic};
 
 use crate::{
-    calligraphic::{Controls, Refresh},
+    calligraphic::{Drawer, Refresh, Scene, Screen},
     line::LineId,
-    machine::{Counters, KeyboardMode, Machine, Panel, PictureVersion, time_of_frame},
+    machine::{Counters, KeyboardMode, Machine, Panel, time_of_frame},
     raster::FrameBuffer,
-    traversal::Stroke,
 };
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -45,12 +44,10 @@ pub struct Shown {
     pub frame: u64,
     /// Its time in microseconds.
     pub micros: u64,
-    /// Which picture `strokes` is.
-    pub picture: PictureVersion,
     /// What the vector screen shows.
-    pub strokes: Arc<Vec<Stroke>>,
-    /// Knobs, phosphor, and which screen is looked at.
-    pub controls: Controls,
+    pub scene: Scene,
+    /// Who writes its light.
+    pub drawer: Drawer,
     /// What the raster screen shows.
     pub raster: Arc<FrameBuffer>,
     /// Labels, lights, message line.
@@ -78,14 +75,28 @@ pub struct Mirror {
     asked: Mutex<Asked>,
     shown: Mutex<Arc<Shown>>,
     traffic: Mutex<Traffic>,
+    screen: Arc<Screen>,
     /// Told after each copy that differs from the one before.
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
 impl Mirror {
     /// A mirror without a picture; `wake` is called by the machine's thread when there is something new.
-    pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Mirror {
-        Mirror { asked: Mutex::default(), shown: Mutex::default(), traffic: Mutex::default(), wake: Box::new(wake) }
+    ///
+    /// - `drawer`: who writes the light of the vector screen.
+    pub fn new(drawer: Drawer, wake: impl Fn() + Send + Sync + 'static) -> Mirror {
+        Mirror {
+            asked: Mutex::default(),
+            shown: Mutex::default(),
+            traffic: Mutex::default(),
+            screen: Arc::new(Screen::new(drawer)),
+            wake: Box::new(wake),
+        }
+    }
+
+    /// The vector screen, which machine and window share.
+    pub fn screen(&self) -> &Arc<Screen> {
+        &self.screen
     }
 
     /// Says what is wanted from now on.
@@ -114,12 +125,12 @@ impl Mirror {
     pub(super) fn renew<'a>(&self, machine: &mut Machine, hosts: impl Iterator<Item = &'a str>) {
         let before = self.shown();
         let frame = machine.frame();
-        let picture = machine.picture_version();
         let mut shown = Shown {
             frame,
             micros: time_of_frame(frame),
             panel: machine.panel().clone(),
-            controls: *machine.controls(),
+            scene: machine.scene().clone(),
+            drawer: machine.screen().drawer().clone(),
             mode: machine.keyboard_mode(),
             counters: machine.counters(),
             hosts: hosts.map(str::to_owned).collect(),
@@ -127,13 +138,9 @@ impl Mirror {
         };
         let mut is_new = shown.panel != before.panel
             || shown.mode != before.mode
-            || shown.controls != before.controls
+            || shown.scene.settings != before.scene.settings
+            || shown.scene.version != before.scene.version
             || shown.hosts != before.hosts;
-        if picture != before.picture {
-            shown.picture = picture;
-            shown.strokes = Arc::new(machine.visible_strokes().into_owned());
-            is_new = true;
-        }
         if *machine.frame_buffer() != *before.raster {
             shown.raster = Arc::new(machine.frame_buffer().clone());
             is_new = true;

@@ -12,7 +12,7 @@ fn machine(commands: &str) -> (Machine, Mirror, Arc<AtomicUsize>) {
     machine.step([Input::Attach(LINE), Input::Bytes(LINE, commands.into())], 0);
     let woken = Arc::new(AtomicUsize::new(0));
     let counted = woken.clone();
-    let mirror = Mirror::new(move || {
+    let mirror = Mirror::new(Drawer::Processor, move || {
         counted.fetch_add(1, Ordering::Relaxed);
     });
     (machine, mirror, woken)
@@ -30,12 +30,12 @@ fn a_picture_that_stands_still_is_shared_and_wakes_nobody() {
         frame(&mut machine, &mirror);
     }
     let (before, calls) = (mirror.shown(), woken.load(Ordering::Relaxed));
-    assert_eq!(before.strokes.len(), 1);
+    assert_eq!(before.scene.strokes.len(), 1);
     for _ in 0..5 * READ_FRAMES {
         frame(&mut machine, &mirror);
     }
     let now = mirror.shown();
-    assert!(Arc::ptr_eq(&now.strokes, &before.strokes) && Arc::ptr_eq(&now.raster, &before.raster));
+    assert!(Arc::ptr_eq(&now.scene.strokes, &before.scene.strokes) && Arc::ptr_eq(&now.raster, &before.raster));
     assert_eq!(woken.load(Ordering::Relaxed), calls);
     assert_eq!((now.frame, now.hosts.as_slice()), (7 * READ_FRAMES, &["here".to_string()][..]));
 }
@@ -47,8 +47,8 @@ fn a_new_picture_is_copied_at_its_frame() {
     let (before, calls) = (mirror.shown(), woken.load(Ordering::Relaxed));
     machine.step([Input::Bytes(LINE, b"REMOVE A;".to_vec())], 0);
     frame(&mut machine, &mirror);
-    assert!(mirror.shown().strokes.is_empty() && mirror.shown().picture != before.picture);
-    assert_eq!(before.strokes.len(), 1, "a copy stays as it was");
+    assert!(mirror.shown().scene.strokes.is_empty() && mirror.shown().scene.version != before.scene.version);
+    assert_eq!(before.scene.strokes.len(), 1, "a copy stays as it was");
     assert_eq!(woken.load(Ordering::Relaxed), calls + 1);
 }
 
