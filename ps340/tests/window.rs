@@ -264,7 +264,7 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
 
     // From a pixel to 8K and back, the window shows what it is given.
     let before = desk.place("button 9");
-    for size in ["1 1", "7680 4320", "1280 860"] {
+    for size in ["1 1", "7680 4320", "1 8400", "1280 860"] {
         desk.display.act(&format!("windowsize {} {size}", desk.window));
         desk.expect("refresh", "Hz");
     }

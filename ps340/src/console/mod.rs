@@ -109,7 +109,16 @@ fn show(
         .with_inner_size([1280.0, 860.0])
         .with_min_inner_size([1.0, 1.0]);
     // Keys such as CONTROL C belong to the machine.
-    let native = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
+    let mut native = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
+    if let eframe::egui_wgpu::WgpuSetup::CreateNew(setup) = &mut native.wgpu_options.wgpu_setup {
+        // As large a window as the adapter can do, not 8192 pixels on each.
+        let usual = setup.device_descriptor.clone();
+        setup.device_descriptor = Arc::new(move |adapter| {
+            let mut descriptor = usual(adapter);
+            descriptor.required_limits.max_texture_dimension_2d = adapter.limits().max_texture_dimension_2d;
+            descriptor
+        });
+    }
     let started = catch_unwind(AssertUnwindSafe(|| {
         eframe::run_native(
             "PS 340",
