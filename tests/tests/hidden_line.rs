@@ -20,7 +20,7 @@ use tests::facets::{facets, matrix, place, polygons, view};
 /// Steps of the beam's grid across the screen.
 const STEPS: usize = 1 << 24;
 /// Cells of the z-buffer along a side.
-const CELLS: usize = 2048;
+const CELLS: usize = 512;
 /// What lies this many steps inside all sides of a triangle, and as much behind, must be hidden.
 const SURELY: f64 = 3.0;
 /// What lies this many steps outside a side, or as much before, must not. Rests of lines that are shorter may be left
@@ -212,11 +212,11 @@ fn judge(polygons: &[Polygon], lines: &[Segment], from: DVec3) -> (Counts, Vec<S
     (counts, wrong)
 }
 
-/// Checks that nothing shows through and nothing is missing, and that hardly a point in a hundred cannot be told.
+/// Checks that nothing shows through and nothing is missing, and that few points cannot be told.
 fn check(polygons: &[Polygon], lines: &[Segment], from: DVec3) -> Counts {
     let (counts, wrong) = judge(polygons, lines, from);
     assert!(wrong.is_empty(), "{} wrong of {counts:?}, from {from}: {:#?}", wrong.len(), &wrong[..wrong.len().min(9)]);
-    assert!(counts.in_doubt * 50 <= counts.seen + counts.hidden, "{counts:?}");
+    assert!(counts.in_doubt <= 4 + (counts.seen + counts.hidden) / 50, "{counts:?}");
     counts
 }
 
