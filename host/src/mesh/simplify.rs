@@ -7,7 +7,7 @@
 //! would join the surface to itself elsewhere, or turn a triangle over.
 //!
 //! # Source
-//! Garland and Heckbert 1997, Surface simplification using quadric error metrics; the link condition of Dey et al. 1999.
+//! Garland and Heckbert 1997, Surface simplification using quadric error metrics; link condition of Dey et al. 1999.
 //!
 //! # Cost
 //! n log n for n triangles.
