@@ -185,7 +185,7 @@ impl Collapse {
     }
 
     /// Whether a surface stays the surface it was: the ends have no neighbours in common but those across the edge,
-    /// and no two borders grow together.
+    /// no two borders grow together, and what is left is more than one triangle or two back to back.
     fn keeps_the_surface(&self, [a, b]: [u32; 2]) -> bool {
         let [near_a, near_b] = [a, b].map(|end| self.corners_around(end));
         let common = near_a.iter().filter(|corner| near_b.binary_search(corner).is_ok()).count();
@@ -196,7 +196,7 @@ impl Collapse {
         };
         common == at_edge
             && (at_edge == 1 || at_edge == 2 && !(is_border(a, &near_a) && is_border(b, &near_b)))
-            && near_a.len().min(near_b.len()) > at_edge
+            && near_a.len() + near_b.len() - common > at_edge + 2
     }
 
     /// Whether no triangle at a vertex turns over when it moves, but those that go with the other end.
