@@ -1,16 +1,21 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
-use super::{Failure, Row};
+use super::{Exit, Failure, Row};
+use crate::illumination::Material;
 use crate::mesh::{self, Mesh};
 use crate::picture::Picture;
-use crate::scene::Prepared;
+use crate::scene::{Object, Prepared, Scene, Shape};
 use crate::script;
+use crate::workstation::{Drawing, Lines, structure};
 use clap::{Args, FromArgMatches};
+use glam::DMat4;
+use protocol::command::print;
 use std::path::{Path, PathBuf};
 
 pub(super) const ROW: Row = Row {
     name: "convert",
-    summary: "Converts a mesh, a picture, or the triangles of a whole scene to another file format.",
+    summary: "Converts a mesh, a picture, or the triangles of a whole scene to another file format, or to commands of a \
+              PS 340.",
     arguments: Arguments::augment_args,
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
@@ -20,16 +25,31 @@ struct Arguments {
     /// A mesh (.obj, .stl, .ply, .cmesh), a picture (.png, .exr), a scene script (.rhai) or the name of a scene that ships
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// The file to write: a mesh from a mesh or a scene, a picture from a picture
+    /// The file to write: a mesh from a mesh or a scene, a picture from a picture; or commands (.ps300) that build a
+    /// mesh or scene on a PS 340 as polygons with camera, lights and materials, below a node PERIS.SHADE that renders
+    /// them on request: SEND FIX(4) TO <1>PERIS.SHADE removes hidden lines, FIX(7) and FIX(8) shade
     #[arg(value_name = "OUT")]
     output: PathBuf,
+    /// For a mesh: at most so many triangles; edges collapse, those first with which least changes
+    #[arg(long, value_name = "COUNT")]
+    triangles: Option<usize>,
+    /// For .ps300: the edges that pictures without hidden lines draw; all others are soft
+    #[arg(long, value_enum, default_value = "grid")]
+    lines: Lines,
+    /// For .ps300: distance between curved surfaces and their triangles, as a part of the object's diagonal
+    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::part)]
+    tolerance: f64,
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { input, output, json } = arguments;
+    let Arguments { input, output, triangles: most, json, .. } = arguments;
+    let to_commands = output.extension().is_some_and(|e| e.eq_ignore_ascii_case("ps300"));
+    if most.is_some() && (to_commands || Picture::check_name(output).is_ok()) {
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--triangles is for a mesh that is written")));
+    }
     if Picture::check_name(input).is_ok() {
         let picture = Picture::read(input)?;
         picture.write(output)?;
@@ -41,7 +61,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    let mesh = triangles(input)?;
+    if to_commands {
+        return commands(arguments);
+    }
+    let mut mesh = triangles(input)?;
+    if let Some(most) = most.filter(|most| *most < mesh.triangles.len()) {
+        mesh = mesh.simplified(most);
+    }
     mesh::write(&mesh, output)?;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     if *json {
@@ -52,12 +78,48 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn triangles(input: &Path) -> Result<Mesh, Failure> {
+/// Writes the commands that build a scene on a PS 340.
+fn commands(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { input, output, json, lines, tolerance, .. } = arguments;
+    let scene = match scene(input)? {
+        Some(scene) => scene,
+        None => {
+            let shape = Shape::Mesh { path: input.clone() };
+            let (name, material) = (input.display().to_string(), Material::default());
+            let object = Object { name, shape, transform: DMat4::IDENTITY, material, tolerance: None };
+            Scene { objects: vec![object], ..Scene::default() }
+        }
+    };
+    let prepared = Prepared::new(&scene)?;
+    let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
+    let shown = structure::commands(&scene, &prepared.camera, &prepared.bounds, &drawing)
+        .map_err(|error| Failure::new(Exit::Scene, error))?;
+    let mut text = Vec::new();
+    for command in &shown.commands {
+        print(command, &mut text);
+        text.push(b'\n');
+    }
+    std::fs::write(output, &text).map_err(|e| anyhow::anyhow!("{}: {e}", output.display()))?;
+    let polygons = shown.points / 3;
+    if *json {
+        say!("{:#}", serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));
+    } else {
+        say!("{}: {polygons} polygons, {} bytes", output.display(), text.len());
+    }
+    Ok(())
+}
+
+/// The scene of a script or of the name of one that ships; none for another file.
+fn scene(input: &Path) -> Result<Option<Scene>, Failure> {
     let name = input.to_string_lossy();
     let is_script = input.extension().is_some_and(|e| e == "rhai");
-    if is_script || script::EMBEDDED.iter().any(|e| e.name == name) {
-        Ok(Prepared::new(&super::load(&name)?.scene)?.into_mesh())
-    } else {
-        Ok(mesh::read(input)?)
+    let known = is_script || script::EMBEDDED.iter().any(|e| e.name == name);
+    Ok(if known { Some(super::load(&name)?.scene) } else { None })
+}
+
+fn triangles(input: &Path) -> Result<Mesh, Failure> {
+    match scene(input)? {
+        Some(scene) => Ok(Prepared::new(&scene)?.into_mesh()),
+        None => Ok(mesh::read(input)?),
     }
 }

@@ -102,6 +102,12 @@ fn threads(text: &str) -> Result<NonZeroUsize, String> {
     count.ok_or_else(|| format!("give 1 to {MAX_THREADS}"))
 }
 
+/// Reads a distance as a part of a diagonal.
+fn part(text: &str) -> Result<f64, String> {
+    let part = text.parse().ok().filter(|part| *part > 0.0 && *part <= 1.0);
+    part.ok_or_else(|| "give a part of the diagonal, above 0 and at most 1".to_string())
+}
+
 /// Log lines go to standard error, if the variable PERIS_LOG asks for them (for instance `PERIS_LOG=info`).
 fn start_log() {
     if let Ok(filter) = tracing_subscriber::EnvFilter::try_from_env("PERIS_LOG") {

@@ -44,8 +44,12 @@ struct Arguments {
     /// Edges that bend more than this are always sent, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = Drawing::default().crease_degrees)]
     crease: f64,
+    /// Sends polygons, materials and lights instead of vectors; the machine renders them itself when a host or operator
+    /// sends FIX(1) to FIX(8) to <1>PERIS.SHADE, such as FIX(4), hidden lines, and FIX(8), Phong
+    #[arg(long)]
+    facets: bool,
     /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
-    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance)]
+    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::part)]
     tolerance: f64,
     /// Threads that render [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
@@ -54,14 +58,15 @@ struct Arguments {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     watch_interrupts();
-    let usage = |text: &str| Err(Failure::new(Exit::Usage, anyhow::anyhow!("{text}")));
     if !(0.0..=180.0).contains(&arguments.crease) {
-        return usage("--crease is an angle of 0 to 180 degrees");
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--crease is an angle of 0 to 180 degrees")));
     }
-    if !(arguments.tolerance > 0.0 && arguments.tolerance <= 1.0) {
-        return usage("--tolerance is a part of the diagonal, above 0 and at most 1");
-    }
-    let drawing = Drawing { lines: arguments.lines, crease_degrees: arguments.crease, tolerance: arguments.tolerance };
+    let drawing = Drawing {
+        lines: arguments.lines,
+        crease_degrees: arguments.crease,
+        tolerance: arguments.tolerance,
+        facets: arguments.facets,
+    };
     let scene = load(&arguments.script)?.scene;
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),

@@ -15,6 +15,7 @@ mod placement;
 mod ply;
 mod polylines;
 mod stl;
+mod simplify;
 mod subdivide;
 
 pub use check::EdgeReport;

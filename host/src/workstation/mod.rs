@@ -2,6 +2,7 @@
 
 pub mod emulator;
 mod error;
+pub mod facets;
 pub mod network;
 pub mod raster;
 pub mod session;

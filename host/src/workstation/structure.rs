@@ -3,14 +3,17 @@
 //! The modelling space of PERIS is right-handed (z towards the viewer), that of the PS 340 left-handed (z into the
 //! screen): every z is negated on the way.
 
-use super::{WorkstationError, network::name};
+use super::{
+    WorkstationError,
+    facets::{self, mirrored},
+    network::name,
+};
 use crate::{
-    illumination::Material,
     mesh::{Eye, Mesh, Selection, polylines},
     numeric::bounds::Bounds,
     scene::{Camera, Object, Scene, Settings},
 };
-use glam::{DMat4, DVec3};
+use glam::{DAffine3, DVec3};
 use protocol::{
     Name,
     command::{Axis, Boundaries, Command, NamePattern, Object as Node, Operate, VectorClass, VectorList},
@@ -22,6 +25,8 @@ pub const ROOT: &str = "PERIS";
 const NEAREST_PART: f64 = 1e-3;
 /// How many times farther than the scene nothing is cut, when the camera cuts in front only.
 const FAR_REACHES: f64 = 1e6;
+/// Working storage that the machine needs for a vertex of a polygon, bytes.
+const BYTES_PER_VERTEX: u64 = 50;
 /// Intensity at the back of the scene; 1 at its front.
 const BACK_INTENSITY: f64 = 0.25;
 
@@ -34,6 +39,9 @@ pub struct Drawing {
     pub crease_degrees: f64,
     /// Largest distance between a curved surface and its triangles, as a part of the object's diagonal.
     pub tolerance: f64,
+    /// Whether polygons are sent instead of vectors, with materials and lights, below a node `SHADE` that renders them:
+    /// a SURFACE_RENDERING. The lines are then those of its pictures without hidden lines.
+    pub facets: bool,
 }
 
 /// Which edges are sent.
@@ -49,7 +57,7 @@ pub enum Lines {
 
 impl Default for Drawing {
     fn default() -> Drawing {
-        Drawing { lines: Lines::Grid, crease_degrees: 25.0, tolerance: 1.0 / 400.0 }
+        Drawing { lines: Lines::Grid, crease_degrees: 25.0, tolerance: 1.0 / 400.0, facets: false }
     }
 }
 
@@ -87,14 +95,26 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
     camera.check().map_err(|e| failed(e.to_string()))?;
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
     shown.commands.push(Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())]));
+    let objects: Result<Vec<Node>, WorkstationError> =
+        (1..).zip(&scene.objects).map(|(number, object)| data(number, object, camera, drawing, &mut shown)).collect();
+    if drawing.facets {
+        let bytes = u32::try_from(shown.points as u64 * BYTES_PER_VERTEX).unwrap_or(u32::MAX);
+        shown.commands.push(Command::ReserveWorkingStorage(bytes));
+    }
     begin(&mut shown.commands, ROOT);
     view(&mut shown.commands, camera, bounds, elongation(&scene.settings), shown.depth_clipping)?;
-    for (index, object) in scene.objects.iter().enumerate() {
-        let list = vectors(object, camera, drawing, &mut shown)?;
-        begin(&mut shown.commands, &format!("O{}", index + 1));
-        let [hue, saturation] = hue_saturation(&object.material);
+    if drawing.facets {
+        operate(&mut shown.commands, Some("SHADE"), Operate::SurfaceRendering);
+        let lights = facets::illumination(&scene.lights, bounds.center());
+        let lights = lights.into_iter().map(|light| Command::Define { name: None, object: Node::Illumination(light) });
+        shown.commands.extend(lights);
+    }
+    for (number, (object, data)) in (1..).zip(scene.objects.iter().zip(objects?)) {
+        begin(&mut shown.commands, &format!("O{number}"));
+        // The colour of vectors has no value: brightness comes from the intensity.
+        let [hue, saturation] = facets::hue_saturation(object.material.diffuse + object.material.mirror);
         operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
-        shown.commands.push(Command::Define { name: Some(name("D")), object: Node::VectorList(list) });
+        shown.commands.push(Command::Define { name: Some(name("D")), object: data });
         shown.commands.push(Command::EndStructure);
     }
     shown.commands.push(Command::EndStructure);
@@ -109,11 +129,6 @@ fn begin(commands: &mut Vec<Command>, structure: &str) {
 fn operate(commands: &mut Vec<Command>, node: Option<&str>, operate: Operate) {
     let name: Option<Name> = node.map(name);
     commands.push(Command::Define { name, object: Node::Operate { operate, applied_to: None } });
-}
-
-/// A point or direction in the left-handed space of the workstation.
-fn mirrored(p: DVec3) -> DVec3 {
-    DVec3::new(p.x, p.y, -p.z)
 }
 
 /// Viewport, projection, eye, and what the dials change.
@@ -161,25 +176,42 @@ fn boundaries(camera: &Camera, depth: f64, radius: f64) -> Boundaries {
     }
 }
 
-/// The lines of one object.
-fn vectors(
+/// The vectors or polygons of one object; what its polygons look like is defined on the way.
+fn data(
+    number: usize,
     object: &Object,
     camera: &Camera,
     drawing: &Drawing,
     shown: &mut Shown,
-) -> Result<VectorList, WorkstationError> {
+) -> Result<Node, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
     let coarse = object
         .shape
         .mesh(drawing.tolerance * object.shape.extent().unwrap_or(1.0))
         .map_err(|e| failed(e.to_string()))?;
-    let mesh = placed(coarse, &object.transform);
+    let mesh = coarse.transformed(&DAffine3::from_mat4(object.transform));
     let selection = match drawing.lines {
         Lines::Grid => Selection::grid(drawing.crease_degrees),
+        // The machine finds the outline of polygons itself, from wherever they are seen.
+        Lines::Outline if drawing.facets => Selection::creases(drawing.crease_degrees),
         Lines::Outline => Selection::drawing(drawing.crease_degrees, Eye::Point(camera.from)),
         Lines::All => Selection::ALL,
     };
-    let runs = polylines(&mesh, &selection);
+    if !drawing.facets {
+        return vectors(&mesh, &selection, shown).map(Node::VectorList).map_err(failed);
+    }
+    let surface = format!("{ROOT}_A{number}");
+    let polygons = facets::polygons(&mesh, &selection, &surface).map_err(failed)?;
+    let attributes = Node::Attributes(facets::attributes(&object.material));
+    shown.commands.push(Command::Define { name: Some(name(&surface)), object: attributes });
+    shown.points += 3 * polygons.len();
+    shown.lines += 3 * polygons.len();
+    Ok(Node::Polygons(polygons))
+}
+
+/// The selected edges of a mesh.
+fn vectors(mesh: &Mesh, selection: &Selection, shown: &mut Shown) -> Result<VectorList, String> {
+    let runs = polylines(mesh, selection);
     let mut list = VectorList {
         block_normalized: false,
         fourth: protocol::command::Fourth::Intensity,
@@ -194,7 +226,7 @@ fn vectors(
         for (i, p) in run.iter().enumerate() {
             let point = mirrored(*p).as_vec3();
             if !point.is_finite() {
-                return Err(failed(format!("the point {p} is too far away for the workstation")));
+                return Err(format!("the point {p} is too far away for the workstation"));
             }
             list.points.push([point.x, point.y, point.z, 1.0]);
             list.lines.push(i > 0);
@@ -203,52 +235,4 @@ fn vectors(
     shown.lines += runs.lines();
     shown.points += list.points.len();
     Ok(list)
-}
-
-fn placed(mut mesh: Mesh, transform: &DMat4) -> Mesh {
-    for vertex in &mut mesh.vertices {
-        *vertex = transform.transform_point3(*vertex);
-    }
-    if transform.determinant() < 0.0 {
-        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        mesh.corner_parameters.iter_mut().for_each(|t| t.swap(1, 2));
-        mesh.corner_normals.iter_mut().for_each(|t| t.swap(1, 2));
-    }
-    mesh
-}
-
-/// Hue (0 is blue) and saturation of what a material reflects. The colour of vectors has no value: brightness
-/// comes from the intensity.
-fn hue_saturation(material: &Material) -> [f64; 2] {
-    let color = (material.diffuse + material.mirror).max(DVec3::ZERO);
-    let (high, low) = (color.max_element(), color.min_element());
-    if high <= 0.0 || high == low {
-        return [0.0, 0.0];
-    }
-    let span = high - low;
-    let sector = if high == color.x {
-        (color.y - color.z) / span
-    } else if high == color.y {
-        2.0 + (color.z - color.x) / span
-    } else {
-        4.0 + (color.x - color.y) / span
-    };
-    [(sector * 60.0 + 120.0).rem_euclid(360.0), span / high]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::illumination::Bands;
-
-    #[test]
-    fn hues_start_at_blue() {
-        let of = |r, g, b| hue_saturation(&Material { diffuse: Bands::new(r, g, b), ..Material::default() });
-        assert_eq!(of(0.0, 0.0, 1.0), [0.0, 1.0]);
-        assert_eq!(of(1.0, 0.0, 0.0), [120.0, 1.0]);
-        assert_eq!(of(0.5, 0.5, 0.0), [180.0, 1.0]);
-        assert_eq!(of(0.0, 1.0, 0.0), [240.0, 1.0]);
-        assert_eq!(of(0.4, 0.4, 0.4), [0.0, 0.0]);
-        assert_eq!(of(1.0, 0.5, 0.5), [120.0, 0.5]);
-    }
 }

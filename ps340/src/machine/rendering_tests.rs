@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::traversal::Stroke;
-use protocol::Value;
+use protocol::{
+    Value,
+    raster::{LookupEntry, RasterCommand},
+};
 
 const LINE: LineId = LineId(1);
 const TETRA: &str = "RESERVE_WORKING_STORAGE 100000;
@@ -224,4 +227,59 @@ fn between_begin_and_end_nothing_is_rendered() {
     assert_eq!(strokes(&machine).len(), 12);
     tell(&mut machine, "END;");
     assert_eq!(strokes(&machine).len(), 5);
+}
+
+fn raster(machine: &mut Machine, commands: &[RasterCommand]) {
+    let mut bytes = Vec::new();
+    protocol::wire::write_raster(commands, &mut bytes).unwrap();
+    machine.step([Input::Bytes(LINE, bytes)], 0);
+}
+
+#[test]
+fn a_thousand_changes_of_the_tables_a_second_are_all_made() {
+    let mut machine = told("");
+    raster(&mut machine, &[RasterCommand::Erase { color: [200, 100, 50] }]);
+    for frame in 0..60_u8 {
+        for change in 0..17_u8 {
+            let value = frame.wrapping_mul(17).wrapping_add(change);
+            let entries = vec![LookupEntry { count: 255, color: [value, 255 - value, value / 2] }];
+            raster(&mut machine, &[RasterCommand::LookupTable { index: 0, entries }]);
+            let shown = [value, 255 - value, value / 2];
+            assert_eq!(machine.frame_buffer.output()[0], shown, "frame {frame}, change {change}");
+        }
+        machine.next_frame();
+    }
+    assert!(machine.is_idle() && machine.frame_buffer.pixel(0, 0) == Some([200, 100, 50]));
+    assert_eq!(errors(&machine), [""; 0]);
+}
+
+#[test]
+fn what_changes_while_a_picture_is_shaded_holds_for_the_next_one() {
+    let begin = |machine: &mut Machine| {
+        tell(machine, "SEND FIX(3) TO <5>SHADINGENVIRONMENT;");
+        machine.step([Input::Bytes(LINE, b"SEND FIX(8) TO <1>S.R;".to_vec())], 0);
+        machine.next_frame();
+        machine.next_frame();
+        assert!(!machine.is_idle(), "it takes longer than a frame");
+    };
+    let mut undisturbed = told(TETRA);
+    begin(&mut undisturbed);
+    finish(&mut undisturbed);
+    let mut machine = told(TETRA);
+    begin(&mut machine);
+    for part in 1..4_i32 {
+        let text = format!(
+            "SEND V3D({0},{0},{0}) TO <3>SHADINGENVIRONMENT; SEND FIX(0) TO <5>SHADINGENVIRONMENT;
+             SEND V3D(120,1,1) TO <2>SHADINGENVIRONMENT; SEND 3 TO <4>SHADINGENVIRONMENT;",
+            100 / part
+        );
+        machine.step([Input::Bytes(LINE, text.into_bytes())], 0);
+        machine.next_frame();
+    }
+    finish(&mut machine);
+    assert_eq!(machine.frame_buffer, undisturbed.frame_buffer);
+    tell(&mut machine, "SEND FIX(2) TO <7>SHADINGENVIRONMENT; SEND FIX(8) TO <1>S.R;");
+    assert_eq!(machine.frame_buffer.pixel(32, 32), Some([255, 0, 0]), "the background, beside the new viewport");
+    assert_ne!(machine.frame_buffer.pixel(50, 50), Some([255, 0, 0]));
+    assert_eq!(errors(&machine), [""; 0]);
 }

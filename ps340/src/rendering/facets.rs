@@ -3,7 +3,8 @@
 //! # Model
 //! Polygons meet where their corners are equal in eye coordinates, to the bit. A COPLANAR polygon is a further contour
 //! of the face before it. The front of a face is the side from which it runs clockwise, whatever mirrors stand above it.
-//! Faces with coordinates that are not finite are left out.
+//! Corners at the point of the corner before them do not count, as at the poles of a sphere of quadrangles; faces with
+//! fewer than three others, and those with coordinates that are not finite, are left out.
 //!
 //! # Cost
 //! Time and memory grow with the number of corners: about 300 bytes each, and as much again while a rendering is made.
@@ -51,6 +52,8 @@ pub struct Corner {
     pub point: u32,
     /// The normal given with it, in eye coordinates, towards the front of the face.
     pub normal: Option<DVec3>,
+    /// Whether the edge that ends here is soft.
+    pub soft: bool,
 }
 
 /// A polygon with the contours that belong to it.
@@ -241,21 +244,32 @@ impl Builder {
             face.corners.end = self.facets.corners.len();
             face.contours.end += 1;
             self.facets.contours.push(begin..face.corners.end);
-            self.contour_edges(begin, polygon, number as u32, color);
+            self.contour_edges(begin, number as u32, color);
         }
         if open {
             self.finish_face(frame.mirror);
         }
     }
 
-    /// Appends the corners of a contour; false if one is not finite.
+    /// Appends the corners of a contour; false if one is not finite, or fewer than three differ from the one before.
     fn contour(&mut self, frame: &Frame, view: u32, polygon: &Polygon) -> bool {
-        polygon.vertices.iter().all(|vertex| {
+        let begin = self.facets.corners.len();
+        for vertex in &polygon.vertices {
             let normal = vertex.normal.and_then(|n| (frame.normals * DVec3::from(n.map(f64::from))).try_normalize());
-            let point = self.point(frame, view, vertex.position.map(f64::from));
-            self.facets.corners.extend(point.map(|point| Corner { point, normal }));
-            point.is_some()
-        })
+            let Some(point) = self.point(frame, view, vertex.position.map(f64::from)) else { return false };
+            self.facets.corners.push(Corner { point, normal, soft: vertex.soft });
+        }
+        let corners = &mut self.facets.corners;
+        let (mut end, mut before) = (begin, corners.last().map(|corner| corner.point));
+        for k in begin..corners.len() {
+            let corner = corners[k];
+            if before.replace(corner.point) != Some(corner.point) {
+                corners[end] = corner;
+                end += 1;
+            }
+        }
+        corners.truncate(end);
+        end >= begin + 3
     }
 
     fn open_face(&mut self, begin: usize, surfaces: [u32; 2], view: u32, color: [f64; 2]) {
@@ -326,10 +340,10 @@ impl Builder {
         })
     }
 
-    fn contour_edges(&mut self, begin: usize, polygon: &Polygon, face: u32, color: [f64; 2]) {
+    fn contour_edges(&mut self, begin: usize, face: u32, color: [f64; 2]) {
         let end = self.facets.corners.len();
         let mut before = end - 1;
-        for (corner, vertex) in (begin..end).zip(&polygon.vertices) {
+        for corner in begin..end {
             let [from, to] = [before, corner].map(|corner| self.facets.corners[corner].point);
             let mut corners = [before as u32, corner as u32];
             let ends = [from.min(to), from.max(to)];
@@ -338,9 +352,6 @@ impl Builder {
                 corners.reverse();
             }
             before = corner;
-            if ends[0] == ends[1] {
-                continue;
-            }
             let edges = &mut self.facets.edges;
             let number = *self.edges.entry(ends).or_insert_with(|| {
                 edges.push(Edge { ends, faces: [None; 2], corners: [[0; 2]; 2], uses: [0; 2], soft: true, color });
@@ -348,7 +359,7 @@ impl Builder {
             });
             let edge = &mut edges[number as usize];
             edge.uses[direction] += 1;
-            edge.soft &= vertex.soft;
+            edge.soft &= self.facets.corners[corner].soft;
             if let Some(place) = edge.faces.iter().position(Option::is_none) {
                 (edge.faces[place], edge.corners[place]) = (Some(face), corners);
             }

@@ -32,6 +32,8 @@ use std::collections::{HashMap, HashSet};
 
 /// Steps of the grid from the middle of the screen to its side.
 const STEPS: f64 = (1 << 23) as f64;
+/// Nearness is right to this part of the largest that is mixed.
+const ROUNDING: f64 = 1e-13;
 /// Rests of an edge shorter than this many steps are not drawn: a thousandth of a pixel.
 const SHORTEST: f64 = 16.0;
 /// Most cells of the grid across the screen, as a power of two.
@@ -143,6 +145,10 @@ fn sides(facets: &Facets) -> HashMap<[u32; 2], Side> {
     let mut sides: HashMap<[u32; 2], Side> = HashMap::with_capacity(facets.triangles.len() * 3 / 2);
     for triangle in &facets.triangles {
         let [a, b, c] = triangle.corners.map(|corner| facets.corners[corner as usize].point);
+        // Where a hole was joined a triangle may use a point twice: it separates nothing.
+        if a == b || b == c || c == a {
+            continue;
+        }
         for (from, to) in [(a, b), (b, c), (c, a)] {
             let side = sides.entry([from.min(to), from.max(to)]).or_default();
             side.face = triangle.face;
@@ -175,12 +181,11 @@ fn drawn(facets: &Facets, sides: &HashMap<[u32; 2], Side>) -> Vec<Edge> {
 }
 
 fn hiders(facets: &Facets, projected: &Projected, spots: &[Spot], closed: bool) -> Vec<Hider> {
-    let largest = spots.iter().map(|spot| spot.nearness.abs()).fold(0.0, f64::max);
     let pieces = projected.pieces.iter().filter_map(|piece| {
         let triangle = &facets.triangles[piece.triangle as usize];
         let corners = piece.spots.map(|spot| spots[spot as usize]);
         let hides = triangle.toward || !closed;
-        hides.then(|| Hider::new(piece.spots, corners, triangle.face, largest)).flatten()
+        hides.then(|| Hider::new(piece.spots, corners, triangle.face)).flatten()
     });
     pieces.collect()
 }
@@ -202,7 +207,7 @@ impl Spot {
 
 impl Hider {
     /// None for a triangle that is seen from its side.
-    fn new(mut names: [u32; 3], mut spots: [Spot; 3], face: u32, largest: f64) -> Option<Hider> {
+    fn new(mut names: [u32; 3], mut spots: [Spot; 3], face: u32) -> Option<Hider> {
         let mut area = spots[0].area(&spots[1], &spots[2]);
         if area < 0.0 {
             names.swap(1, 2);
@@ -213,7 +218,8 @@ impl Hider {
         let (u, v) = (b.nearness - a.nearness, c.nearness - a.nearness);
         let slope_x = (u * (c.y - a.y) - v * (b.y - a.y)) / area;
         let slope_y = (v * (b.x - a.x) - u * (c.x - a.x)) / area;
-        let slack = slope_x.abs() + slope_y.abs() + 1e-13 * largest;
+        let largest = a.nearness.abs().max(b.nearness.abs()).max(c.nearness.abs());
+        let slack = slope_x.abs() + slope_y.abs() + ROUNDING * largest;
         let nearest = a.nearness.max(b.nearness).max(c.nearness);
         (area > 0.0).then_some(Hider { spots, names, face, area, nearest, slack })
     }
@@ -239,6 +245,7 @@ impl Hider {
         if begin >= end {
             return None;
         }
+        let slack = self.slack + ROUNDING * a.nearness.abs().max(b.nearness.abs());
         // How much nearer the edge is, at both ends of that part.
         let ahead = |t: f64| {
             let plane: f64 = (0..3).map(|k| (from[k] + (to[k] - from[k]) * t) * self.spots[k].nearness).sum();
@@ -248,16 +255,16 @@ impl Hider {
         let (first, last) = (ahead(begin), ahead(end));
         // From a common corner on, the edge goes behind or before the triangle all the way.
         if begin == 0.0 && meets(edge.names[0]) {
-            return (last < -self.slack).then_some([begin, end]);
+            return (last < -slack).then_some([begin, end]);
         }
         if end == 1.0 && meets(edge.names[1]) {
-            return (first < -self.slack).then_some([begin, end]);
+            return (first < -slack).then_some([begin, end]);
         }
-        match (first < -self.slack, last < -self.slack) {
+        match (first < -slack, last < -slack) {
             (true, true) => Some([begin, end]),
             (false, false) => None,
             (behind, _) => {
-                let crossing = begin + (end - begin) * ((-self.slack - first) / (last - first)).clamp(0.0, 1.0);
+                let crossing = begin + (end - begin) * ((-slack - first) / (last - first)).clamp(0.0, 1.0);
                 Some(if behind { [begin, crossing] } else { [crossing, end] })
             }
         }

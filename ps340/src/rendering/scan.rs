@@ -63,14 +63,13 @@ impl Scan {
             let units = pixels as f64 * UNITS as f64;
             ((c + 1.0) / 2.0 * units).round().clamp(0.0, units) as i64
         };
-        let largest = projected.spots.iter().map(|spot| spot.nearness.abs()).fold(0.0, f64::max);
         let triangles: Vec<Triangle> = projected
             .pieces
             .iter()
             .filter_map(|piece| {
                 let spots = piece.spots.map(|spot| projected.spots[spot as usize]);
                 let corners = spots.map(|spot| [place(spot.place.x, width), place(spot.place.y, height)]);
-                Triangle::new(corners, spots.map(|spot| spot.nearness), largest, piece.triangle)
+                Triangle::new(corners, spots.map(|spot| spot.nearness), piece.triangle)
             })
             .collect();
         let mut bands = vec![Vec::new(); height.div_ceil(BAND)];
@@ -135,7 +134,7 @@ impl Scan {
 
 impl Triangle {
     /// None for a triangle without area.
-    fn new(corners: [[i64; 2]; 3], nearness: [f64; 3], largest: f64, name: u32) -> Option<Triangle> {
+    fn new(corners: [[i64; 2]; 3], nearness: [f64; 3], name: u32) -> Option<Triangle> {
         let [[ax, ay], [bx, by], [cx, cy]] = corners;
         let area = ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) as f64;
         let (u, v) = (nearness[1] - nearness[0], nearness[2] - nearness[0]);
@@ -143,6 +142,7 @@ impl Triangle {
         let slope_y = (v * (bx - ax) as f64 - u * (cx - ax) as f64) / area;
         let origin = nearness[0] - slope_x * ax as f64 - slope_y * ay as f64;
         let [a, b, c] = nearness;
+        let largest = a.abs().max(b.abs()).max(c.abs());
         (area != 0.0).then_some(Triangle {
             corners,
             nearness: [origin, slope_x, slope_y],

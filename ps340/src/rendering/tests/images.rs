@@ -246,3 +246,16 @@ fn work_in_slices_gives_the_same_image() {
     assert!(slices > 3, "{slices}");
     assert_eq!(sliced, Outcome::Image(whole));
 }
+
+#[test]
+fn a_hole_shows_what_is_behind_it() {
+    let square = |s: f32, z: f32| [[-s, -s, z], [-s, s, z], [s, s, z], [s, -s, z]];
+    let plate = vec![polygon(&square(0.75, 0.0)), hole(&square(0.25, 0.0))];
+    let lit = |image: &Image| image.pixels.iter().filter(|pixel| **pixel != [0; 3]).count();
+    let open = Scene::new(plate.clone()).image(Rendering::Wash, &plain());
+    assert_eq!(lit(&open), 360 * 360 - 120 * 120);
+    let behind = vec![polygon(&square(0.125, 0.5))];
+    let image = Scene::new([plate, behind].concat()).image(Rendering::Wash, &plain());
+    assert_eq!(lit(&image), 360 * 360 - 120 * 120 + 60 * 60);
+    assert_eq!((at(&image, 0.0, 0.0), at(&image, 0.2, 0.0)), ([255; 3], [0; 3]));
+}

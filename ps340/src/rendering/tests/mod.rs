@@ -1,6 +1,7 @@
 //! Renderings against closed forms and against tests of single points that share no code with them.
 
 mod cuts;
+mod degenerate;
 mod extremes;
 mod images;
 mod lines;

@@ -1,0 +1,179 @@
+//! Objects of a scene as polygons that a PS 340 shades itself: POLYGON, ATTRIBUTES and ILLUMINATION.
+//!
+//! # Model
+//! The machine knows neither distances of lights nor mirrors, and its colours are numbers of the frame buffer. A light
+//! comes from where it stands, seen from the middle of the scene, with the irradiance there; a mirror counts as body
+//! colour; linear values go through the exponent of a display. All ours.
+
+use super::network::name;
+use crate::{
+    illumination::{Bands, Light, Material},
+    mesh::{Mesh, Selection, edges::EdgeTable},
+};
+use glam::DVec3;
+use protocol::command::{Attributes, Illumination, Polygon, PolygonVertex, SurfaceColor};
+
+/// From linear light to numbers of the frame buffer.
+const DISPLAY_EXPONENT: f64 = 1.0 / 2.2;
+/// The sum of all lights, as numbers of the frame buffer, is no more than this.
+const MOST_LIGHT: f64 = 1.4;
+/// Even a mirror reflects this share diffusely; its body would be black else.
+const LEAST_DIFFUSE: f64 = 0.4;
+
+/// A point or direction in the left-handed space of the workstation.
+pub fn mirrored(p: DVec3) -> DVec3 {
+    DVec3::new(p.x, p.y, -p.z)
+}
+
+/// The triangles of a mesh in scene coordinates, with the normals that it brings.
+///
+/// - `hard`: which edges are drawn in pictures without hidden lines; the others are soft.
+/// - `attributes`: the name of their ATTRIBUTES.
+///
+/// # Errors
+/// A corner is too far away for single precision.
+pub fn polygons(mesh: &Mesh, hard: &Selection, attributes: &str) -> Result<Vec<Polygon>, String> {
+    let table = EdgeTable::of(mesh);
+    let mut soft = vec![[true; 3]; mesh.triangles.len()];
+    for place in table.select(mesh, hard).flat_map(|edge| table.uses(edge)) {
+        soft[place.triangle as usize][usize::from(place.side)] = false;
+    }
+    let mut polygons = Vec::with_capacity(mesh.triangles.len());
+    for (triangle, soft) in soft.iter().enumerate() {
+        let corners = mesh.corners(triangle).map(|corner| mirrored(corner).as_vec3().to_array());
+        if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
+            continue;
+        }
+        if let Some(far) = corners.iter().find(|corner| corner.iter().any(|c| !c.is_finite())) {
+            return Err(format!("the corner {far:?} is too far away for the workstation"));
+        }
+        let normals =
+            mesh.corner_normals.get(triangle).map(|normals| normals.map(|n| mirrored(n).as_vec3().to_array()));
+        // Counter-clockwise from outside; the mirrored z makes it clockwise. The edge that ends at corner k is side k - 1.
+        let vertex = |k: usize| PolygonVertex {
+            soft: soft[(k + 2) % 3],
+            position: corners[k],
+            normal: normals.map(|normals| normals[k]),
+        };
+        let attributes = polygons.is_empty().then(|| name(attributes));
+        polygons.push(Polygon { attributes, outline: None, coplanar: false, vertices: (0..3).map(vertex).collect() });
+    }
+    Ok(polygons)
+}
+
+/// What a material looks like to the machine, from both sides.
+pub fn attributes(material: &Material) -> Attributes {
+    let sum = |bands: Bands| bands.max(DVec3::ZERO).element_sum();
+    let body = sum(material.diffuse);
+    let share = body / (body + sum(material.specular) + sum(material.mirror)).max(f64::MIN_POSITIVE);
+    let front = SurfaceColor {
+        color: hue_saturation_intensity(material.diffuse + material.mirror),
+        diffuse: share.clamp(LEAST_DIFFUSE, 1.0),
+        specular: material.exponent.max(1.0).log2().round().min(10.0) as u8,
+        opaque: 1.0,
+    };
+    Attributes { front, back: None }
+}
+
+/// The lights of a scene as they arrive at a point of it; the brightest is 1, unless all together are too bright.
+pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
+    let beams: Vec<_> = lights.iter().filter_map(|light| light.beam(at)).collect();
+    let brightest = beams.iter().map(|beam| beam.irradiance.max_element()).fold(0.0, f64::max);
+    if brightest <= 0.0 || !brightest.is_finite() {
+        return Vec::new();
+    }
+    let colors: Vec<[f64; 3]> =
+        beams.iter().map(|beam| hue_saturation_intensity(beam.irradiance / brightest)).collect();
+    let gain = (MOST_LIGHT / colors.iter().map(|[_, _, i]| i).sum::<f64>()).min(1.0);
+    let lamp = |(beam, [hue, saturation, intensity]): (&crate::illumination::Beam, [f64; 3])| Illumination {
+        direction: mirrored(beam.towards),
+        color: [hue, saturation, intensity * gain],
+        ambient: 1.0,
+    };
+    beams.iter().zip(colors).map(lamp).collect()
+}
+
+/// Hue in degrees (0 is blue), saturation and intensity, 0..=1, of linear light.
+fn hue_saturation_intensity(linear: Bands) -> [f64; 3] {
+    let color = linear.clamp(DVec3::ZERO, DVec3::ONE).powf(DISPLAY_EXPONENT);
+    let [hue, saturation] = hue_saturation(color);
+    [hue, saturation, color.max_element()]
+}
+
+/// Hue in degrees (0 is blue) and saturation of a colour.
+pub fn hue_saturation(color: Bands) -> [f64; 2] {
+    let (high, low) = (color.max_element(), color.min_element());
+    if high <= 0.0 || high == low {
+        return [0.0, 0.0];
+    }
+    let span = high - low;
+    let sector = if high == color.x {
+        (color.y - color.z) / span
+    } else if high == color.y {
+        2.0 + (color.z - color.x) / span
+    } else {
+        4.0 + (color.x - color.y) / span
+    };
+    [(sector * 60.0 + 120.0).rem_euclid(360.0), span / high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh;
+
+    #[test]
+    fn hues_start_at_blue() {
+        let of = |r, g, b| hue_saturation(Bands::new(r, g, b));
+        assert_eq!(of(0.0, 0.0, 1.0), [0.0, 1.0]);
+        assert_eq!(of(1.0, 0.0, 0.0), [120.0, 1.0]);
+        assert_eq!(of(0.5, 0.5, 0.0), [180.0, 1.0]);
+        assert_eq!(of(0.0, 1.0, 0.0), [240.0, 1.0]);
+        assert_eq!(of(0.4, 0.4, 0.4), [0.0, 0.0]);
+        assert_eq!(of(1.0, 0.5, 0.5), [120.0, 0.5]);
+    }
+
+    #[test]
+    fn polygons_run_clockwise_from_outside_and_edges_within_a_plane_are_soft() {
+        let square = Mesh {
+            vertices: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 2.0)).to_vec(),
+            triangles: vec![[0, 1, 2], [0, 2, 3], [2, 2, 3]],
+            corner_normals: vec![[DVec3::Z; 3]; 3],
+            ..Mesh::default()
+        };
+        let polygons = polygons(&square, &Selection::creases(25.0), "PERIS_A1").unwrap();
+        assert_eq!(polygons.len(), 2, "a triangle without area is left out");
+        assert_eq!(polygons.iter().filter(|polygon| polygon.attributes.is_some()).count(), 1);
+        for polygon in &polygons {
+            let [a, b, c] = [0, 1, 2].map(|k| DVec3::from(polygon.vertices[k].position.map(f64::from)));
+            // Outside is towards the viewer, where z is less; clockwise from there in left-handed space.
+            assert_eq!((b - a).cross(c - a).normalize(), DVec3::Z);
+            assert!(polygon.vertices.iter().all(|v| v.position[2] == -2.0 && v.normal == Some([0.0, 0.0, -1.0])));
+            let soft: Vec<[f32; 3]> = polygon.vertices.iter().filter(|v| v.soft).map(|v| v.position).collect();
+            assert_eq!(soft.len(), 1);
+            assert!(soft[0][0] == soft[0][1], "the diagonal ends at one of its corners");
+        }
+        let all = super::polygons(&square, &Selection::ALL, "PERIS_A1").unwrap();
+        assert!(all.iter().flat_map(|polygon| &polygon.vertices).all(|vertex| !vertex.soft));
+        let far = Mesh { vertices: vec![DVec3::splat(1e40), DVec3::X, DVec3::Y], triangles: vec![[0, 1, 2]], ..square };
+        assert!(super::polygons(&far, &Selection::ALL, "PERIS_A1").unwrap_err().contains("too far away"));
+        assert_eq!(super::polygons(&mesh::bunny(), &Selection::ALL, "PERIS_A1").unwrap().len(), 69_666);
+    }
+
+    #[test]
+    fn materials_and_lights_stay_within_the_ranges_of_the_machine() {
+        let mirror = Material { diffuse: Bands::ZERO, mirror: Bands::ONE, exponent: 1e6, ..Material::default() };
+        let seen = attributes(&mirror).front;
+        assert_eq!((seen.color, seen.diffuse, seen.specular), ([0.0, 0.0, 1.0], LEAST_DIFFUSE, 10));
+        let matt = attributes(&Material { diffuse: Bands::splat(0.5), ..Material::default() }).front;
+        assert!((matt.color[2] - 0.5_f64.powf(1.0 / 2.2)).abs() < 1e-12 && matt.diffuse == 1.0);
+        let at = DVec3::new(0.0, 1.0, 0.0);
+        let lamp = Light::Point { at: at + DVec3::new(0.0, 0.0, 2.0), intensity: Bands::new(4.0, 0.0, 0.0) };
+        let sun = Light::Directional { direction: DVec3::new(0.0, -3.0, 0.0), irradiance: Bands::splat(1.0) };
+        let [lamp, sun] = <[Illumination; 2]>::try_from(illumination(&[lamp, sun], at)).unwrap();
+        assert_eq!((lamp.direction, &lamp.color[..2]), (DVec3::NEG_Z, &[120.0, 1.0][..]));
+        assert_eq!((sun.direction, &sun.color[..2]), (DVec3::Y, &[0.0, 0.0][..]));
+        assert!((lamp.color[2] - 0.7).abs() < 1e-12 && lamp.color[2] == sun.color[2], "two of 1 are more than 1.4");
+        assert_eq!(illumination(&[], at), []);
+    }
+}
