@@ -100,6 +100,7 @@ impl Optics {
     }
 
     /// First and last place of the part of a stroke whose light can reach the picture; `None` if there is none.
+    #[cfg(feature = "window")]
     pub fn seen(&self, start: [f64; 2], end: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let mut parts = [0.0, 1.0];
         for axis in [0, 1] {

@@ -3,10 +3,8 @@
 //! Where there is no adapter these tests say so and do nothing; where `CI` is set they fail.
 
 use super::*;
-use crate::calligraphic::{
-    Beam, Controls, Display, Drawer, PHOSPHORS, draw,
-    tests::{difference, jumble},
-};
+use crate::calligraphic::tests::{difference, jumble};
+use crate::calligraphic::{Beam, Controls, Display, Drawer, PHOSPHORS, draw};
 
 const WHITE: [f32; 3] = [1.0; 3];
 /// Light over the strongest that 32 bits may lose: half a picture of 2000 pixels from the anchor, a direction of 24 bits
