@@ -109,7 +109,7 @@ impl Picture {
     /// What the encoder says, if it refuses the size.
     pub fn to_png(&self) -> Result<Vec<u8>, ImageError> {
         let mut file = Vec::new();
-        let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Fast, FilterType::Adaptive);
+        let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive);
         encoder.write_image(&self.to_srgb(), self.width, self.height, Rgb8)?;
         Ok(file)
     }

@@ -177,8 +177,8 @@ impl Session {
         });
         assert!(quiet, "the machine rests after INITIALIZE: {:?}", self.machine.log().last());
         self.machine.audit().unwrap_or_else(|error| panic!("after INITIALIZE: {error}"));
-        if self.machine.describe(ANSWERS) != Machine::new(Settings::default()).describe(ANSWERS) {
-            return; // A host in configure mode took it away; the machine is to be started again.
+        if answering(&self.machine) != answering(&Machine::new(Settings::default())) {
+            return; // A host in configure mode took it away, or its queue; the machine is to be started again.
         }
         self.outputs.clear();
         let question = b"P := F:PRINT; CONNECT P<1>:<1>HOST_MESSAGE; SEND V2D(0.5,1) TO <1>P;\n";
@@ -191,6 +191,15 @@ impl Session {
         let log: Vec<_> = self.machine.log().collect();
         assert!(answered, "the last host hears {}; {:?}", heard.escape_ascii(), &log[log.len().saturating_sub(9)..]);
     }
+}
+
+/// The instance that answers hosts, and which of its inputs are queues.
+fn answering(machine: &Machine) -> (Option<String>, Vec<bool>) {
+    let memory = machine.memory();
+    let object = memory.objects.find(ANSWERS);
+    let view = memory.network.snapshot().find(|view| Some(view.object()) == object);
+    let queues = view.iter().flat_map(|view| view.inputs()).map(|input| input.is_active());
+    (machine.describe(ANSWERS), queues.collect())
 }
 
 fn observe(session: &Session, input: &[u8], features: &mut Features) {
