@@ -68,11 +68,11 @@ pub fn place(matrix: &DMat4, point: DVec3, size: usize) -> DVec3 {
     DVec3::new((clip.x / clip.w + 1.0) * half, (clip.y / clip.w + 1.0) * half, 1.0 / clip.w)
 }
 
-/// The nearest 1/w at the middle of each pixel, 0 where there is nothing, and the triangle there: the textbook loop over
-/// boxes with three sides, no bands, no incremental spans.
-pub fn z_buffer(triangles: &[[DVec3; 3]], size: usize) -> Vec<(f64, u32)> {
-    let mut buffer = vec![(0.0, u32::MAX); size * size];
-    for (number, [a, b, c]) in triangles.iter().enumerate() {
+/// The nearest 1/w at the middle of each pixel, 0 where there is nothing: the textbook loop over boxes with three sides,
+/// no bands, no incremental spans.
+pub fn z_buffer(triangles: &[[DVec3; 3]], size: usize) -> Vec<f64> {
+    let mut buffer = vec![0.0; size * size];
+    for [a, b, c] in triangles {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         let low = a.min(*b).min(*c).max(DVec3::ZERO);
         let high = a.max(*b).max(*c);
@@ -84,8 +84,8 @@ pub fn z_buffer(triangles: &[[DVec3; 3]], size: usize) -> Vec<(f64, u32)> {
                 let shares = [part(*b, *c, p), part(*c, *a, p), part(*a, *b, p)];
                 let nearness = shares[0] * a.z + shares[1] * b.z + shares[2] * c.z;
                 let there = &mut buffer[y * size + x];
-                if shares.iter().all(|share| *share >= 0.0) && nearness > there.0 {
-                    *there = (nearness, number as u32);
+                if shares.iter().all(|share| *share >= 0.0) && nearness > *there {
+                    *there = nearness;
                 }
             }
         }
