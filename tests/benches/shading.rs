@@ -81,11 +81,7 @@ fn shaded(name: &str, polygons: &[Polygon], above: &[Operation]) {
             let wrong = image.pixels.iter().zip(&plain).filter(|pair| covered(*pair)).count();
             assert!(wrong < 50, "{name}: {wrong} pixels are not those of the z-buffer");
         }
-        println!(
-            "{name}: {kind:?}, quality {quality}  {:>10.0} polygons/s, {:6.1} ms",
-            rate(seconds),
-            seconds * 1e3
-        );
+        println!("{name}: {kind:?}, quality {quality}  {:>10.0} polygons/s, {:6.1} ms", rate(seconds), seconds * 1e3);
     }
 }
 

@@ -50,7 +50,7 @@ fn saturation(x: f32) -> f32 {
     // Both sides before the choice, for the compiler's sake. The series is worth 2e-7 at 0.25.
     let series = (-1.0_f32 / 720.0).mul_add(x, 1.0 / 120.0).mul_add(x, -1.0 / 24.0).mul_add(x, 1.0 / 6.0);
     let series = series.mul_add(x, -0.5).mul_add(x, 1.0);
-    let direct = (1.0 - bell(2.0 * x)) / x;
+    let direct = (1.0 - bell(lesser(2.0 * x, 160.0))) / x;
     if x < 0.25 { series } else { direct }
 }
 

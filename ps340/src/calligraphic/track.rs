@@ -240,8 +240,9 @@ impl Profile for Between {
     #[inline(always)]
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
         // written(-rest) = 1 - written(rest), rise(-rest) = rise(rest).
-        let written = spot::written(u) + spot::written(rest) - 1.0;
-        let rise = spot::rise(u) - spot::rise(rest);
+        let (start, end) = (spot::within(u), spot::within(rest));
+        let written = spot::half_written(start) + spot::half_written(end);
+        let rise = spot::rise(start) - spot::rise(end);
         let light = self.gain.mul_add(rise, self.gain.mul_add(u, self.current) * written);
         greater(light, 0.0) * spot::across(v)
     }
@@ -255,7 +256,7 @@ struct EvenBetween {
 impl Profile for EvenBetween {
     #[inline(always)]
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
-        let written = spot::written(u) + spot::written(rest) - 1.0;
+        let written = spot::half_written(spot::within(u)) + spot::half_written(spot::within(rest));
         greater(self.current * written, 0.0) * spot::across(v)
     }
 }
@@ -269,11 +270,11 @@ struct Long {
 impl Profile for Long {
     #[inline(always)]
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
-        let nearer = lesser(u, rest);
+        let nearer = spot::within(lesser(u, rest));
         // Towards the end it is a fall.
         let (rise, fall) = (spot::rise(nearer), -spot::rise(nearer));
         let rise = if u < rest { rise } else { fall };
-        let light = self.gain.mul_add(rise, self.gain.mul_add(u, self.current) * spot::written(nearer));
+        let light = self.gain.mul_add(rise, self.gain.mul_add(u, self.current) * (0.5 + spot::half_written(nearer)));
         greater(light, 0.0) * spot::across(v)
     }
 }
@@ -286,7 +287,7 @@ struct EvenLong {
 impl Profile for EvenLong {
     #[inline(always)]
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
-        greater(self.current * spot::written(lesser(u, rest)), 0.0) * spot::across(v)
+        greater(self.current * (0.5 + spot::half_written(spot::within(lesser(u, rest)))), 0.0) * spot::across(v)
     }
 }
 
