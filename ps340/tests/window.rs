@@ -262,7 +262,14 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     desk.expect("knob", "brightness 0,");
     desk.click("view Display");
 
-    // From a pixel to 8K and back, the window shows what it is given.
+    // From a pixel to 8K and back, the window shows what it is given, while polygons are shaded.
+    desk.tell(
+        "RESERVE_WORKING_STORAGE 100000; SEND FIX(3) TO <5>SHADINGENVIRONMENT; \
+               T := POLYGON .5,.5,.5 .5,-.5,-.5 -.5,.5,-.5 POLYGON .5,.5,.5 -.5,.5,-.5 -.5,-.5,.5 \
+               POLYGON .5,.5,.5 -.5,-.5,.5 .5,-.5,-.5 POLYGON .5,-.5,-.5 -.5,-.5,.5 -.5,.5,-.5; \
+               SOLID := SOLID_RENDERING APPLIED TO T; DISPLAY SOLID;\n",
+    );
+    desk.tell(&"SEND FIX(8) TO <1>SOLID;".repeat(60));
     let before = desk.place("button 9");
     for size in ["1 1", "7680 4320", "1 8400", "1280 860"] {
         desk.display.act(&format!("windowsize {} {size}", desk.window));
@@ -274,4 +281,6 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     }
     desk.click("button 9");
     desk.expect("message 60", "ok 9");
+    desk.tell("CONNECT SOLID<1>:<1>TEXT; SEND FIX(8) TO <1>SOLID;\n");
+    desk.expect("message 60", "ok T");
 }
