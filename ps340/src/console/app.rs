@@ -95,7 +95,7 @@ impl App {
 
     fn show_bar(&mut self, ui: &mut Ui, shown: &Shown) {
         ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new("PS 340").strong());
+            ui.label(RichText::new("PS 340").strong()).on_hover_text(&self.drawn_by);
             for (mode, key) in [
                 (KeyboardMode::Terminal, "host"),
                 (KeyboardMode::Command, "command"),
