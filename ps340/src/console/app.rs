@@ -95,7 +95,11 @@ impl App {
 
     fn show_bar(&mut self, ui: &mut Ui, shown: &Shown) {
         ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new("PS 340").strong()).on_hover_text(&self.drawn_by);
+            ui.label(RichText::new("PS 340").strong()).on_hover_text(format!(
+                "the window is drawn by {}, the vector screen by {}",
+                self.drawn_by,
+                self.mirror.screen().drawer()
+            ));
             for (mode, key) in [
                 (KeyboardMode::Terminal, "host"),
                 (KeyboardMode::Command, "command"),
@@ -130,12 +134,6 @@ impl App {
                     self.view = (!is_open).then_some(index);
                 }
             }
-            ui.separator();
-            ui.weak(format!("{} strokes", shown.scene.strokes.len())).on_hover_text(format!(
-                "the window is drawn by {}, the vector screen by {}",
-                self.drawn_by,
-                self.mirror.screen().drawer()
-            ));
             if let Some(failure) = &self.orders.failure
                 && ui.link(RichText::new(failure).color(Color32::from_rgb(255, 120, 100))).clicked()
             {
