@@ -284,3 +284,15 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     desk.tell("CONNECT SOLID<1>:<1>TEXT; SEND FIX(8) TO <1>SOLID;\n");
     desk.expect("message 60", "ok T");
 }
+
+#[test]
+fn a_display_that_nobody_serves_is_named_and_the_machine_does_not_start() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ps340"));
+    command.args(["--window", "--listen", "tcp:127.0.0.1:0"]).env("DISPLAY", ":9999").env_remove("WAYLAND_DISPLAY");
+    let output = command.output().expect("ps340 runs");
+    let text = String::from_utf8_lossy(&output.stderr);
+    // Where the libraries of the window system are missing too, the first of them is named instead.
+    let is_named = text.contains("the display :9999 cannot be reached") || text.contains("apt install");
+    assert!(is_named && output.status.code() == Some(1), "{text}");
+    assert!(output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stdout));
+}

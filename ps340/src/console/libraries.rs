@@ -42,3 +42,10 @@ pub fn check() -> Result<(), ConsoleError> {
 pub fn check() -> Result<(), ConsoleError> {
     Ok(())
 }
+
+/// The display on which a window is opened, as the environment names it.
+pub fn display() -> String {
+    let named =
+        ["WAYLAND_DISPLAY", "DISPLAY"].into_iter().find_map(|name| std::env::var(name).ok().filter(|n| !n.is_empty()));
+    named.unwrap_or_default()
+}

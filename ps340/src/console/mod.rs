@@ -45,6 +45,11 @@ pub enum ConsoleError {
     /// No display is there.
     #[error("no window: neither DISPLAY nor WAYLAND_DISPLAY is set; without '--window' the machine needs no display")]
     NoDisplay,
+    /// The display that is named cannot be reached.
+    #[error(
+        "no window: the display {0} cannot be reached: nothing serves it, or not this user; without '--window' the machine needs no display"
+    )]
+    NoServer(String),
     /// A library of the window system is missing.
     #[error("no window: the library {library} is missing; on Debian and Ubuntu: apt install {package}")]
     NoLibrary {
@@ -78,9 +83,12 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
     let mirror = Arc::new(Mirror::new(options.drawer.clone(), wake));
     let (sender, orders) = mpsc::channel();
     let window = Window { mirror: mirror.clone(), orders };
+    let (opened, opening) = mpsc::channel();
     std::thread::scope(|scope| {
         let closing = context.clone();
         let machine = scope.spawn(move || {
+            // It begins when there is a window.
+            opening.recv().map_err(io::Error::other)?;
             let end = run(options, Some(window), ready);
             if let Some(context) = closing.get() {
                 context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -88,7 +96,7 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
             }
             end
         });
-        let shown = show(context, mirror, sender, appearance);
+        let shown = show(context, mirror, sender, appearance, opened);
         // The other end of the orders is gone: the machine ends if it has not yet.
         let end = machine.join().unwrap_or_else(|_| Err(io::Error::other("the machine's thread failed")));
         shown?;
@@ -96,12 +104,13 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
     })
 }
 
-/// Shows the window until it is closed.
+/// Shows the window until it is closed; tells `opened` when it is there.
 fn show(
     context: Arc<OnceLock<egui::Context>>,
     mirror: Arc<Mirror>,
     orders: mpsc::Sender<crate::line::OperatorLine>,
     appearance: Appearance,
+    opened: mpsc::Sender<()>,
 ) -> Result<(), ConsoleError> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("PS 340")
@@ -125,12 +134,14 @@ fn show(
             native,
             Box::new(move |creation| {
                 let _ = context.set(creation.egui_ctx.clone());
+                let _ = opened.send(());
                 Ok(Box::new(App::new(creation, mirror, orders, appearance)))
             }),
         )
     }));
     match started {
         Ok(Ok(())) => Ok(()),
+        Ok(Err(eframe::Error::WinitEventLoop(_))) => Err(ConsoleError::NoServer(libraries::display())),
         Ok(Err(error)) => Err(ConsoleError::Graphics(error.to_string())),
         // The window system's own code panics where a library or a display fails it; its message was printed.
         Err(panic) => {
