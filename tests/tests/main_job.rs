@@ -94,6 +94,54 @@ fn the_view_that_dials_set_reads_back_as_its_closed_form() {
     assert!(difference(&production.view().unwrap(), &before) < 1e-6, "the reset undoes it");
 }
 
+#[test]
+fn a_scene_that_is_shown_as_facets_is_rendered_by_the_machine_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("pot.rhai"), SCENE).unwrap();
+    let mut machine = Machine::start(PS340, &[]);
+    let to = format!("tcp:{}", machine.line);
+    let ended = peris(&["show", "pot.rhai", "--once", "--facets", "--tolerance", "0.01", "--to", &to], folder.path());
+    assert_eq!(ended.code, Some(0), "{}{}", ended.out, ended.errors);
+    let strokes = |machine: &mut Machine| {
+        let file = folder.path().join("strokes.txt");
+        machine.order(&format!("picture vector {}", file.display()));
+        fs::read_to_string(file).unwrap().lines().count()
+    };
+    let mut host = machine.attach();
+    host.send("ENDED := F:PRINT; CONNECT PERIS.SHADE<1>:<1>ENDED; CONNECT ENDED<1>:<1>HOST_MESSAGE;");
+    host.synchronize();
+    let all = strokes(&mut machine);
+    host.send("SEND FIX(4) TO <1>PERIS.SHADE;");
+    assert_eq!(host.message(), "TRUE", "hidden lines are removed");
+    let seen = strokes(&mut machine);
+    assert!(seen > 100 && seen < all * 3 / 4, "{seen} of {all} strokes are seen");
+    host.send("SEND FIX(8) TO <1>PERIS.SHADE;");
+    assert_eq!(host.message(), "TRUE", "the polygons are shaded");
+    let file = folder.path().join("shaded.png");
+    machine.order(&format!("picture raster {}", file.display()));
+    let image = image::open(file).unwrap().to_rgb8();
+    let lit = image.pixels().filter(|pixel| pixel.0.iter().any(|byte| *byte > 60)).count();
+    assert!((20_000..200_000).contains(&lit), "{lit} of 307,200 pixels are lit");
+}
+
+#[test]
+fn a_scene_that_is_converted_to_commands_plays_on_the_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("pot.rhai"), SCENE).unwrap();
+    let ended = peris(&["convert", "pot.rhai", "pot.ps300", "--tolerance", "0.01"], folder.path());
+    assert_eq!(ended.code, Some(0), "{}{}", ended.out, ended.errors);
+    let steps = "ENDED := F:PRINT; CONNECT PERIS.SHADE<1>:<1>ENDED; CONNECT ENDED<1>:<1>HOST_MESSAGE;\n\
+                 SEND FIX(7) TO <1>PERIS.SHADE;\n@ expect 'TRUE' within 6000\n";
+    fs::write(folder.path().join("steps.play"), steps).unwrap();
+    let played = run(PS340, &["play", "pot.ps300", "steps.play"], &[], folder.path(), LIMIT);
+    assert_eq!(played.code, Some(0), "{}{}", played.out, played.errors);
+    let simpler = peris(&["convert", "pot.rhai", "pot.stl", "--triangles", "500"], folder.path());
+    assert_eq!(simpler.code, Some(0), "{}{}", simpler.out, simpler.errors);
+    assert!(simpler.out.contains(" 500 triangles"), "{}", simpler.out);
+    let refused = peris(&["convert", "pot.rhai", "pot.ps300", "--triangles", "500"], folder.path());
+    assert!(refused.code == Some(2) && refused.errors.contains("--triangles is for a mesh"), "{}", refused.errors);
+}
+
 /// What a picture covers: pixels above a threshold, with gaps of up to `gap` pixels closed.
 struct Mask {
     size: usize,

@@ -65,7 +65,7 @@ fn sphere(n: usize, triangles: bool) -> Vec<Polygon> {
     let turn = DMat3::from_rotation_x(0.9) * DMat3::from_rotation_z(0.3);
     let at = |i: usize, k: usize| {
         let (u, v) = (std::f64::consts::PI * i as f64 / n as f64, std::f64::consts::TAU * (k % n) as f64 / n as f64);
-        let ring = if i % n == 0 { 0.0 } else { 0.7 * u.sin() };
+        let ring = if i.is_multiple_of(n) { 0.0 } else { 0.7 * u.sin() };
         (turn * DVec3::new(ring * v.cos(), ring * v.sin(), 0.7 * u.cos())).as_vec3().to_array()
     };
     let cells = (0..n * n).map(|cell| (cell / n, cell % n));
