@@ -7,6 +7,7 @@ pub mod picture;
 pub mod mesh;
 pub mod octree;
 pub mod surface;
+pub mod solid;
 pub mod illumination;
 pub mod scene;
 pub mod plan;

@@ -1,6 +1,8 @@
 //! Numbers: rays, exact predicates, seeded sampling.
 
 pub mod bounds;
+pub mod exact;
+pub mod implicit;
 pub mod predicates;
 pub mod ray;
 pub mod sampling;

@@ -10,6 +10,7 @@ mod index;
 mod items;
 mod packet;
 mod partition;
+mod sorted;
 mod walk;
 
 #[cfg(test)]
@@ -28,6 +29,7 @@ pub use frame::MAX_DISTANCE;
 use index::{Index, Node};
 use items::Items;
 use packet::Packet;
+pub use sorted::Sorted;
 
 /// Most triangles that one octree takes.
 pub const MAX_TRIANGLES: usize = 1 << 28;

@@ -1,0 +1,281 @@
+//! Numbers for predicates: one that knows its error, and one that has none.
+//!
+//! A formula is written once over [`Number`]. It is first evaluated with [`Rounded`], whose error bound says whether the
+//! sign is certain, and only if it is not with [`Exact`].
+
+use dashu_int::{IBig, Sign, UBig, ops::BitTest};
+use std::ops::{Add, Mul, Sub};
+
+/// What a formula of sums, differences and products is evaluated with.
+pub trait Number:
+    Clone + From<f64> + Add<Output = Self> + Sub<Output = Self> + for<'a> Mul<&'a Self, Output = Self>
+{
+}
+
+impl<N> Number for N where N: Clone + From<f64> + Add<Output = N> + Sub<Output = N> + for<'a> Mul<&'a N, Output = N> {}
+
+/// Half the distance from 1 to the next number: the relative error of one operation.
+const UNIT: f64 = f64::EPSILON / 2.0;
+/// What the errors may be too small by, since they are rounded themselves; far more than any formula here gathers.
+const SLACK: f64 = 1.0 + 1e-12;
+
+/// A rounded number and a bound on its distance from the true one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounded {
+    /// The number as it came out.
+    pub value: f64,
+    /// The true number is at most so far away; infinite or NaN if nothing is known.
+    pub error: f64,
+}
+
+impl Rounded {
+    /// The sign, -1.0, 0.0 or 1.0, if the error leaves no doubt.
+    pub fn sign(self) -> Option<f64> {
+        if self.value.abs() > self.error * SLACK {
+            Some(self.value.signum())
+        } else {
+            (self.value == 0.0 && self.error == 0.0).then_some(0.0)
+        }
+    }
+
+    /// The quotient; its error is infinite if the divisor may be 0.
+    pub fn over(self, divisor: Rounded) -> Rounded {
+        let least = divisor.value.abs() - divisor.error * SLACK;
+        if least <= 0.0 || least.is_nan() {
+            return Rounded { value: self.value / divisor.value, error: f64::INFINITY };
+        }
+        let value = self.value / divisor.value;
+        let error = (self.error + value.abs() * divisor.error) / least + UNIT * value.abs() + f64::MIN_POSITIVE;
+        Rounded { value, error }
+    }
+}
+
+impl From<f64> for Rounded {
+    fn from(value: f64) -> Rounded {
+        Rounded { value, error: 0.0 }
+    }
+}
+
+impl Add for Rounded {
+    type Output = Rounded;
+    #[inline]
+    fn add(self, other: Rounded) -> Rounded {
+        let value = self.value + other.value;
+        Rounded { value, error: self.error + other.error + UNIT * value.abs() }
+    }
+}
+
+impl Sub for Rounded {
+    type Output = Rounded;
+    #[inline]
+    fn sub(self, other: Rounded) -> Rounded {
+        let value = self.value - other.value;
+        Rounded { value, error: self.error + other.error + UNIT * value.abs() }
+    }
+}
+
+impl Mul<&Rounded> for Rounded {
+    type Output = Rounded;
+    #[inline]
+    fn mul(self, other: &Rounded) -> Rounded {
+        let value = self.value * other.value;
+        // A product of nonzero numbers may fall below the smallest one; a product with a true 0 is 0.
+        let lost = if value.abs() > f64::MIN_POSITIVE || self.value == 0.0 || other.value == 0.0 {
+            0.0
+        } else {
+            f64::MIN_POSITIVE
+        };
+        let error = self.value.abs() * other.error + other.value.abs() * self.error + self.error * other.error;
+        Rounded { value, error: error + UNIT * value.abs() + lost }
+    }
+}
+
+/// A number without error: an integer of any length times a power of two.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Exact {
+    integer: IBig,
+    /// Power of two.
+    exponent: i32,
+}
+
+impl Exact {
+    /// The sign: -1.0, 0.0 or 1.0.
+    pub fn sign(&self) -> f64 {
+        if self.integer.is_zero() {
+            0.0
+        } else if self.integer.sign() == Sign::Negative {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+
+    /// The same with the other sign.
+    pub fn negated(self) -> Exact {
+        Exact { integer: -self.integer, exponent: self.exponent }
+    }
+
+    /// The quotient, rounded to the nearest `f64` but for a doubt in the last bit at a tie.
+    ///
+    /// # Panics
+    /// If the divisor is 0.
+    pub fn over(&self, divisor: &Exact) -> f64 {
+        let (sign, dividend) = self.integer.clone().into_parts();
+        let (divisor_sign, denominator) = divisor.integer.clone().into_parts();
+        // A quotient of at least 64 bits, the rest noted in its last bit.
+        let shift = (66 + denominator.bit_len() as i64 - dividend.bit_len() as i64).max(0) as usize;
+        let shifted: UBig = dividend << shift;
+        let mut quotient = &shifted / &denominator;
+        if &quotient * &denominator != shifted {
+            quotient |= UBig::ONE;
+        }
+        let magnitude = scaled(&quotient, i64::from(self.exponent) - i64::from(divisor.exponent) - shift as i64);
+        if sign == divisor_sign { magnitude } else { -magnitude }
+    }
+
+    /// The integer at the lower of two exponents, and that exponent.
+    fn aligned(self, other: Exact) -> (IBig, IBig, i32) {
+        let exponent = self.exponent.min(other.exponent);
+        let shift = |number: Exact| match (number.exponent - exponent) as usize {
+            0 => number.integer,
+            bits => number.integer << bits,
+        };
+        (shift(self), shift(other), exponent)
+    }
+}
+
+/// An integer times a power of two, rounded to the nearest number.
+fn scaled(integer: &UBig, exponent: i64) -> f64 {
+    let length = integer.bit_len() as i64;
+    if length == 0 {
+        return 0.0;
+    }
+    // 64 bits are kept, with the rest noted in the last one, so that the one rounding to 53 bits is right.
+    let drop = (length - 64).max(0) as usize;
+    let mut top = u64::try_from(integer >> drop).unwrap_or(u64::MAX);
+    if drop > 0 && !(integer & ((UBig::ONE << drop) - UBig::ONE)).is_zero() {
+        top |= 1;
+    }
+    let power = exponent + drop as i64;
+    // In two steps, as a power of two may lie outside the range where the product does not.
+    let half = power / 2;
+    let pow = |e: i64| 2f64.powi(e.clamp(-1074, 1023) as i32);
+    if length + exponent > 1100 {
+        return f64::INFINITY;
+    }
+    if length + exponent < -1100 {
+        return 0.0;
+    }
+    top as f64 * pow(half) * pow(power - half)
+}
+
+impl From<f64> for Exact {
+    /// # Panics
+    /// If the number is not finite, which every door to the geometry refuses.
+    fn from(value: f64) -> Exact {
+        assert!(value.is_finite(), "{value} has no exact value");
+        if value == 0.0 {
+            return Exact::default();
+        }
+        let bits = value.to_bits();
+        let biased = (bits >> 52 & 0x7ff) as i32;
+        let fraction = bits & ((1 << 52) - 1);
+        let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+        let zeros = mantissa.trailing_zeros();
+        let integer = IBig::from((mantissa >> zeros) as i64 * if value < 0.0 { -1 } else { 1 });
+        Exact { integer, exponent: exponent + zeros as i32 }
+    }
+}
+
+impl Add for Exact {
+    type Output = Exact;
+    fn add(self, other: Exact) -> Exact {
+        if self.integer.is_zero() {
+            return other;
+        }
+        if other.integer.is_zero() {
+            return self;
+        }
+        let (one, two, exponent) = self.aligned(other);
+        Exact { integer: one + two, exponent }
+    }
+}
+
+impl Sub for Exact {
+    type Output = Exact;
+    fn sub(self, other: Exact) -> Exact {
+        self + other.negated()
+    }
+}
+
+impl Mul<&Exact> for Exact {
+    type Output = Exact;
+    fn mul(self, other: &Exact) -> Exact {
+        if self.integer.is_zero() || other.integer.is_zero() {
+            return Exact::default();
+        }
+        Exact { integer: self.integer * &other.integer, exponent: self.exponent + other.exponent }
+    }
+}
+
+/// Cross product of two vectors.
+pub fn cross<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+    let term = |i: usize, j: usize| a[i].clone() * &b[j] - a[j].clone() * &b[i];
+    [term(1, 2), term(2, 0), term(0, 1)]
+}
+
+/// Scalar product of two vectors.
+pub fn dot<N: Number>(a: &[N; 3], b: &[N; 3]) -> N {
+    a[0].clone() * &b[0] + a[1].clone() * &b[1] + a[2].clone() * &b[2]
+}
+
+/// Difference of two vectors.
+pub fn minus<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+    [0, 1, 2].map(|axis| a[axis].clone() - b[axis].clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn exact_numbers_keep_what_floats_lose() {
+        let big = Exact::from(1e300);
+        let sum = big.clone() + Exact::from(1e-300) - big;
+        assert_eq!(sum, Exact::from(1e-300));
+        assert_eq!(sum.over(&Exact::from(1.0)), 1e-300);
+        assert_eq!(Exact::from(5e-324).over(&Exact::from(1.0)), 5e-324);
+        assert_eq!(Exact::from(1.0).over(&Exact::from(3.0)), 1.0 / 3.0);
+        assert_eq!(Exact::from(-1.0).over(&Exact::from(3.0)), -1.0 / 3.0);
+        assert_eq!(Exact::from(f64::MAX).over(&Exact::from(1.0)), f64::MAX);
+        assert_eq!((Exact::from(1e300) * &Exact::from(1e300)).over(&Exact::from(1e-300)), f64::INFINITY);
+        assert_eq!((Exact::from(3.0) - Exact::from(3.0)).sign(), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn errors_hold_and_signs_are_certain(a in -1e3..1e3, b in -1e3..1e3, c in -1e-3..1e-3, d in 1e-9..1.0) {
+            fn formula<N: Number>([a, b, c, d]: [f64; 4]) -> N {
+                let [a, b, c, d] = [a, b, c, d].map(N::from);
+                (a.clone() - b.clone()) * &(a + c.clone()) - (b * &c) * &d
+            }
+            let rounded: Rounded = formula([a, b, c, d]);
+            let exact: Exact = formula([a, b, c, d]);
+            let gap = (exact.clone() - Exact::from(rounded.value)).over(&Exact::from(1.0)).abs();
+            prop_assert!(gap <= rounded.error * SLACK);
+            if let Some(sign) = rounded.sign() {
+                prop_assert_eq!(sign, exact.sign());
+            }
+            let quotient = rounded.over(Rounded::from(d));
+            let gap = (exact - Exact::from(quotient.value) * &Exact::from(d)).over(&Exact::from(d)).abs();
+            prop_assert!(gap <= quotient.error * SLACK);
+        }
+
+        #[test]
+        fn quotients_are_rounded_right(a in any::<f64>(), b in any::<f64>()) {
+            prop_assume!(a.is_finite() && b.is_finite() && b != 0.0 && (a / b).is_normal());
+            prop_assert_eq!(Exact::from(a).over(&Exact::from(b)), a / b);
+        }
+    }
+}

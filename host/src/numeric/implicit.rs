@@ -1,0 +1,329 @@
+//! Points that are known by what they lie on, and exact predicates of them.
+//!
+//! Where an edge meets a face, or three faces meet, no floating-point number says exactly where that is. Such a point is
+//! kept as what defines it, with a rounded place and a bound on its error; predicates ask the rounded places first and
+//! the definitions only if those leave a doubt.
+//!
+//! # Source
+//! Attene 2020, "Indirect predicates for geometric constructions"; the numbers are ours.
+
+use super::bounds::Bounds;
+use super::exact::{Exact, Number, Rounded, cross, dot, minus};
+use glam::DVec3;
+use robust::{Coord, Coord3D, orient2d, orient3d};
+use std::cmp::Ordering;
+
+/// What defines a point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Definition {
+    /// Its coordinates.
+    Given(DVec3),
+    /// A line through two points, and a plane through three, which meet in one point.
+    LineAndPlane([DVec3; 2], [DVec3; 3]),
+    /// Three planes, each through three points, which meet in one point.
+    Planes([[DVec3; 3]; 3]),
+    /// The middle of three points.
+    Middle(Box<[Definition; 3]>),
+}
+
+/// A point with its rounded place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    definition: Definition,
+    near: DVec3,
+    /// Each coordinate of `near` is at most so far from the true one.
+    error: f64,
+}
+
+/// Homogeneous coordinates x, y, z, w with w > 0.
+type Homogeneous = [Exact; 4];
+
+impl Point {
+    /// Makes a point; the line and the plane, or the three planes, must meet in one point.
+    pub fn new(definition: Definition) -> Point {
+        let [near, errors] = match &definition {
+            &Definition::Given(at) => return Point { definition, near: at, error: 0.0 },
+            &Definition::LineAndPlane(line, plane) => split(on_line(line, plane)),
+            &Definition::Planes(planes) => split(on_planes(planes)),
+            Definition::Middle(_) => [DVec3::ZERO, DVec3::INFINITY],
+        };
+        let error = errors.max_element();
+        // A few roundings of the coordinates are what any formula has; a point that is known much worse than that, as
+        // where a line grazes a plane, gets its rounded place from the exact one.
+        if error <= 16.0 * f64::EPSILON * near.abs().max_element() {
+            return Point { definition, near, error };
+        }
+        let [x, y, z, w] = homogeneous(&definition);
+        let near = DVec3::new(x.over(&w), y.over(&w), z.over(&w));
+        Point { definition, near, error: f64::EPSILON * near.abs().max_element() + f64::MIN_POSITIVE }
+    }
+
+    /// The nearest place with floating-point coordinates, within a few roundings.
+    pub fn near(&self) -> DVec3 {
+        self.near
+    }
+
+    /// What defines it.
+    pub fn definition(&self) -> &Definition {
+        &self.definition
+    }
+
+    /// The middle of three points.
+    pub fn middle(points: [&Point; 3]) -> Point {
+        Point::new(Definition::Middle(Box::new(points.map(|point| point.definition.clone()))))
+    }
+
+    /// A box that holds it.
+    pub fn bounds(&self) -> Bounds {
+        let reach = DVec3::splat(self.error * (1.0 + 1e-9));
+        let near = self.near;
+        Bounds { min: near - reach, max: near + reach }
+    }
+
+    /// The exact coordinates times a common denominator, which comes last and is positive.
+    pub fn homogeneous(&self) -> Homogeneous {
+        homogeneous(&self.definition)
+    }
+
+    fn coordinate(&self, axis: usize) -> Rounded {
+        Rounded { value: self.near[axis], error: self.error }
+    }
+}
+
+fn split(place: [Rounded; 3]) -> [DVec3; 2] {
+    [DVec3::from(place.map(|c| c.value)), DVec3::from(place.map(|c| c.error))]
+}
+
+fn vector<N: Number>(v: DVec3) -> [N; 3] {
+    v.to_array().map(N::from)
+}
+
+/// The difference of two given points.
+fn step<N: Number>(to: DVec3, from: DVec3) -> [N; 3] {
+    minus(&vector(to), &vector(from))
+}
+
+fn normal<N: Number>([a, b, c]: [DVec3; 3]) -> [N; 3] {
+    cross(&step(b, a), &step(c, a))
+}
+
+/// For the line p + t (q - p) and the plane n (x - r) = 0: t as a fraction, n (r - p) over n (q - p).
+fn fraction<N: Number>([p, q]: [DVec3; 2], plane: [DVec3; 3]) -> [N; 2] {
+    let n = normal::<N>(plane);
+    [dot(&n, &step(plane[0], p)), dot(&n, &step(q, p))]
+}
+
+fn on_line(line: [DVec3; 2], plane: [DVec3; 3]) -> [Rounded; 3] {
+    let [over, under] = fraction::<Rounded>(line, plane);
+    let t = over.over(under);
+    let (start, along) = (vector::<Rounded>(line[0]), step::<Rounded>(line[1], line[0]));
+    [0, 1, 2].map(|axis| start[axis] + along[axis] * &t)
+}
+
+/// Offset of the meeting point of three planes from the first point of the first, times the second result.
+fn meeting<N: Number>(planes: [[DVec3; 3]; 3]) -> ([N; 3], N) {
+    let n = planes.map(normal::<N>);
+    let level = |index: usize| dot(&n[index], &step(planes[index][0], planes[0][0]));
+    let [second, third] = [level(1), level(2)];
+    let (a, b) = (cross(&n[2], &n[0]), cross(&n[0], &n[1]));
+    let offset = [0, 1, 2].map(|axis| a[axis].clone() * &second + b[axis].clone() * &third);
+    (offset, dot(&n[2], &b))
+}
+
+fn on_planes(planes: [[DVec3; 3]; 3]) -> [Rounded; 3] {
+    let (offset, under) = meeting::<Rounded>(planes);
+    let start = vector::<Rounded>(planes[0][0]);
+    [0, 1, 2].map(|axis| start[axis] + offset[axis].over(under))
+}
+
+fn homogeneous(definition: &Definition) -> Homogeneous {
+    let (start, offset, under) = match definition {
+        &Definition::Given(at) => {
+            let [x, y, z] = vector(at);
+            return [x, y, z, Exact::from(1.0)];
+        }
+        &Definition::LineAndPlane(line, plane) => {
+            let [over, under] = fraction::<Exact>(line, plane);
+            (line[0], step::<Exact>(line[1], line[0]).map(|c| c * &over), under)
+        }
+        &Definition::Planes(planes) => {
+            let (offset, under) = meeting::<Exact>(planes);
+            (planes[0][0], offset, under)
+        }
+        Definition::Middle(points) => return middle(points.each_ref().map(homogeneous)),
+    };
+    let [x, y, z] = vector::<Exact>(start);
+    let [dx, dy, dz] = offset;
+    let coordinates = [x * &under + dx, y * &under + dy, z * &under + dz, under];
+    if coordinates[3].sign() < 0.0 { coordinates.map(Exact::negated) } else { coordinates }
+}
+
+fn middle([a, b, c]: [Homogeneous; 3]) -> Homogeneous {
+    let weights = [b[3].clone() * &c[3], c[3].clone() * &a[3], a[3].clone() * &b[3]];
+    let sum = |axis: usize| {
+        a[axis].clone() * &weights[0] + b[axis].clone() * &weights[1] + c[axis].clone() * &weights[2]
+    };
+    let under = weights[0].clone() * &a[3] * &Exact::from(3.0);
+    [sum(0), sum(1), sum(2), under]
+}
+
+/// The plane that is seen when one axis is left out: the other two in cyclic order.
+pub fn others(axis: usize) -> [usize; 2] {
+    [(axis + 1) % 3, (axis + 2) % 3]
+}
+
+/// Which way a, b, c turn, seen along `axis` with the other two in cyclic order: 1.0 counter-clockwise, -1.0 clockwise,
+/// 0.0 on one line.
+pub fn turn(axis: usize, a: &Point, b: &Point, c: &Point) -> f64 {
+    let [x, y] = others(axis);
+    if let (Definition::Given(a), Definition::Given(b), Definition::Given(c)) =
+        (&a.definition, &b.definition, &c.definition)
+    {
+        let coord = |p: &DVec3| Coord { x: p[x], y: p[y] };
+        return sign_of(orient2d(coord(a), coord(b), coord(c)));
+    }
+    let difference = |p: &Point, axis: usize| p.coordinate(axis) - c.coordinate(axis);
+    let rounded = difference(a, x) * &difference(b, y) - difference(a, y) * &difference(b, x);
+    rounded.sign().unwrap_or_else(|| turn_exactly([x, y], [a, b, c]))
+}
+
+#[cold]
+fn turn_exactly([x, y]: [usize; 2], points: [&Point; 3]) -> f64 {
+    let [a, b, c] = points.map(Point::homogeneous);
+    // The determinant of (x, y, w), all w positive.
+    let minor = |p: &Homogeneous, q: &Homogeneous| p[x].clone() * &q[y] - p[y].clone() * &q[x];
+    (minor(&a, &b) * &c[3] + minor(&b, &c) * &a[3] + minor(&c, &a) * &b[3]).sign()
+}
+
+/// Order of two points along an axis.
+pub fn compare(axis: usize, a: &Point, b: &Point) -> Ordering {
+    let rounded = a.coordinate(axis) - b.coordinate(axis);
+    let sign = rounded.sign().unwrap_or_else(|| {
+        let [p, q] = [a, b].map(Point::homogeneous);
+        (p[axis].clone() * &q[3] - q[axis].clone() * &p[3]).sign()
+    });
+    sign.total_cmp(&0.0)
+}
+
+/// Whether two points are the same.
+pub fn coincide(a: &Point, b: &Point) -> bool {
+    (0..3).all(|axis| compare(axis, a, b) == Ordering::Equal)
+}
+
+/// On which side of the plane through a, b, c the point lies: 1.0 where they turn clockwise as seen from it, that is
+/// behind a counter-clockwise face, -1.0 in front of it, 0.0 on the plane. All points given.
+pub fn side(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> f64 {
+    sign_of(orient3d(coord(a), coord(b), coord(c), coord(point)))
+}
+
+/// The same for any point.
+pub fn side_of(plane: [DVec3; 3], point: &Point) -> f64 {
+    if let &Definition::Given(point) = &point.definition {
+        return side(plane[0], plane[1], plane[2], point);
+    }
+    let n = normal::<Rounded>(plane);
+    let offset = [0, 1, 2].map(|axis| point.coordinate(axis) - Rounded::from(plane[0][axis]));
+    let rounded = dot(&n, &offset);
+    -rounded.sign().unwrap_or_else(|| {
+        let [x, y, z, w] = point.homogeneous();
+        let start = vector::<Exact>(plane[0]).map(|c| c * &w);
+        dot(&normal::<Exact>(plane), &minus(&[x, y, z], &start)).sign()
+    })
+}
+
+/// The axis to leave out so that a triangle keeps an area, and how it then turns; `None` if its corners are on one line.
+pub fn projection([a, b, c]: [DVec3; 3]) -> Option<(usize, f64)> {
+    let size = (b - a).cross(c - a).abs();
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|&i, &j| size[j].total_cmp(&size[i]));
+    axes.into_iter().find_map(|axis| {
+        let [x, y] = others(axis);
+        let coord = |p: DVec3| Coord { x: p[x], y: p[y] };
+        let turn = sign_of(orient2d(coord(a), coord(b), coord(c)));
+        (turn != 0.0).then_some((axis, turn))
+    })
+}
+
+fn coord(p: DVec3) -> Coord3D<f64> {
+    Coord3D { x: p.x, y: p.y, z: p.z }
+}
+
+fn sign_of(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = DVec3> {
+        // Few values, so that points coincide and line up.
+        let coordinate = prop_oneof![-4..5, -4..5].prop_map(|k| f64::from(k) * 0.1);
+        [coordinate.clone(), coordinate.clone(), coordinate].prop_map(DVec3::from)
+    }
+
+    #[test]
+    fn sides_are_those_of_the_counter_clockwise_face() {
+        assert_eq!(side(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z), -1.0);
+        let above = Point::new(Definition::LineAndPlane([DVec3::ZERO, DVec3::ONE], [DVec3::Z, DVec3::X + DVec3::Z, DVec3::Y + DVec3::Z]));
+        assert_eq!(above.near(), DVec3::ONE);
+        assert_eq!(side_of([DVec3::ZERO, DVec3::X, DVec3::Y], &above), -1.0);
+        assert_eq!(side_of([DVec3::ONE, DVec3::new(2.0, 1.0, 1.0), DVec3::new(1.0, 2.0, 1.0)], &above), 0.0);
+    }
+
+    #[test]
+    fn a_line_that_grazes_a_plane_still_has_its_point_to_the_last_bit() {
+        let e = 1e-12;
+        let line = [DVec3::new(0.0, 0.0, -e), DVec3::new(1.0, 0.0, e * 3.0)];
+        let plane = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let point = Point::new(Definition::LineAndPlane(line, plane));
+        let exact = { let z = [Exact::from(-e), Exact::from(e * 3.0)]; z[0].clone().negated().over(&(z[1].clone() - z[0].clone())) };
+        assert_eq!(point.near(), DVec3::new(exact, 0.0, 0.0));
+        assert!(point.error < 1e-15);
+    }
+
+    proptest! {
+        #[test]
+        fn implicit_points_lie_on_what_defines_them(p in point(), q in point(), a in point(), b in point(), c in point()) {
+            prop_assume!(side(a, b, c, p) != side(a, b, c, q));
+            let point = Point::new(Definition::LineAndPlane([p, q], [a, b, c]));
+            prop_assert_eq!(side_of([a, b, c], &point), 0.0);
+            for axis in 0..3 {
+                prop_assert_eq!(turn(axis, &Point::new(Definition::Given(p)), &Point::new(Definition::Given(q)), &point), 0.0);
+            }
+            let exact = point.homogeneous();
+            for axis in 0..3 {
+                let true_one = exact[axis].over(&exact[3]);
+                prop_assert!((true_one - point.near[axis]).abs() <= point.error * (1.0 + 1e-9));
+            }
+        }
+
+        #[test]
+        fn three_planes_meet_where_the_line_of_two_meets_the_third(n in [point(), point(), point()], r in point()) {
+            // Three planes through r.
+            let planes = n.map(|n| { let u = n.any_orthogonal_vector(); [r, r + u, r + n.cross(u)] });
+            let u = planes.map(|[a, b, c]| normal::<Exact>([a, b, c]));
+            prop_assume!(dot(&u[0], &cross(&u[1], &u[2])).sign() != 0.0);
+            let point = Point::new(Definition::Planes(planes));
+            prop_assert!(coincide(&point, &Point::new(Definition::Given(r))));
+            prop_assert!(planes.iter().all(|plane| side_of(*plane, &point) == 0.0));
+        }
+
+        #[test]
+        fn turns_are_those_of_the_exact_formula(n in [point(), point(), point(), point(), point()], axis in 0..3usize) {
+            let [p, q, a, b, c] = n;
+            prop_assume!(side(a, b, c, p) != side(a, b, c, q));
+            let [x, y] = [p, a].map(|at| Point::new(Definition::Given(at)));
+            let point = Point::new(Definition::LineAndPlane([p, q], [a, b, c]));
+            prop_assert_eq!(turn(axis, &x, &y, &point), turn_exactly(others(axis), [&x, &y, &point]));
+            prop_assert_eq!(turn(axis, &x, &point, &y), -turn(axis, &x, &y, &point));
+        }
+    }
+}

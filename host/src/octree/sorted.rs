@@ -1,0 +1,231 @@
+//! Triangles in the order of their locational codes, with boxes around runs of them: what is near what.
+//!
+//! Each triangle is filed once, under the code of the voxel that holds the middle of its box. Neighbours in that order
+//! are neighbours in space, so that boxes around runs of eight, around eight such runs, and so on are small. Building
+//! takes one sort; nothing is divided. It serves questions that meet each triangle seldom: which pairs of triangles of two
+//! meshes may touch, and which triangles lie beside an axis-parallel ray.
+
+use super::cube::Cube;
+use super::{LocationalCode, MAX_DEPTH};
+use crate::numeric::bounds::Bounds;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Triangles in the smallest runs.
+const RUN: usize = 4;
+/// Boxes under a box.
+const FAN: usize = 8;
+/// Digits of the codes by which triangles are sorted.
+const DIGITS: u32 = 10;
+/// Pairs of boxes from which on the search goes on in parallel.
+const TASKS: usize = 64;
+
+/// Triangles sorted by locational code.
+#[derive(Clone, Debug, Default)]
+pub struct Sorted {
+    /// Triangles in order.
+    order: Vec<u32>,
+    /// Boxes: around runs of triangles first, around all of them last.
+    levels: Vec<Vec<Bounds>>,
+}
+
+/// A box of a [`Sorted`].
+#[derive(Clone, Copy)]
+struct Place {
+    level: usize,
+    index: usize,
+}
+
+impl Sorted {
+    /// Sorts triangles; their corners must be finite.
+    ///
+    /// Cost: linear.
+    pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Sorted {
+        if triangles.is_empty() {
+            return Sorted::default();
+        }
+        let bounds = |triangle: &[u32; 3]| Bounds::of(triangle.map(|corner| vertices[corner as usize]));
+        let all = Bounds::of(vertices.iter().copied());
+        let cube = Cube::around(all.min, all.max);
+        let keys: Vec<u64> = triangles
+            .par_iter()
+            .enumerate()
+            .with_min_len(4096)
+            .map(|(index, triangle)| {
+                let voxel = cube.voxel(bounds(triangle).center()).unwrap_or([(1 << MAX_DEPTH) - 1; 3]);
+                (LocationalCode::containing(voxel, DIGITS).bits() >> (64 - 3 * DIGITS)) << 32 | index as u64
+            })
+            .collect();
+        let order: Vec<u32> = radix_sorted(keys).into_iter().map(|key| key as u32).collect();
+        let union = |boxes: &[Bounds]| boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(*b));
+        let runs = order.par_chunks(RUN).with_min_len(1024);
+        let of_run = |run: &[u32]| run.iter().fold(Bounds::EMPTY, |all, &t| all.union(bounds(&triangles[t as usize])));
+        let mut levels = vec![runs.map(of_run).collect::<Vec<_>>()];
+        while let Some(boxes) = levels.last().filter(|boxes| boxes.len() > 1) {
+            levels.push(boxes.chunks(FAN).map(union).collect());
+        }
+        Sorted { order, levels }
+    }
+
+    /// The box around all triangles; empty without any.
+    pub fn bounds(&self) -> Bounds {
+        self.top().map_or(Bounds::EMPTY, |top| self.at(top))
+    }
+
+    /// Pairs of triangles, one of this set and one of another, whose boxes have a point in common, in a fixed order.
+    ///
+    /// - `corners`, `other_corners`: the corners of the triangles of the two sets.
+    pub fn pairs(
+        &self,
+        corners: impl Fn(u32) -> [DVec3; 3] + Sync,
+        other: &Sorted,
+        other_corners: impl Fn(u32) -> [DVec3; 3] + Sync,
+    ) -> Vec<[u32; 2]> {
+        let (Some(one), Some(two)) = (self.top(), other.top()) else { return Vec::new() };
+        let (corners, other_corners) = (&corners, &other_corners);
+        // Breadth first, until there is work for many threads.
+        let mut tasks = vec![(one, two)];
+        while tasks.len() < TASKS && tasks.iter().any(|(one, two)| one.level + two.level > 0) {
+            tasks = tasks.into_iter().flat_map(|task| self.descend(other, task)).collect();
+            if tasks.is_empty() {
+                return Vec::new();
+            }
+        }
+        let search = |task: (Place, Place)| {
+            let mut pairs = Vec::new();
+            let mut stack = vec![task];
+            while let Some((one, two)) = stack.pop() {
+                if one.level + two.level > 0 {
+                    let next = stack.len();
+                    stack.extend(self.descend(other, (one, two)));
+                    stack[next..].reverse();
+                    continue;
+                }
+                let near = other.at(two);
+                for &a in self.run(one.index) {
+                    let a_box = Bounds::of(corners(a));
+                    if !a_box.touches(near) {
+                        continue;
+                    }
+                    for &b in other.run(two.index) {
+                        if a_box.touches(Bounds::of(other_corners(b))) {
+                            pairs.push([a, b]);
+                        }
+                    }
+                }
+            }
+            pairs
+        };
+        let found: Vec<Vec<[u32; 2]>> = tasks.into_par_iter().map(search).collect();
+        found.concat()
+    }
+
+    /// Calls for every triangle whose run has a box that touches another.
+    pub fn touching(&self, near: Bounds, mut visit: impl FnMut(u32)) {
+        let mut stack: Vec<Place> = self.top().into_iter().collect();
+        while let Some(place) = stack.pop() {
+            if !self.at(place).touches(near) {
+                continue;
+            }
+            if place.level == 0 {
+                self.run(place.index).iter().for_each(|&triangle| visit(triangle));
+            } else {
+                stack.extend(self.under(place));
+            }
+        }
+    }
+
+    fn top(&self) -> Option<Place> {
+        self.levels.len().checked_sub(1).map(|level| Place { level, index: 0 })
+    }
+
+    fn at(&self, place: Place) -> Bounds {
+        self.levels[place.level][place.index]
+    }
+
+    fn run(&self, index: usize) -> &[u32] {
+        &self.order[index * RUN..self.order.len().min((index + 1) * RUN)]
+    }
+
+    fn under(&self, place: Place) -> impl Iterator<Item = Place> {
+        let level = place.level - 1;
+        let first = place.index * FAN;
+        (first..self.levels[level].len().min(first + FAN)).map(move |index| Place { level, index })
+    }
+
+    /// The pairs under a pair of boxes, the larger of which is opened, that touch.
+    fn descend(&self, other: &Sorted, (one, two): (Place, Place)) -> Vec<(Place, Place)> {
+        let (a, b) = (self.at(one), other.at(two));
+        let touching = |one: Place, two: Place| self.at(one).touches(other.at(two)).then_some((one, two));
+        let open_first = two.level == 0 || one.level > 0 && a.size().max_element() >= b.size().max_element();
+        if one.level + two.level == 0 {
+            vec![(one, two)]
+        } else if open_first {
+            self.under(one).filter_map(|one| touching(one, two)).collect()
+        } else {
+            other.under(two).filter_map(|two| touching(one, two)).collect()
+        }
+    }
+}
+
+/// Keys sorted by their upper halves, by three passes over digits of 10 bits; the lower halves are in order already.
+fn radix_sorted(mut keys: Vec<u64>) -> Vec<u64> {
+    const BITS: u32 = DIGITS;
+    let mut sorted = vec![0; keys.len()];
+    for pass in 0..3 {
+        let digit = |key: u64| (key >> (32 + pass * BITS)) as usize & ((1 << BITS) - 1);
+        let mut starts = vec![0_u32; (1 << BITS) + 1];
+        keys.iter().for_each(|&key| starts[digit(key) + 1] += 1);
+        for k in 1..starts.len() {
+            starts[k] += starts[k - 1];
+        }
+        for &key in &keys {
+            let start = &mut starts[digit(key)];
+            sorted[*start as usize] = key;
+            *start += 1;
+        }
+        std::mem::swap(&mut keys, &mut sorted);
+    }
+    keys
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    fn soup(count: u32, size: f64, seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
+        let mut point = || DVec3::from([0; 3].map(|_| random.random_range(-1.0..1.0)));
+        let vertices = (0..count).flat_map(|_| { let a = point(); [a, a + point() * size, a + point() * size] }).collect();
+        (vertices, (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+    }
+
+    #[test]
+    fn pairs_are_those_that_a_search_of_all_finds() {
+        for (one, two, size) in [(1, 1, 3.0), (5, 300, 0.3), (700, 500, 0.05), (200, 0, 0.1), (90, 80, 0.0)] {
+            let (a, b) = (soup(one, size, 1), soup(two, size, 2));
+            let corners = |soup: &(Vec<DVec3>, Vec<[u32; 3]>), t: u32| soup.1[t as usize].map(|v| soup.0[v as usize]);
+            let (first, second) = (Sorted::new(&a.0, &a.1), Sorted::new(&b.0, &b.1));
+            let mut found = first.pairs(|t| corners(&a, t), &second, |t| corners(&b, t));
+            found.sort_unstable();
+            let touch = |i, j| Bounds::of(corners(&a, i)).touches(Bounds::of(corners(&b, j)));
+            let all = (0..one).flat_map(|i| (0..two).map(move |j| [i, j])).filter(|&[i, j]| touch(i, j));
+            assert!(found.iter().copied().eq(all), "{one} {two}");
+        }
+    }
+
+    #[test]
+    fn a_box_finds_all_that_touch_it() {
+        let (vertices, triangles) = soup(1000, 0.1, 3);
+        let sorted = Sorted::new(&vertices, &triangles);
+        let near = Bounds::of([DVec3::splat(-0.1), DVec3::new(0.2, 0.1, 0.3)]);
+        let mut found = Vec::new();
+        sorted.touching(near, |t| found.push(t));
+        let touches = |t: &u32| Bounds::of(triangles[*t as usize].map(|v| vertices[v as usize])).touches(near);
+        found.retain(|t| touches(t));
+        found.sort_unstable();
+        assert_eq!(found, (0..1000).filter(touches).collect::<Vec<u32>>());
+        assert!(found.len() > 5 && sorted.bounds() == Bounds::of(vertices));
+    }
+}

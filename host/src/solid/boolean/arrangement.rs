@@ -1,0 +1,494 @@
+//! What the triangles of all operands do to each other: points, and the lines that carry them.
+//!
+//! A carrier is an edge of the input, or the line in which two faces cross. Whatever lies on it is kept once, in order,
+//! for all faces that share it; so no two faces ever disagree about their border.
+
+use super::contact::{Common, Contact, Edge, Face, Feature, Key, crossing};
+use super::operand::Operands;
+use super::union_find::UnionFind;
+use crate::numeric::implicit::{Definition, Point, coincide, compare, turn};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+/// A line that carries points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Line {
+    Edge(Edge),
+    /// Where two faces cross, the lower first.
+    Faces([u32; 2]),
+}
+
+#[derive(Clone, Debug)]
+struct Carrier {
+    line: Line,
+    /// In the order of [`along`].
+    points: Vec<u32>,
+}
+
+/// A piece of a carrier that lies in a face, inside it or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    carrier: u32,
+    ends: [u32; 2],
+}
+
+/// What lies in a face that something touches.
+#[derive(Clone, Debug, Default)]
+pub struct Content {
+    /// Points inside it.
+    pub inner: Vec<u32>,
+    /// Lines across it.
+    pub segments: Vec<Segment>,
+    /// Points at its corners.
+    pub corners: [u32; 3],
+    is_touched: bool,
+    /// The operand whose faces touch it, or [`SEVERAL`].
+    partner: Option<u32>,
+}
+
+/// More than one operand.
+const SEVERAL: u32 = u32::MAX;
+
+/// Work done by an operation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Pairs of triangles whose boxes touch.
+    pub pairs: u64,
+    /// Pairs that have a point in common.
+    pub contacts: u64,
+    /// Points made.
+    pub points: u64,
+    /// Triangles that were divided.
+    pub divided: u64,
+    /// Triangles that they were divided into.
+    pub facets: u64,
+    /// Connected parts of the surface that were classified.
+    pub parts: u64,
+    /// Rays that were sent to classify them.
+    pub rays: u64,
+}
+
+/// The points, carriers and contents of the faces near other operands.
+pub struct Arrangement {
+    /// Faces that may touch others. Their names are their places here.
+    pub faces: Vec<Face>,
+    /// The triangle, counted over all operands, of each face.
+    pub triangles: Vec<u32>,
+    /// Contents of each face.
+    pub contents: Vec<Content>,
+    /// The points; several may be one, see [`Arrangement::point`].
+    pub points: Vec<Point>,
+    /// Vertices by point, where the point is one.
+    pub vertices: Vec<Option<u32>>,
+    /// Whether something of another operand passes through the point.
+    pub on_other: Vec<bool>,
+    /// Faces that overlap in one plane, joined.
+    pub sheets: UnionFind,
+    /// Work done.
+    pub counts: Counts,
+    same: UnionFind,
+    of_key: HashMap<Key, u32>,
+    carriers: Vec<Carrier>,
+    of_edge: HashMap<Edge, u32>,
+    of_faces: HashMap<[u32; 2], u32>,
+    place: HashMap<u32, DVec3>,
+}
+
+/// Order along any line: lexicographic.
+fn along(a: &Point, b: &Point) -> Ordering {
+    compare(0, a, b).then_with(|| compare(1, a, b)).then_with(|| compare(2, a, b))
+}
+
+impl Arrangement {
+    /// Finds all contacts between different operands.
+    pub fn new(operands: &Operands) -> Arrangement {
+        let pairs = operands.pairs();
+        let faces = Faces::of(operands, &pairs);
+        let contacts: Vec<([u32; 2], Contact)> = pairs
+            .par_iter()
+            .with_min_len(256)
+            .filter_map(|pair| {
+                let [a, b] = pair.map(|triangle| faces.of_triangle[triangle as usize]);
+                if a == u32::MAX || b == u32::MAX {
+                    return None;
+                }
+                let contact = Contact::of(&faces.faces[a as usize], &faces.faces[b as usize]);
+                (!contact.points.is_empty()).then_some(([a, b], contact))
+            })
+            .collect();
+        let count = faces.faces.len();
+        let mut arrangement = Arrangement {
+            contents: vec![Content::default(); count],
+            points: Vec::new(),
+            vertices: Vec::new(),
+            on_other: Vec::new(),
+            sheets: UnionFind::new(count),
+            counts: Counts { pairs: pairs.len() as u64, contacts: contacts.len() as u64, ..Counts::default() },
+            same: UnionFind::new(0),
+            of_key: HashMap::new(),
+            carriers: Vec::new(),
+            of_edge: HashMap::new(),
+            of_faces: HashMap::new(),
+            place: faces.place,
+            faces: faces.faces,
+            triangles: faces.triangles,
+        };
+        for (pair, contact) in &contacts {
+            arrangement.take(operands, *pair, contact);
+        }
+        arrangement.cross();
+        arrangement.order();
+        arrangement.corners();
+        arrangement.counts.points = arrangement.points.len() as u64;
+        arrangement
+    }
+
+    /// The one number of a point.
+    pub fn point(&self, point: u32) -> u32 {
+        self.same.root(point)
+    }
+
+    /// Faces that something touches.
+    pub fn touched(&self) -> impl Iterator<Item = u32> {
+        (0..self.faces.len() as u32).filter(|&face| self.contents[face as usize].is_touched)
+    }
+
+    /// Points inside the edge of a face from corner `k` to the next, in that order.
+    pub fn on_edge(&self, face: u32, k: u8) -> Vec<u32> {
+        let face = &self.faces[face as usize];
+        let edge = face.edge(k);
+        let Some(&carrier) = self.of_edge.get(&edge) else { return Vec::new() };
+        let mut points = self.distinct(carrier);
+        let [first, last] = [0, 1].map(|i| self.of_key.get(&Key::Vertex(edge[i])).map(|&p| self.point(p)));
+        points.retain(|&p| Some(p) != first && Some(p) != last);
+        let [from, to] = [k as usize, (k as usize + 1) % 3].map(|i| face.corners[i].to_array());
+        if from > to {
+            points.reverse();
+        }
+        points
+    }
+
+    /// The points of a segment, from end to end.
+    pub fn pieces(&self, segment: &Segment) -> Vec<u32> {
+        let [p, q] = segment.ends.map(|end| self.point(end));
+        let at = |p: u32| &self.points[p as usize];
+        let is_forward = along(at(p), at(q)) == Ordering::Less;
+        let [low, high] = if is_forward { [p, q] } else { [q, p] };
+        let mut pieces = vec![low];
+        let between = |&x: &u32| {
+            x != low && x != high && along(at(low), at(x)) == Ordering::Less && along(at(x), at(high)) == Ordering::Less
+        };
+        pieces.extend(self.distinct(segment.carrier).into_iter().filter(between));
+        pieces.push(high);
+        pieces
+    }
+
+    fn distinct(&self, carrier: u32) -> Vec<u32> {
+        let mut points: Vec<u32> = self.carriers[carrier as usize].points.iter().map(|&p| self.point(p)).collect();
+        points.dedup();
+        points
+    }
+
+    fn id(&mut self, key: Key) -> u32 {
+        if let Some(&id) = self.of_key.get(&key) {
+            return id;
+        }
+        let definition = self.definition(key);
+        let id = self.points.len() as u32;
+        self.points.push(Point::new(definition));
+        self.vertices.push(if let Key::Vertex(vertex) = key { Some(vertex) } else { None });
+        self.on_other.push(false);
+        self.same.grow();
+        self.of_key.insert(key, id);
+        id
+    }
+
+    fn ends(&self, edge: Edge) -> [DVec3; 2] {
+        edge.map(|vertex| self.place[&vertex])
+    }
+
+    fn definition(&self, key: Key) -> Definition {
+        let plane = |face: u32| self.faces[face as usize].corners;
+        match key {
+            Key::Vertex(vertex) => Definition::Given(self.place[&vertex]),
+            Key::Pierced(edge, face) => Definition::LineAndPlane(self.ends(edge), plane(face)),
+            Key::Faces(faces) => Definition::Planes(faces.map(plane)),
+            Key::Edges(one, two) => {
+                // A plane through the second edge, along the axis that is steepest on both.
+                let ([a, b], [p, q]) = (self.ends(one), self.ends(two));
+                let (d, e) = ((b - a), (q - p));
+                let normal = (d / d.abs().max_element()).cross(e / e.abs().max_element()).abs();
+                let axis = (0..3).max_by(|&i, &j| normal[i].total_cmp(&normal[j])).unwrap_or(0);
+                let mut third = p;
+                third[axis] += p.abs().max_element().max(e.abs().max_element());
+                Definition::LineAndPlane([a, b], [p, q, third])
+            }
+        }
+    }
+
+    fn carrier(&mut self, line: Line) -> u32 {
+        let next = self.carriers.len() as u32;
+        let entry = match line {
+            Line::Edge(edge) => self.of_edge.entry(edge),
+            Line::Faces(faces) => {
+                return match self.of_faces.entry(faces) {
+                    Entry::Occupied(known) => *known.get(),
+                    Entry::Vacant(new) => {
+                        self.carriers.push(Carrier { line, points: Vec::new() });
+                        *new.insert(next)
+                    }
+                };
+            }
+        };
+        match entry {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                self.carriers.push(Carrier { line, points: Vec::new() });
+                *new.insert(next)
+            }
+        }
+    }
+
+    fn add(&mut self, carrier: u32, point: u32) {
+        let points = &mut self.carriers[carrier as usize].points;
+        if !points.contains(&point) {
+            points.push(point);
+        }
+    }
+
+    /// Notes what two faces have in common.
+    fn take(&mut self, operands: &Operands, [a, b]: [u32; 2], contact: &Contact) {
+        let ids: Vec<u32> = contact.points.iter().map(|point| self.id(point.key)).collect();
+        for (which, (face, other)) in [(a, b), (b, a)].into_iter().enumerate() {
+            let partner = operands.of_triangle(self.triangles[other as usize]);
+            let content = &mut self.contents[face as usize];
+            content.is_touched = true;
+            content.partner = match content.partner {
+                Some(known) if known != partner => Some(SEVERAL),
+                _ => Some(partner),
+            };
+            for (point, &id) in contact.points.iter().zip(&ids) {
+                self.on_other[id as usize] = true;
+                match point.features[which] {
+                    Feature::Corner(_) => {}
+                    Feature::Edge(k) => {
+                        let carrier = self.carrier(Line::Edge(self.faces[face as usize].edge(k)));
+                        self.add(carrier, id);
+                    }
+                    Feature::Inside => {
+                        let inner = &mut self.contents[face as usize].inner;
+                        if !inner.contains(&id) {
+                            inner.push(id);
+                        }
+                    }
+                }
+            }
+        }
+        if contact.coplanar {
+            self.edges_in_plane([a, b], contact, &ids);
+            if ids.len() > 2 {
+                self.sheets.join(a, b);
+            }
+        } else if let ([p, q], [one, two]) = (&contact.points[..], &ids[..]) {
+            self.segment([a, b], [p, q], [*one, *two]);
+        }
+    }
+
+    /// The line in which two faces cross: an edge of one of them, if it runs along one.
+    fn segment(&mut self, faces: [u32; 2], points: [&Common; 2], ends: [u32; 2]) {
+        let edge = |which: usize| (0..3_u8).find(|&k| points.iter().all(|p| p.features[which].is_on(k)));
+        let edges = [edge(0), edge(1)];
+        for which in 0..2 {
+            let line = match (edges[which], edges[1 - which]) {
+                // On an own edge, where its points are already.
+                (Some(_), _) => continue,
+                (None, Some(k)) => Line::Edge(self.faces[faces[1 - which] as usize].edge(k)),
+                (None, None) => Line::Faces(if faces[0] < faces[1] { faces } else { [faces[1], faces[0]] }),
+            };
+            let carrier = self.carrier(line);
+            if let Line::Faces(_) = line {
+                ends.into_iter().for_each(|end| self.add(carrier, end));
+            }
+            self.push_segment(faces[which], Segment { carrier, ends });
+        }
+    }
+
+    fn push_segment(&mut self, face: u32, segment: Segment) {
+        let segments = &mut self.contents[face as usize].segments;
+        let swapped = Segment { ends: [segment.ends[1], segment.ends[0]], ..segment };
+        if !segments.contains(&segment) && !segments.contains(&swapped) {
+            segments.push(segment);
+        }
+    }
+
+    /// The edges of two faces in one plane, as far as each lies in the other.
+    fn edges_in_plane(&mut self, faces: [u32; 2], contact: &Contact, ids: &[u32]) {
+        for which in 0..2 {
+            let other = faces[1 - which];
+            for k in 0..3_u8 {
+                let on: Vec<usize> =
+                    (0..ids.len()).filter(|&i| contact.points[i].features[which].is_on(k)).collect();
+                let at = |i: usize| &self.points[ids[i] as usize];
+                let least = on.iter().copied().min_by(|&i, &j| along(at(i), at(j)));
+                let most = on.iter().copied().max_by(|&i, &j| along(at(i), at(j)));
+                let (Some(least), Some(most)) = (least, most) else { continue };
+                let ends = [least, most].map(|i| contact.points[i].features[1 - which]);
+                let along_own = (0..3).any(|j| ends.iter().all(|feature| feature.is_on(j)));
+                if least != most && !along_own {
+                    let carrier = self.carrier(Line::Edge(self.faces[faces[which] as usize].edge(k)));
+                    self.push_segment(other, Segment { carrier, ends: [ids[least], ids[most]] });
+                }
+            }
+        }
+    }
+
+    /// Where lines of several operands cross in a face: two operands whose own faces do not cross make none.
+    fn cross(&mut self) {
+        for face in 0..self.faces.len() {
+            if self.contents[face].partner == Some(SEVERAL) {
+                self.cross_in(face as u32);
+            }
+        }
+    }
+
+    fn cross_in(&mut self, face: u32) {
+        let axis = self.faces[face as usize].axis;
+        let segments = self.contents[face as usize].segments.clone();
+        let boxes: Vec<_> = segments
+            .iter()
+            .map(|s| self.points[s.ends[0] as usize].bounds().union(self.points[s.ends[1] as usize].bounds()))
+            .collect();
+        let mut order: Vec<usize> = (0..segments.len()).collect();
+        let across = (axis + 1) % 3;
+        order.sort_by(|&i, &j| boxes[i].min[across].total_cmp(&boxes[j].min[across]));
+        for (place, &i) in order.iter().enumerate() {
+            let near = order[place + 1..].iter().take_while(|&&j| boxes[j].min[across] <= boxes[i].max[across]);
+            for &j in near {
+                if segments[i].carrier != segments[j].carrier && boxes[i].touches(boxes[j]) {
+                    self.cross_segments(face, &segments[i], &segments[j]);
+                }
+            }
+        }
+        // Points of one operand on lines of another.
+        let inner = self.contents[face as usize].inner.clone();
+        for point in inner {
+            let at = self.points[point as usize].bounds();
+            for (segment, near) in segments.iter().zip(&boxes) {
+                if at.touches(*near) && !segment.ends.contains(&point) && self.is_on(axis, point, segment) {
+                    self.add(segment.carrier, point);
+                }
+            }
+        }
+    }
+
+    /// Whether a point lies inside a segment of the same plane.
+    fn is_on(&self, axis: usize, point: u32, segment: &Segment) -> bool {
+        let [p, q, x] = [segment.ends[0], segment.ends[1], point].map(|p| &self.points[p as usize]);
+        turn(axis, p, q, x) == 0.0 && along(p, x) == along(x, q) && along(p, x) != Ordering::Equal
+    }
+
+    fn cross_segments(&mut self, face: u32, one: &Segment, two: &Segment) {
+        let axis = self.faces[face as usize].axis;
+        for (point, segment) in [one, two].into_iter().zip([two, one]).flat_map(|(a, b)| a.ends.map(|end| (end, b))) {
+            if self.is_on(axis, point, segment) {
+                self.add(segment.carrier, point);
+            }
+        }
+        let [p, q] = one.ends.map(|p| &self.points[p as usize]);
+        let [a, b] = two.ends.map(|p| &self.points[p as usize]);
+        let parted = turn(axis, p, q, a) * turn(axis, p, q, b) < 0.0 && turn(axis, a, b, p) * turn(axis, a, b, q) < 0.0;
+        if parted {
+            self.crossing(face, [one.carrier, two.carrier]);
+        }
+    }
+
+    /// The point where two carriers cross in a face.
+    fn crossing(&mut self, face: u32, carriers: [u32; 2]) {
+        let beyond = |faces: [u32; 2]| if faces[0] == face { faces[1] } else { faces[0] };
+        let lines = carriers.map(|carrier| self.carriers[carrier as usize].line);
+        let key = match lines {
+            [Line::Edge(one), Line::Edge(two)] => crossing(one, two),
+            [Line::Edge(edge), Line::Faces(faces)] | [Line::Faces(faces), Line::Edge(edge)] => {
+                Key::Pierced(edge, beyond(faces))
+            }
+            [Line::Faces(one), Line::Faces(two)] => {
+                let mut faces = [face, beyond(one), beyond(two)];
+                faces.sort_unstable();
+                Key::Faces(faces)
+            }
+        };
+        let mut carriers = carriers.to_vec();
+        if let Key::Faces([a, b, c]) = key {
+            carriers.extend([[a, b], [b, c], [a, c]].iter().filter_map(|faces| self.of_faces.get(faces)));
+        }
+        let point = self.id(key);
+        for carrier in carriers {
+            self.add(carrier, point);
+        }
+    }
+
+    /// Orders the points of every carrier, and joins those that are one.
+    fn order(&mut self) {
+        let points = &self.points;
+        self.carriers.par_iter_mut().with_min_len(64).for_each(|carrier| {
+            carrier.points.sort_by(|&a, &b| along(&points[a as usize], &points[b as usize]));
+        });
+        for carrier in &self.carriers {
+            for pair in carrier.points.windows(2) {
+                if coincide(&self.points[pair[0] as usize], &self.points[pair[1] as usize]) {
+                    self.same.join(pair[0], pair[1]);
+                    let [a, b] = [0, 1].map(|i| self.vertices[pair[i] as usize]);
+                    let root = self.same.root(pair[0]) as usize;
+                    self.vertices[root] = a.or(b);
+                    self.on_other[root] = true;
+                }
+            }
+        }
+    }
+
+    fn corners(&mut self) {
+        for face in 0..self.faces.len() {
+            if self.contents[face].is_touched {
+                let corners = self.faces[face].vertices.map(|vertex| self.id(Key::Vertex(vertex)));
+                self.contents[face].corners = corners.map(|corner| self.point(corner));
+            }
+        }
+    }
+}
+
+/// The triangles that occur in pairs.
+struct Faces {
+    faces: Vec<Face>,
+    triangles: Vec<u32>,
+    /// Face by triangle.
+    of_triangle: Vec<u32>,
+    place: HashMap<u32, DVec3>,
+}
+
+impl Faces {
+    fn of(operands: &Operands, pairs: &[[u32; 2]]) -> Faces {
+        let mut of_triangle = vec![u32::MAX; operands.triangle_count()];
+        let mut faces = Vec::new();
+        let mut triangles = Vec::new();
+        let mut first_at: HashMap<[u64; 3], u32> = HashMap::new();
+        let mut place = HashMap::new();
+        for &triangle in pairs.as_flattened() {
+            if of_triangle[triangle as usize] != u32::MAX {
+                continue;
+            }
+            let (vertices, corners) = operands.corners(triangle);
+            let Some((axis, turn)) = crate::numeric::implicit::projection(corners) else { continue };
+            let id = faces.len() as u32;
+            of_triangle[triangle as usize] = id;
+            let name = |k: usize| *first_at.entry(crate::mesh::bits(corners[k])).or_insert(vertices[k]);
+            let vertices = [0, 1, 2].map(name);
+            (0..3).for_each(|k| _ = place.insert(vertices[k], corners[k]));
+            faces.push(Face { id, vertices, corners, axis, turn });
+            triangles.push(triangle);
+        }
+        Faces { faces, triangles, of_triangle, place }
+    }
+}

@@ -1,0 +1,200 @@
+//! Touched faces, divided along all that lies in them.
+
+use super::arrangement::Arrangement;
+use super::triangulation::{NONE, Triangulation};
+use crate::numeric::implicit::{Definition, Point, others};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// A triangle that nothing crosses, of one face or of several that coincide there.
+#[derive(Clone, Debug)]
+pub struct Facet {
+    /// Points, in the order of the first face that it belongs to.
+    pub corners: [u32; 3],
+    /// Faces that it is part of, those of lower operands first, so that neighbours are turned alike.
+    pub cover: Vec<Covering>,
+}
+
+/// A face that a facet is part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Covering {
+    /// The face.
+    pub face: u32,
+    /// Whether it turns as the facet does.
+    pub is_along: bool,
+}
+
+/// Divides all touched faces; faces that overlap in one plane are divided together.
+pub fn divide(arrangement: &Arrangement) -> Vec<Facet> {
+    let mut sheets: HashMap<u32, usize> = HashMap::new();
+    let mut members: Vec<Vec<u32>> = Vec::new();
+    for face in arrangement.touched() {
+        let sheet = *sheets.entry(arrangement.sheets.root(face)).or_insert_with(|| {
+            members.push(Vec::new());
+            members.len() - 1
+        });
+        members[sheet].push(face);
+    }
+    let facets: Vec<Vec<Facet>> = members
+        .par_iter()
+        .with_min_len(16)
+        .map(|faces| match faces[..] {
+            [face] => divide_face(arrangement, face),
+            _ => divide_sheet(arrangement, faces),
+        })
+        .collect();
+    facets.into_iter().flatten().collect()
+}
+
+/// The border of a face, point by point from its first corner on.
+fn border(arrangement: &Arrangement, face: u32) -> Vec<u32> {
+    let corners = arrangement.contents[face as usize].corners;
+    let mut border = Vec::new();
+    for k in 0..3_u8 {
+        border.push(corners[k as usize]);
+        border.extend(arrangement.on_edge(face, k));
+    }
+    border
+}
+
+/// A triangulation with the numbers that points have outside of it.
+struct Sheet<'a> {
+    arrangement: &'a Arrangement,
+    triangulation: Triangulation<'a>,
+    /// Number inside by point.
+    inside: HashMap<u32, u32>,
+    /// Point by number inside; [`NONE`] for helping points.
+    outside: Vec<u32>,
+}
+
+impl<'a> Sheet<'a> {
+    fn insert(&mut self, point: u32) {
+        if self.inside.contains_key(&point) {
+            return;
+        }
+        let number = self.triangulation.insert(&self.arrangement.points[point as usize]);
+        if number as usize == self.outside.len() {
+            self.outside.push(point);
+        }
+        self.inside.insert(point, number);
+    }
+
+    fn fix(&mut self, points: impl IntoIterator<Item = u32>) {
+        let numbers: Vec<u32> = points.into_iter().map(|p| self.inside[&p]).collect();
+        for pair in numbers.windows(2) {
+            self.triangulation.fix(pair[0], pair[1]);
+        }
+    }
+
+    /// Puts in what lies in a face.
+    fn fill(&mut self, face: u32) {
+        let content = &self.arrangement.contents[face as usize];
+        let pieces: Vec<Vec<u32>> = content.segments.iter().map(|s| self.arrangement.pieces(s)).collect();
+        for &point in content.inner.iter().chain(pieces.iter().flatten()) {
+            self.insert(self.arrangement.point(point));
+        }
+        for pieces in pieces {
+            self.fix(pieces);
+        }
+    }
+
+    fn facet(&self, triangle: usize, turn: f64) -> [u32; 3] {
+        let [a, b, c] = self.triangulation.triangles[triangle].map(|p| self.outside[p as usize]);
+        if turn > 0.0 { [a, b, c] } else { [a, c, b] }
+    }
+}
+
+fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
+    let (content, shape) = (&arrangement.contents[face as usize], &arrangement.faces[face as usize]);
+    let border = border(arrangement, face);
+    let cover = vec![Covering { face, is_along: true }];
+    if border.len() == 3 && content.inner.is_empty() && content.segments.is_empty() {
+        return vec![Facet { corners: content.corners, cover }];
+    }
+    let [a, b, c] = content.corners;
+    let corners = if shape.turn > 0.0 { [a, b, c] } else { [a, c, b] };
+    let mut sheet = Sheet {
+        arrangement,
+        triangulation: Triangulation::new(shape.axis, corners.map(|p| &arrangement.points[p as usize])),
+        inside: corners.into_iter().zip(0..).collect(),
+        outside: corners.to_vec(),
+    };
+    border.into_iter().for_each(|point| sheet.insert(point));
+    sheet.fill(face);
+    let facet = |triangle| Facet { corners: sheet.facet(triangle, shape.turn), cover: cover.clone() };
+    (0..sheet.triangulation.triangles.len()).map(facet).collect()
+}
+
+fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
+    let first = &arrangement.faces[faces[0] as usize];
+    let helpers = around(first.axis, faces.iter().flat_map(|&f| arrangement.faces[f as usize].corners));
+    let mut sheet = Sheet {
+        arrangement,
+        triangulation: Triangulation::new(first.axis, helpers.each_ref()),
+        inside: HashMap::new(),
+        outside: vec![NONE; 3],
+    };
+    let borders: Vec<Vec<u32>> = faces.iter().map(|&face| border(arrangement, face)).collect();
+    borders.iter().flatten().for_each(|&point| sheet.insert(point));
+    for border in &borders {
+        sheet.fix(border.iter().chain(&border[..1]).copied());
+    }
+    faces.iter().for_each(|&face| sheet.fill(face));
+    // Triangles are counted operand by operand.
+    let mut ordered: Vec<(u32, &[u32])> = faces.iter().copied().zip(borders.iter().map(Vec::as_slice)).collect();
+    ordered.sort_unstable_by_key(|&(face, _)| arrangement.triangles[face as usize]);
+    let mut covers: Vec<Vec<u32>> = vec![Vec::new(); sheet.triangulation.triangles.len()];
+    for (face, border) in ordered {
+        for triangle in inside_of(&sheet, arrangement.faces[face as usize].turn, border) {
+            covers[triangle as usize].push(face);
+        }
+    }
+    let turn = |face: u32| arrangement.faces[face as usize].turn;
+    let mut facets = Vec::new();
+    for (triangle, faces) in covers.into_iter().enumerate() {
+        if let Some(&first) = faces.first() {
+            let cover = faces.iter().map(|&face| Covering { face, is_along: turn(face) == turn(first) }).collect();
+            facets.push(Facet { corners: sheet.facet(triangle, turn(first)), cover });
+        }
+    }
+    facets
+}
+
+/// A triangle far around some points, seen along an axis.
+fn around(axis: usize, points: impl Iterator<Item = DVec3>) -> [Point; 3] {
+    let [x, y] = others(axis);
+    let reach = points.fold(0.0_f64, |reach, p| reach.max(p.abs().max_element())).max(f64::MIN_POSITIVE);
+    [(-8.0, -4.0), (8.0, -4.0), (0.0, 8.0)].map(|(right, up)| {
+        let mut at = DVec3::ZERO;
+        (at[x], at[y]) = (right * reach, up * reach);
+        Point::new(Definition::Given(at))
+    })
+}
+
+/// The triangles inside a border that turns one way or the other.
+fn inside_of(sheet: &Sheet, turn: f64, border: &[u32]) -> Vec<u32> {
+    let numbers: Vec<u32> = border.iter().map(|p| sheet.inside[p]).collect();
+    let sides = (0..numbers.len()).map(|k| (numbers[k], numbers[(k + 1) % numbers.len()]));
+    let sides: Vec<(u32, u32)> = sides.map(|(a, b)| if turn > 0.0 { (a, b) } else { (b, a) }).collect();
+    let triangulation = &sheet.triangulation;
+    let is_border: std::collections::HashSet<(u32, u32)> = sides.iter().copied().collect();
+    let mut found = Vec::new();
+    let mut seen = std::collections::HashSet::new();
+    let mut stack: Vec<u32> = sides.iter().filter_map(|&(a, b)| Some(triangulation.along(a, b)?.0)).collect();
+    while let Some(triangle) = stack.pop() {
+        if !seen.insert(triangle) {
+            continue;
+        }
+        found.push(triangle);
+        let corners = triangulation.triangles[triangle as usize];
+        for k in 0..3 {
+            let next = triangulation.beyond[triangle as usize][k];
+            if next != NONE && !is_border.contains(&(corners[k], corners[(k + 1) % 3])) {
+                stack.push(next);
+            }
+        }
+    }
+    found.sort_unstable();
+    found
+}

@@ -1,0 +1,392 @@
+//! A triangulation of points in a plane with given edges, by exact turns of points that may be implicit.
+//!
+//! Points go in one by one; edges that must be there are made by exchanging diagonals. Between the given edges the
+//! triangles are those of Delaunay as far as rounded places tell: shape is a matter of taste, turns are not.
+//!
+//! # Source
+//! Lawson 1977 for the exchange of diagonals; Sloan 1993 for given edges.
+
+use crate::numeric::implicit::{Point, compare, others, turn};
+use robust::{Coord, incircle};
+use std::cmp::Ordering;
+use std::collections::{HashSet, VecDeque};
+
+/// No triangle: the edge is on the border.
+pub const NONE: u32 = u32::MAX;
+
+/// A triangulation that grows.
+pub struct Triangulation<'a> {
+    axis: usize,
+    points: Vec<&'a Point>,
+    /// Corners of each triangle, counter-clockwise as seen along the axis.
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangle beyond the side from corner k to the next, or [`NONE`].
+    pub beyond: Vec<[u32; 3]>,
+    /// Some triangle at each point.
+    at: Vec<u32>,
+    fixed: HashSet<[u32; 2]>,
+    last: u32,
+}
+
+fn sorted(a: u32, b: u32) -> [u32; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}
+
+impl<'a> Triangulation<'a> {
+    /// Begins with a triangle that turns counter-clockwise as seen along `axis`.
+    pub fn new(axis: usize, corners: [&'a Point; 3]) -> Triangulation<'a> {
+        Triangulation {
+            axis,
+            points: corners.to_vec(),
+            triangles: vec![[0, 1, 2]],
+            beyond: vec![[NONE; 3]],
+            at: vec![0; 3],
+            fixed: HashSet::new(),
+            last: 0,
+        }
+    }
+
+    fn turn(&self, a: u32, b: u32, c: u32) -> f64 {
+        turn(self.axis, self.points[a as usize], self.points[b as usize], self.points[c as usize])
+    }
+
+    /// Whether an edge was given.
+    pub fn is_fixed(&self, a: u32, b: u32) -> bool {
+        self.fixed.contains(&sorted(a, b))
+    }
+
+    /// Adds a point of the first triangle; returns its number, that of an earlier one at the same place if there is one.
+    pub fn insert(&mut self, point: &'a Point) -> u32 {
+        let p = self.points.len() as u32;
+        self.points.push(point);
+        self.at.push(NONE);
+        let (triangle, turns) = self.locate(p);
+        let on = |k: usize| turns[k] == 0.0;
+        if let Some(k) = (0..3).find(|&k| on(k) && on((k + 2) % 3)) {
+            self.points.pop();
+            self.at.pop();
+            return self.triangles[triangle as usize][k];
+        }
+        match (0..3).find(|&k| on(k)) {
+            Some(k) => self.split_side(triangle, k, p),
+            None => self.split_inside(triangle, p),
+        }
+        self.last = self.at[p as usize];
+        p
+    }
+
+    /// The triangle that a point is in, and how the point turns from each side.
+    fn locate(&self, p: u32) -> (u32, [f64; 3]) {
+        let turns_in = |triangle: u32| {
+            let [a, b, c] = self.triangles[triangle as usize];
+            [self.turn(a, b, p), self.turn(b, c, p), self.turn(c, a, p)]
+        };
+        let mut triangle = self.last;
+        // A walk may go in circles where the triangles are not those of Delaunay.
+        for step in 0..self.triangles.len() + 3 {
+            let turns = turns_in(triangle);
+            let Some(k) = (0..3).map(|k| (k + step) % 3).find(|&k| turns[k] < 0.0) else { return (triangle, turns) };
+            let next = self.beyond[triangle as usize][k];
+            if next == NONE {
+                break;
+            }
+            triangle = next;
+        }
+        let all = 0..self.triangles.len() as u32;
+        let found = all.map(|t| (t, turns_in(t))).find(|(_, turns)| turns.iter().all(|t| *t >= 0.0));
+        debug_assert!(found.is_some(), "a point outside the first triangle");
+        found.unwrap_or((0, turns_in(0)))
+    }
+
+    /// Writes a triangle, and makes its neighbours and corners know it.
+    fn put(&mut self, triangle: u32, corners: [u32; 3], beyond: [u32; 3]) {
+        self.triangles[triangle as usize] = corners;
+        self.beyond[triangle as usize] = beyond;
+        for k in 0..3 {
+            self.at[corners[k] as usize] = triangle;
+            if beyond[k] != NONE {
+                let side = self.side(beyond[k], corners[(k + 1) % 3]);
+                self.beyond[beyond[k] as usize][side] = triangle;
+            }
+        }
+    }
+
+    fn room(&mut self) -> u32 {
+        self.triangles.push([0; 3]);
+        self.beyond.push([NONE; 3]);
+        self.triangles.len() as u32 - 1
+    }
+
+    /// The side of a triangle that begins at a point.
+    fn side(&self, triangle: u32, from: u32) -> usize {
+        self.triangles[triangle as usize].iter().position(|&corner| corner == from).unwrap_or(0)
+    }
+
+    fn split_inside(&mut self, triangle: u32, p: u32) {
+        let [a, b, c] = self.triangles[triangle as usize];
+        let [ab, bc, ca] = self.beyond[triangle as usize];
+        let (second, third) = (self.room(), self.room());
+        self.put(triangle, [a, b, p], [ab, second, third]);
+        self.put(second, [b, c, p], [bc, third, triangle]);
+        self.put(third, [c, a, p], [ca, triangle, second]);
+        self.legalize(p, [triangle, second, third].to_vec());
+    }
+
+    fn split_side(&mut self, triangle: u32, k: usize, p: u32) {
+        let corners = self.triangles[triangle as usize];
+        let beyond = self.beyond[triangle as usize];
+        let [a, b, c] = [corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]];
+        let [across, bc, ca] = [beyond[k], beyond[(k + 1) % 3], beyond[(k + 2) % 3]];
+        if self.fixed.remove(&sorted(a, b)) {
+            self.fixed.extend([sorted(a, p), sorted(p, b)]);
+        }
+        let second = self.room();
+        let mut changed = vec![triangle, second];
+        if across == NONE {
+            self.put(triangle, [a, p, c], [NONE, second, ca]);
+            self.put(second, [p, b, c], [NONE, bc, triangle]);
+        } else {
+            let j = self.side(across, b);
+            let d = self.triangles[across as usize][(j + 2) % 3];
+            let [ad, db] = [self.beyond[across as usize][(j + 1) % 3], self.beyond[across as usize][(j + 2) % 3]];
+            let fourth = self.room();
+            self.put(triangle, [a, p, c], [across, second, ca]);
+            self.put(second, [p, b, c], [fourth, bc, triangle]);
+            self.put(across, [p, a, d], [triangle, ad, fourth]);
+            self.put(fourth, [b, p, d], [second, across, db]);
+            changed.extend([across, fourth]);
+        }
+        self.legalize(p, changed);
+    }
+
+    /// Exchanges diagonals opposite to a new point until all are as Delaunay wants them.
+    fn legalize(&mut self, p: u32, mut changed: Vec<u32>) {
+        // Rounded places may disagree with each other; a bound makes that harmless.
+        let mut patience = 16 * changed.len() + 4 * self.triangles.len();
+        while let Some(triangle) = changed.pop() {
+            let k = self.side(triangle, p);
+            let (opposite, across) = ((k + 1) % 3, self.beyond[triangle as usize][(k + 1) % 3]);
+            let [_, a, b] = [0, 1, 2].map(|i| self.triangles[triangle as usize][(k + i) % 3]);
+            if across == NONE || self.is_fixed(a, b) || patience == 0 {
+                continue;
+            }
+            let j = self.side(across, b);
+            let d = self.triangles[across as usize][(j + 2) % 3];
+            if self.is_in_circle([p, a, b], d) && self.turn(p, a, d) > 0.0 && self.turn(p, d, b) > 0.0 {
+                self.exchange(triangle, opposite);
+                changed.extend([triangle, across]);
+                patience -= 1;
+            }
+        }
+    }
+
+    fn is_in_circle(&self, triangle: [u32; 3], d: u32) -> bool {
+        let [x, y] = others(self.axis);
+        let coord = |p: u32| {
+            let near = self.points[p as usize].near();
+            Coord { x: near[x], y: near[y] }
+        };
+        let [a, b, c] = triangle.map(coord);
+        incircle(a, b, c, coord(d)) > 0.0
+    }
+
+    /// Exchanges the diagonal at side `k` of a triangle; the two triangles keep their numbers.
+    fn exchange(&mut self, triangle: u32, k: usize) {
+        let across = self.beyond[triangle as usize][k];
+        let [a, b, c] = [0, 1, 2].map(|i| self.triangles[triangle as usize][(k + i) % 3]);
+        let [bc, ca] = [1, 2].map(|i| self.beyond[triangle as usize][(k + i) % 3]);
+        let j = self.side(across, b);
+        let d = self.triangles[across as usize][(j + 2) % 3];
+        let [ad, db] = [1, 2].map(|i| self.beyond[across as usize][(j + i) % 3]);
+        self.put(triangle, [a, d, c], [ad, across, ca]);
+        self.put(across, [d, b, c], [db, bc, triangle]);
+    }
+
+    /// All triangles at a point, with the place of the point among their corners.
+    pub fn around(&self, p: u32) -> Vec<(u32, usize)> {
+        let first = self.at[p as usize];
+        let mut found = Vec::new();
+        let mut triangle = first;
+        loop {
+            let k = self.side(triangle, p);
+            found.push((triangle, k));
+            triangle = self.beyond[triangle as usize][(k + 2) % 3];
+            if triangle == first {
+                return found;
+            }
+            if triangle == NONE {
+                break;
+            }
+        }
+        triangle = self.beyond[first as usize][self.side(first, p)];
+        while triangle != NONE {
+            let k = self.side(triangle, p);
+            found.push((triangle, k));
+            triangle = self.beyond[triangle as usize][k];
+        }
+        found
+    }
+
+    /// The triangle with a side from `a` to `b`, and that side.
+    pub fn along(&self, a: u32, b: u32) -> Option<(u32, usize)> {
+        self.around(a).into_iter().find(|&(triangle, k)| self.triangles[triangle as usize][(k + 1) % 3] == b)
+    }
+
+    /// Makes the straight line between two points consist of edges that stay.
+    pub fn fix(&mut self, from: u32, to: u32) {
+        let mut from = from;
+        // Points on the line divide it.
+        while from != to {
+            let (crossed, reached) = self.crossed(from, to);
+            self.uncross(from, reached, crossed);
+            self.fixed.insert(sorted(from, reached));
+            from = reached;
+        }
+    }
+
+    /// Whether `a` lies from `from` in the direction of `to`, all on one line.
+    fn is_ahead(&self, from: u32, a: u32, to: u32) -> bool {
+        let order = |p: u32, q: u32| {
+            let [x, y] = others(self.axis);
+            let [p, q] = [p, q].map(|p| self.points[p as usize]);
+            compare(x, p, q).then_with(|| compare(y, p, q))
+        };
+        order(from, a) == order(from, to) && order(from, a) != Ordering::Equal
+    }
+
+    /// The edges that the line from one point towards another crosses up to the next point on it, and that point.
+    fn crossed(&self, from: u32, to: u32) -> (VecDeque<[u32; 2]>, u32) {
+        let mut crossed = VecDeque::new();
+        let mut entry = None;
+        for (triangle, k) in self.around(from) {
+            let [a, b] = [1, 2].map(|i| self.triangles[triangle as usize][(k + i) % 3]);
+            if a == to || b == to {
+                return (crossed, to);
+            }
+            let [left, right] = [self.turn(from, to, b), self.turn(from, to, a)];
+            for (corner, turn) in [(a, right), (b, left)] {
+                if turn == 0.0 && self.is_ahead(from, corner, to) {
+                    return (crossed, corner);
+                }
+            }
+            if right < 0.0 && left > 0.0 {
+                entry = Some((triangle, (k + 1) % 3));
+            }
+        }
+        // The line leaves through the side opposite to where it came in; `side` goes from its right to its left.
+        while let Some((triangle, side)) = entry {
+            let [a, b] = [0, 1].map(|i| self.triangles[triangle as usize][(side + i) % 3]);
+            crossed.push_back([a, b]);
+            let next = self.beyond[triangle as usize][side];
+            if next == NONE {
+                break;
+            }
+            let j = self.side(next, b);
+            let apex = self.triangles[next as usize][(j + 2) % 3];
+            let turn = if apex == to { 0.0 } else { self.turn(from, to, apex) };
+            if turn == 0.0 {
+                return (crossed, apex);
+            }
+            // The sides of `next` go b to a, a to apex, apex to b; a is on the right, b on the left.
+            entry = Some((next, if turn > 0.0 { (j + 1) % 3 } else { (j + 2) % 3 }));
+        }
+        debug_assert!(false, "a line that leaves the triangulation");
+        (VecDeque::new(), to)
+    }
+
+    /// Exchanges diagonals until none crosses the line.
+    fn uncross(&mut self, from: u32, to: u32, mut crossed: VecDeque<[u32; 2]>) {
+        // Each turn through the queue removes a crossing at least; the square bounds all.
+        let mut patience = 4 * (crossed.len() + 2) * (crossed.len() + 2);
+        while let Some([a, b]) = crossed.pop_front() {
+            let Some((triangle, k)) = self.along(a, b) else { continue };
+            let c = self.triangles[triangle as usize][(k + 2) % 3];
+            let across = self.beyond[triangle as usize][k];
+            if across == NONE || patience == 0 {
+                continue;
+            }
+            patience -= 1;
+            let j = self.side(across, b);
+            let d = self.triangles[across as usize][(j + 2) % 3];
+            // The diagonal becomes d c: both new triangles must turn the right way.
+            if self.turn(a, d, c) <= 0.0 || self.turn(d, b, c) <= 0.0 {
+                crossed.push_back([a, b]);
+                continue;
+            }
+            self.exchange(triangle, k);
+            let is_end = |p: u32| p == from || p == to;
+            if !is_end(c) && !is_end(d) && self.turn(from, to, c) * self.turn(from, to, d) < 0.0 {
+                crossed.push_back([d, c]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::implicit::Definition;
+    use glam::DVec3;
+    use rand::{RngExt, SeedableRng};
+
+    fn given(x: f64, y: f64) -> Point {
+        Point::new(Definition::Given(DVec3::new(x, y, 0.0)))
+    }
+
+    fn check(t: &Triangulation, area: f64) {
+        let mut sum = 0.0;
+        for (index, corners) in t.triangles.iter().enumerate() {
+            let [a, b, c] = *corners;
+            assert!(t.turn(a, b, c) > 0.0);
+            let [p, q, r] = corners.map(|p| t.points[p as usize].near());
+            sum += (q - p).cross(r - p).z / 2.0;
+            for k in 0..3 {
+                let next = t.beyond[index][k];
+                if next != NONE {
+                    let side = t.side(next, corners[(k + 1) % 3]);
+                    assert_eq!((t.beyond[next as usize][side], t.triangles[next as usize][(side + 1) % 3]), (index as u32, corners[k]));
+                }
+            }
+        }
+        assert!((sum - area).abs() < 1e-9 * area);
+    }
+
+    #[test]
+    fn points_and_lines_on_a_grid_are_all_there() {
+        // A grid is full of points on one line and on one circle.
+        let corners = [given(0.0, 0.0), given(16.0, 0.0), given(0.0, 16.0)];
+        let grid: Vec<Point> = (0..=16)
+            .flat_map(|x| (0..=16 - x).map(move |y| given(f64::from(x), f64::from(y))))
+            .collect();
+        let mut t = Triangulation::new(2, corners.each_ref());
+        let numbers: Vec<u32> = grid.iter().map(|p| t.insert(p)).collect();
+        assert_eq!(t.points.len(), 17 * 18 / 2);
+        assert_eq!(t.triangles.len(), 256);
+        check(&t, 128.0);
+        let number = |x: u32, y: u32| {
+            numbers[grid.iter().position(|p| p.near() == DVec3::new(x.into(), y.into(), 0.0)).unwrap()]
+        };
+        for (from, to) in [((0, 0), (8, 5)), ((1, 2), (1, 15)), ((4, 2), (11, 3)), ((2, 3), (10, 6)), ((2, 14), (5, 5))] {
+            t.fix(number(from.0, from.1), number(to.0, to.1));
+            check(&t, 128.0);
+        }
+        for (a, b) in [((0, 0), (8, 5)), ((1, 6), (1, 7)), ((4, 2), (11, 3)), ((2, 3), (10, 6))] {
+            let [a, b] = [number(a.0, a.1), number(b.0, b.1)];
+            assert!(t.is_fixed(a, b) && t.along(a, b).is_some());
+        }
+    }
+
+    #[test]
+    fn random_points_and_lines_from_a_star_are_all_there() {
+        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(5);
+        let corners = [given(-4.0, -2.0), given(4.0, -2.0), given(0.0, 4.0)];
+        let points: Vec<Point> = (0..300).map(|_| given(random.random_range(-0.9..0.9), random.random_range(-0.9..0.9))).collect();
+        let mut t = Triangulation::new(2, corners.each_ref());
+        let numbers: Vec<u32> = points.iter().map(|p| t.insert(p)).collect();
+        for &to in &numbers[1..40] {
+            t.fix(numbers[0], to);
+            check(&t, 24.0);
+        }
+        assert!(numbers[1..40].iter().all(|&to| t.is_fixed(numbers[0], to) && t.along(numbers[0], to).is_some()));
+    }
+}
