@@ -90,6 +90,82 @@ impl Mul<&Rounded> for Rounded {
     }
 }
 
+/// A number of twice the digits: a rounded one, and what it lacks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twofold {
+    high: f64,
+    low: f64,
+}
+
+/// A sum and what its rounding lost, |a| >= |b| (Dekker 1971).
+fn fast_sum(a: f64, b: f64) -> Twofold {
+    let high = a + b;
+    Twofold { high, low: b - (high - a) }
+}
+
+/// A sum and what its rounding lost (Knuth 1969).
+fn sum(a: f64, b: f64) -> Twofold {
+    let high = a + b;
+    let part = high - a;
+    Twofold { high, low: (a - (high - part)) + (b - part) }
+}
+
+/// A product and what its rounding lost (Veltkamp and Dekker 1971).
+fn product(a: f64, b: f64) -> Twofold {
+    let halves = |x: f64| {
+        let scaled = x * 134_217_729.0;
+        let high = scaled - (scaled - x);
+        (high, x - high)
+    };
+    let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
+    let high = a * b;
+    Twofold { high, low: a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2) }
+}
+
+impl Twofold {
+    /// The number nearest to it.
+    pub fn value(self) -> f64 {
+        self.high + self.low
+    }
+
+    /// The quotient.
+    pub fn over(self, divisor: Twofold) -> Twofold {
+        let quotient = self.high / divisor.high;
+        let rest = self - Twofold::from(quotient) * &divisor;
+        fast_sum(quotient, (rest.high + rest.low) / divisor.high)
+    }
+}
+
+impl From<f64> for Twofold {
+    fn from(value: f64) -> Twofold {
+        Twofold { high: value, low: 0.0 }
+    }
+}
+
+impl Add for Twofold {
+    type Output = Twofold;
+    fn add(self, other: Twofold) -> Twofold {
+        let (high, low) = (sum(self.high, other.high), sum(self.low, other.low));
+        let middle = fast_sum(high.high, high.low + low.high);
+        fast_sum(middle.high, middle.low + low.low)
+    }
+}
+
+impl Sub for Twofold {
+    type Output = Twofold;
+    fn sub(self, other: Twofold) -> Twofold {
+        self + Twofold { high: -other.high, low: -other.low }
+    }
+}
+
+impl Mul<&Twofold> for Twofold {
+    type Output = Twofold;
+    fn mul(self, other: &Twofold) -> Twofold {
+        let high = product(self.high, other.high);
+        fast_sum(high.high, high.low + (self.high * other.low + self.low * other.high))
+    }
+}
+
 /// A number without error: an integer of any length times a power of two.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Exact {
@@ -267,6 +343,9 @@ mod tests {
             if let Some(sign) = rounded.sign() {
                 prop_assert_eq!(sign, exact.sign());
             }
+            let twofold: Twofold = formula([a, b, c, d]);
+            let close = |value: f64| (exact.clone() - Exact::from(value)).over(&Exact::from(1.0)).abs();
+            prop_assert!(close(twofold.value()) <= UNIT * twofold.value().abs() * 1.000_001 + rounded.error * 1e-14);
             let quotient = rounded.over(Rounded::from(d));
             let gap = (exact - Exact::from(quotient.value) * &Exact::from(d)).over(&Exact::from(d)).abs();
             prop_assert!(gap <= quotient.error * SLACK);

@@ -8,10 +8,11 @@
 //! Attene 2020, "Indirect predicates for geometric constructions"; the numbers are ours.
 
 use super::bounds::Bounds;
-use super::exact::{Exact, Number, Rounded, cross, dot, minus};
+use super::exact::{Exact, Number, Rounded, Twofold, cross, dot, minus};
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 /// What defines a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,35 +28,53 @@ pub enum Definition {
 }
 
 /// A point with its rounded place.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Point {
     definition: Definition,
     near: DVec3,
-    /// Each coordinate of `near` is at most so far from the true one.
-    error: f64,
+    /// How far each coordinate of `near` is from the true one at most.
+    errors: DVec3,
+    /// The exact coordinates, once someone asked for them.
+    exact: OnceLock<Box<Homogeneous>>,
 }
 
 /// Homogeneous coordinates x, y, z, w with w > 0.
-type Homogeneous = [Exact; 4];
+pub type Homogeneous = [Exact; 4];
 
 impl Point {
     /// Makes a point; the line and the plane, or the three planes, must meet in one point.
     pub fn new(definition: Definition) -> Point {
-        let [near, errors] = match &definition {
-            &Definition::Given(at) => return Point { definition, near: at, error: 0.0 },
-            &Definition::LineAndPlane(line, plane) => split(on_line(line, plane)),
-            &Definition::Planes(planes) => split(on_planes(planes)),
-            Definition::Middle(_) => [DVec3::ZERO, DVec3::INFINITY],
+        let (near, errors) = match &definition {
+            &Definition::Given(at) => return Point::known(definition, at, DVec3::ZERO),
+            &Definition::LineAndPlane(line, plane) => {
+                place(on_line(line, plane, Rounded::over), on_line(line, plane, Twofold::over), [&line, &plane])
+            }
+            &Definition::Planes(planes) => {
+                let [a, b, c] = planes.each_ref();
+                place(on_planes(planes, Rounded::over), on_planes(planes, Twofold::over), [a, b, c])
+            }
+            Definition::Middle(points) => {
+                let [a, b, c] = points.each_ref().map(|point| Point::new(point.clone()));
+                let near = (a.near + b.near + c.near) / 3.0;
+                let size = a.near.abs().max(b.near.abs()).max(c.near.abs());
+                (near, a.errors.max(b.errors).max(c.errors) + size * (4.0 * f64::EPSILON))
+            }
         };
-        let error = errors.max_element();
-        // A few roundings of the coordinates are what any formula has; a point that is known much worse than that, as
-        // where a line grazes a plane, gets its rounded place from the exact one.
-        if error <= 16.0 * f64::EPSILON * near.abs().max_element() {
-            return Point { definition, near, error };
+        if errors == DVec3::ZERO {
+            return Point::known(Definition::Given(near), near, errors);
         }
-        let [x, y, z, w] = homogeneous(&definition);
-        let near = DVec3::new(x.over(&w), y.over(&w), z.over(&w));
-        Point { definition, near, error: f64::EPSILON * near.abs().max_element() + f64::MIN_POSITIVE }
+        // Where a line grazes a plane even twice the digits may not do.
+        if errors.max_element() <= 4.0 * f64::EPSILON * near.abs().max_element() {
+            return Point::known(definition, near, errors);
+        }
+        let exact = homogeneous(&definition);
+        let near = DVec3::from([0, 1, 2].map(|axis| exact[axis].over(&exact[3])));
+        let error = f64::EPSILON * near.abs().max_element() + f64::MIN_POSITIVE;
+        Point { exact: OnceLock::from(Box::new(exact)), ..Point::known(definition, near, DVec3::splat(error)) }
+    }
+
+    fn known(definition: Definition, near: DVec3, errors: DVec3) -> Point {
+        Point { definition, near, errors, exact: OnceLock::new() }
     }
 
     /// The nearest place with floating-point coordinates, within a few roundings.
@@ -75,23 +94,45 @@ impl Point {
 
     /// A box that holds it.
     pub fn bounds(&self) -> Bounds {
-        let reach = DVec3::splat(self.error * (1.0 + 1e-9));
+        let reach = self.errors * (1.0 + 1e-9);
         let near = self.near;
         Bounds { min: near - reach, max: near + reach }
     }
 
     /// The exact coordinates times a common denominator, which comes last and is positive.
-    pub fn homogeneous(&self) -> Homogeneous {
-        homogeneous(&self.definition)
+    pub fn homogeneous(&self) -> &Homogeneous {
+        self.exact.get_or_init(|| Box::new(homogeneous(&self.definition)))
     }
 
     fn coordinate(&self, axis: usize) -> Rounded {
-        Rounded { value: self.near[axis], error: self.error }
+        Rounded { value: self.near[axis], error: self.errors[axis] }
     }
 }
 
-fn split(place: [Rounded; 3]) -> [DVec3; 2] {
-    [DVec3::from(place.map(|c| c.value)), DVec3::from(place.map(|c| c.error))]
+/// Coordinates that all points of a line or a plane share.
+type Level = [Option<f64>; 3];
+
+fn level(points: &[DVec3]) -> Level {
+    [0, 1, 2].map(|axis| points.iter().all(|p| p[axis] == points[0][axis]).then_some(points[0][axis]))
+}
+
+fn either(one: Level, two: Level) -> Level {
+    [0, 1, 2].map(|axis| one[axis].or(two[axis]))
+}
+
+/// A place to the last bit, in which some coordinates are known, and how far each is off at most.
+///
+/// - `rounded`: the place by a formula with its error.
+/// - `twofold`: the same with twice the digits, whose error is that of the other times 2^-51 or so.
+/// - `on`: points of lines and planes that it is on.
+fn place<const N: usize>(rounded: [Rounded; 3], twofold: [Twofold; 3], on: [&[DVec3]; N]) -> (DVec3, DVec3) {
+    let known = on.into_iter().fold(Level::default(), |known, points| either(known, level(points)));
+    let value = |axis: usize| known[axis].unwrap_or(twofold[axis].value());
+    let error = |axis: usize| match known[axis] {
+        Some(_) => 0.0,
+        None => rounded[axis].error * f64::exp2(-40.0) + twofold[axis].value().abs() * (0.5 * f64::EPSILON),
+    };
+    (DVec3::from([0, 1, 2].map(value)), DVec3::from([0, 1, 2].map(error)))
 }
 
 fn vector<N: Number>(v: DVec3) -> [N; 3] {
@@ -113,10 +154,10 @@ fn fraction<N: Number>([p, q]: [DVec3; 2], plane: [DVec3; 3]) -> [N; 2] {
     [dot(&n, &step(plane[0], p)), dot(&n, &step(q, p))]
 }
 
-fn on_line(line: [DVec3; 2], plane: [DVec3; 3]) -> [Rounded; 3] {
-    let [over, under] = fraction::<Rounded>(line, plane);
-    let t = over.over(under);
-    let (start, along) = (vector::<Rounded>(line[0]), step::<Rounded>(line[1], line[0]));
+fn on_line<N: Number + Copy>(line: [DVec3; 2], plane: [DVec3; 3], divide: fn(N, N) -> N) -> [N; 3] {
+    let [over, under] = fraction::<N>(line, plane);
+    let t = divide(over, under);
+    let (start, along) = (vector::<N>(line[0]), step::<N>(line[1], line[0]));
     [0, 1, 2].map(|axis| start[axis] + along[axis] * &t)
 }
 
@@ -130,10 +171,10 @@ fn meeting<N: Number>(planes: [[DVec3; 3]; 3]) -> ([N; 3], N) {
     (offset, dot(&n[2], &b))
 }
 
-fn on_planes(planes: [[DVec3; 3]; 3]) -> [Rounded; 3] {
-    let (offset, under) = meeting::<Rounded>(planes);
-    let start = vector::<Rounded>(planes[0][0]);
-    [0, 1, 2].map(|axis| start[axis] + offset[axis].over(under))
+fn on_planes<N: Number + Copy>(planes: [[DVec3; 3]; 3], divide: fn(N, N) -> N) -> [N; 3] {
+    let (offset, under) = meeting::<N>(planes);
+    let start = vector::<N>(planes[0][0]);
+    [0, 1, 2].map(|axis| start[axis] + divide(offset[axis], under))
 }
 
 fn homogeneous(definition: &Definition) -> Homogeneous {
@@ -160,9 +201,8 @@ fn homogeneous(definition: &Definition) -> Homogeneous {
 
 fn middle([a, b, c]: [Homogeneous; 3]) -> Homogeneous {
     let weights = [b[3].clone() * &c[3], c[3].clone() * &a[3], a[3].clone() * &b[3]];
-    let sum = |axis: usize| {
-        a[axis].clone() * &weights[0] + b[axis].clone() * &weights[1] + c[axis].clone() * &weights[2]
-    };
+    let sum =
+        |axis: usize| a[axis].clone() * &weights[0] + b[axis].clone() * &weights[1] + c[axis].clone() * &weights[2];
     let under = weights[0].clone() * &a[3] * &Exact::from(3.0);
     [sum(0), sum(1), sum(2), under]
 }
@@ -192,7 +232,7 @@ fn turn_exactly([x, y]: [usize; 2], points: [&Point; 3]) -> f64 {
     let [a, b, c] = points.map(Point::homogeneous);
     // The determinant of (x, y, w), all w positive.
     let minor = |p: &Homogeneous, q: &Homogeneous| p[x].clone() * &q[y] - p[y].clone() * &q[x];
-    (minor(&a, &b) * &c[3] + minor(&b, &c) * &a[3] + minor(&c, &a) * &b[3]).sign()
+    (minor(a, b) * &c[3] + minor(b, c) * &a[3] + minor(c, a) * &b[3]).sign()
 }
 
 /// Order of two points along an axis.
@@ -226,8 +266,8 @@ pub fn side_of(plane: [DVec3; 3], point: &Point) -> f64 {
     let rounded = dot(&n, &offset);
     -rounded.sign().unwrap_or_else(|| {
         let [x, y, z, w] = point.homogeneous();
-        let start = vector::<Exact>(plane[0]).map(|c| c * &w);
-        dot(&normal::<Exact>(plane), &minus(&[x, y, z], &start)).sign()
+        let start = vector::<Exact>(plane[0]).map(|c| c * w);
+        dot(&normal::<Exact>(plane), &minus(&[x.clone(), y.clone(), z.clone()], &start)).sign()
     })
 }
 
@@ -272,7 +312,10 @@ mod tests {
     #[test]
     fn sides_are_those_of_the_counter_clockwise_face() {
         assert_eq!(side(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z), -1.0);
-        let above = Point::new(Definition::LineAndPlane([DVec3::ZERO, DVec3::ONE], [DVec3::Z, DVec3::X + DVec3::Z, DVec3::Y + DVec3::Z]));
+        let above = Point::new(Definition::LineAndPlane(
+            [DVec3::ZERO, DVec3::ONE],
+            [DVec3::Z, DVec3::X + DVec3::Z, DVec3::Y + DVec3::Z],
+        ));
         assert_eq!(above.near(), DVec3::ONE);
         assert_eq!(side_of([DVec3::ZERO, DVec3::X, DVec3::Y], &above), -1.0);
         assert_eq!(side_of([DVec3::ONE, DVec3::new(2.0, 1.0, 1.0), DVec3::new(1.0, 2.0, 1.0)], &above), 0.0);
@@ -284,9 +327,12 @@ mod tests {
         let line = [DVec3::new(0.0, 0.0, -e), DVec3::new(1.0, 0.0, e * 3.0)];
         let plane = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let point = Point::new(Definition::LineAndPlane(line, plane));
-        let exact = { let z = [Exact::from(-e), Exact::from(e * 3.0)]; z[0].clone().negated().over(&(z[1].clone() - z[0].clone())) };
+        let exact = {
+            let z = [Exact::from(-e), Exact::from(e * 3.0)];
+            z[0].clone().negated().over(&(z[1].clone() - z[0].clone()))
+        };
         assert_eq!(point.near(), DVec3::new(exact, 0.0, 0.0));
-        assert!(point.error < 1e-15);
+        assert!(point.errors.max_element() < 1e-15);
     }
 
     proptest! {
@@ -300,8 +346,8 @@ mod tests {
             }
             let exact = point.homogeneous();
             for axis in 0..3 {
-                let true_one = exact[axis].over(&exact[3]);
-                prop_assert!((true_one - point.near[axis]).abs() <= point.error * (1.0 + 1e-9));
+                let gap = exact[axis].clone() - Exact::from(point.near[axis]) * &exact[3];
+                prop_assert!(gap.over(&exact[3]).abs() <= point.errors[axis] * (1.0 + 1e-9));
             }
         }
 

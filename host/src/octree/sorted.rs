@@ -197,7 +197,12 @@ mod tests {
     fn soup(count: u32, size: f64, seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
         let mut point = || DVec3::from([0; 3].map(|_| random.random_range(-1.0..1.0)));
-        let vertices = (0..count).flat_map(|_| { let a = point(); [a, a + point() * size, a + point() * size] }).collect();
+        let vertices = (0..count)
+            .flat_map(|_| {
+                let a = point();
+                [a, a + point() * size, a + point() * size]
+            })
+            .collect();
         (vertices, (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
     }
 

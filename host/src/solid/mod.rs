@@ -1,6 +1,70 @@
 //! Solids: closed surfaces with an inside, and what can be done with them.
 
 pub mod boolean;
+mod import;
+
+pub use boolean::{Counts, Expression, Outcome};
+pub use import::SolidError;
+
+use crate::mesh::Mesh;
+
+/// What a closed surface bounds.
+///
+/// Its mesh is closed and consistently oriented: every edge is run through as often one way as the other. No triangle
+/// lacks an area. Edges of four triangles are allowed, as where two cubes share an edge. The surface should not cross
+/// itself; where it does, results of Boolean operations are those of the parts that it winds around.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solid {
+    mesh: Mesh,
+}
+
+impl Solid {
+    /// Takes a mesh; vertices at the same place become one, and triangles without an area are dissolved.
+    ///
+    /// # Errors
+    /// [`SolidError`], which names the edges, if the mesh is not closed, is not consistently oriented, or faces inwards.
+    pub fn new(mesh: Mesh) -> Result<Solid, SolidError> {
+        import::solid(mesh).map(|mesh| Solid { mesh })
+    }
+
+    /// Its surface.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Its surface, for keeps.
+    pub fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
+
+    /// Evaluates an expression over some solids at once. The result may be empty.
+    pub fn evaluate(operands: &[&Solid], expression: &Expression) -> (Solid, Outcome) {
+        let mut outcome = boolean::evaluate(operands.iter().map(|solid| &solid.mesh).collect(), expression);
+        let mesh = std::mem::take(&mut outcome.mesh);
+        (Solid { mesh }, outcome)
+    }
+
+    /// What is in either.
+    pub fn union(&self, other: &Solid) -> Solid {
+        self.with(other, Expression::Union)
+    }
+
+    /// What is in both.
+    pub fn intersection(&self, other: &Solid) -> Solid {
+        self.with(other, Expression::Intersection)
+    }
+
+    /// What is in this one and not in the other.
+    pub fn difference(&self, other: &Solid) -> Solid {
+        let expression = Expression::difference(Expression::Operand(0), Expression::Operand(1));
+        Solid::evaluate(&[self, other], &expression).0
+    }
+
+    fn with(&self, other: &Solid, operation: fn(Vec<Expression>) -> Expression) -> Solid {
+        let both = vec![Expression::Operand(0), Expression::Operand(1)];
+        Solid::evaluate(&[self, other], &operation(both)).0
+    }
+}
 
 #[cfg(test)]
 mod tests;

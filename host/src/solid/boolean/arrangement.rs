@@ -3,14 +3,16 @@
 //! A carrier is an edge of the input, or the line in which two faces cross. Whatever lies on it is kept once, in order,
 //! for all faces that share it; so no two faces ever disagree about their border.
 
+use super::Expression;
 use super::contact::{Common, Contact, Edge, Face, Feature, Key, crossing};
 use super::operand::Operands;
+use super::relevance::relevant;
 use super::union_find::UnionFind;
-use crate::numeric::implicit::{Definition, Point, coincide, compare, turn};
+use crate::numeric::implicit::{Definition, Point, coincide, compare, projection, turn};
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 /// A line that carries points.
@@ -87,14 +89,16 @@ pub struct Arrangement {
     pub on_other: Vec<bool>,
     /// Faces that overlap in one plane, joined.
     pub sheets: UnionFind,
+    /// For each triangle, counted over all operands, whether it may matter.
+    pub is_relevant: Vec<bool>,
     /// Work done.
     pub counts: Counts,
     same: UnionFind,
-    of_key: HashMap<Key, u32>,
+    of_key: FxHashMap<Key, u32>,
     carriers: Vec<Carrier>,
-    of_edge: HashMap<Edge, u32>,
-    of_faces: HashMap<[u32; 2], u32>,
-    place: HashMap<u32, DVec3>,
+    of_edge: FxHashMap<Edge, u32>,
+    of_faces: FxHashMap<[u32; 2], u32>,
+    place: FxHashMap<u32, DVec3>,
 }
 
 /// Order along any line: lexicographic.
@@ -104,19 +108,22 @@ fn along(a: &Point, b: &Point) -> Ordering {
 
 impl Arrangement {
     /// Finds all contacts between different operands.
-    pub fn new(operands: &Operands) -> Arrangement {
+    ///
+    /// Those that cannot matter to an expression are left out.
+    pub fn new(operands: &Operands, expression: &Expression) -> Arrangement {
         let pairs = operands.pairs();
-        let faces = Faces::of(operands, &pairs);
-        let contacts: Vec<([u32; 2], Contact)> = pairs
+        let touching = touching(operands, &pairs);
+        let is_relevant = relevant(operands, expression, &touching);
+        let matters = |pair: &&[u32; 2]| pair.iter().all(|&triangle| is_relevant[triangle as usize]);
+        let touching: Vec<[u32; 2]> = touching.iter().filter(matters).copied().collect();
+        // Names are given to what is left only: a vertex of a face that was left out is no vertex of the others.
+        let faces = Faces::of(operands, &touching, true);
+        let contacts: Vec<([u32; 2], Contact)> = touching
             .par_iter()
             .with_min_len(256)
-            .filter_map(|pair| {
-                let [a, b] = pair.map(|triangle| faces.of_triangle[triangle as usize]);
-                if a == u32::MAX || b == u32::MAX {
-                    return None;
-                }
-                let contact = Contact::of(&faces.faces[a as usize], &faces.faces[b as usize]);
-                (!contact.points.is_empty()).then_some(([a, b], contact))
+            .map(|pair| {
+                let pair = pair.map(|triangle| faces.of_triangle[triangle as usize]);
+                (pair, Contact::of(&faces.faces[pair[0] as usize], &faces.faces[pair[1] as usize]))
             })
             .collect();
         let count = faces.faces.len();
@@ -126,12 +133,13 @@ impl Arrangement {
             vertices: Vec::new(),
             on_other: Vec::new(),
             sheets: UnionFind::new(count),
+            is_relevant,
             counts: Counts { pairs: pairs.len() as u64, contacts: contacts.len() as u64, ..Counts::default() },
             same: UnionFind::new(0),
-            of_key: HashMap::new(),
+            of_key: FxHashMap::default(),
             carriers: Vec::new(),
-            of_edge: HashMap::new(),
-            of_faces: HashMap::new(),
+            of_edge: FxHashMap::default(),
+            of_faces: FxHashMap::default(),
             place: faces.place,
             faces: faces.faces,
             triangles: faces.triangles,
@@ -329,8 +337,7 @@ impl Arrangement {
         for which in 0..2 {
             let other = faces[1 - which];
             for k in 0..3_u8 {
-                let on: Vec<usize> =
-                    (0..ids.len()).filter(|&i| contact.points[i].features[which].is_on(k)).collect();
+                let on: Vec<usize> = (0..ids.len()).filter(|&i| contact.points[i].features[which].is_on(k)).collect();
                 let at = |i: usize| &self.points[ids[i] as usize];
                 let least = on.iter().copied().min_by(|&i, &j| along(at(i), at(j)));
                 let most = on.iter().copied().max_by(|&i, &j| along(at(i), at(j)));
@@ -436,17 +443,40 @@ impl Arrangement {
         self.carriers.par_iter_mut().with_min_len(64).for_each(|carrier| {
             carrier.points.sort_by(|&a, &b| along(&points[a as usize], &points[b as usize]));
         });
-        for carrier in &self.carriers {
-            for pair in carrier.points.windows(2) {
-                if coincide(&self.points[pair[0] as usize], &self.points[pair[1] as usize]) {
-                    self.same.join(pair[0], pair[1]);
-                    let [a, b] = [0, 1].map(|i| self.vertices[pair[i] as usize]);
-                    let root = self.same.root(pair[0]) as usize;
-                    self.vertices[root] = a.or(b);
-                    self.on_other[root] = true;
-                }
-            }
+        let neighbours =
+            |carrier: &Carrier| carrier.points.windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>();
+        let pairs: Vec<[u32; 2]> = self.carriers.iter().flat_map(neighbours).collect();
+        pairs.into_iter().for_each(|pair| self.unite(pair));
+        let several = |content: &&Content| content.partner == Some(SEVERAL);
+        let pairs: Vec<Vec<[u32; 2]>> = self.contents.par_iter().filter(several).map(|c| self.near_pairs(c)).collect();
+        pairs.into_iter().flatten().for_each(|pair| self.unite(pair));
+    }
+
+    /// Makes one of two points that are.
+    fn unite(&mut self, pair: [u32; 2]) {
+        let [a, b] = pair.map(|p| self.same.root(p));
+        if a != b && coincide(&self.points[pair[0] as usize], &self.points[pair[1] as usize]) {
+            self.same.join(a, b);
+            let [root, other] = [a.min(b) as usize, a.max(b) as usize];
+            self.vertices[root] = self.vertices[root].or(self.vertices[other]);
+            self.on_other[root] = true;
         }
+    }
+
+    /// Points in a face that may be one: those of edges that run along each other are on no carrier in common.
+    fn near_pairs(&self, content: &Content) -> Vec<[u32; 2]> {
+        let ends = content.segments.iter().flat_map(|s| s.ends);
+        let mut points: Vec<u32> = content.inner.iter().copied().chain(ends).collect();
+        points.sort_unstable();
+        points.dedup();
+        let bounds = |p: u32| self.points[p as usize].bounds();
+        points.sort_by(|&a, &b| bounds(a).min.x.total_cmp(&bounds(b).min.x));
+        let mut pairs = Vec::new();
+        for (place, &a) in points.iter().enumerate() {
+            let near = points[place + 1..].iter().take_while(|&&b| bounds(b).min.x <= bounds(a).max.x);
+            pairs.extend(near.filter(|&&b| bounds(a).touches(bounds(b))).map(|&b| [a, b]));
+        }
+        pairs
     }
 
     fn corners(&mut self) {
@@ -459,33 +489,49 @@ impl Arrangement {
     }
 }
 
+/// Pairs of triangles that have a point in common; triangles without an area have none.
+fn touching(operands: &Operands, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let faces = Faces::of(operands, pairs, false);
+    let touch = |pair: &&[u32; 2]| {
+        let [a, b] = pair.map(|triangle| faces.of_triangle[triangle as usize]);
+        a != NONE && b != NONE && !Contact::of(&faces.faces[a as usize], &faces.faces[b as usize]).points.is_empty()
+    };
+    pairs.par_iter().with_min_len(256).filter(touch).copied().collect()
+}
+
+/// No face.
+const NONE: u32 = u32::MAX;
+
 /// The triangles that occur in pairs.
 struct Faces {
     faces: Vec<Face>,
     triangles: Vec<u32>,
-    /// Face by triangle.
+    /// Face by triangle, or [`NONE`].
     of_triangle: Vec<u32>,
-    place: HashMap<u32, DVec3>,
+    /// Where the vertices are, by name.
+    place: FxHashMap<u32, DVec3>,
 }
 
 impl Faces {
-    fn of(operands: &Operands, pairs: &[[u32; 2]]) -> Faces {
-        let mut of_triangle = vec![u32::MAX; operands.triangle_count()];
+    /// - `named`: whether vertices at the same place get the same name.
+    fn of(operands: &Operands, pairs: &[[u32; 2]], named: bool) -> Faces {
+        let mut of_triangle = vec![NONE; operands.triangle_count()];
         let mut faces = Vec::new();
         let mut triangles = Vec::new();
-        let mut first_at: HashMap<[u64; 3], u32> = HashMap::new();
-        let mut place = HashMap::new();
+        let mut first_at: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+        let mut place = FxHashMap::default();
         for &triangle in pairs.as_flattened() {
-            if of_triangle[triangle as usize] != u32::MAX {
+            if of_triangle[triangle as usize] != NONE {
                 continue;
             }
-            let (vertices, corners) = operands.corners(triangle);
-            let Some((axis, turn)) = crate::numeric::implicit::projection(corners) else { continue };
+            let (mut vertices, corners) = operands.corners(triangle);
+            let Some((axis, turn)) = projection(corners) else { continue };
+            if named {
+                vertices = [0, 1, 2].map(|k| *first_at.entry(crate::mesh::bits(corners[k])).or_insert(vertices[k]));
+                (0..3).for_each(|k| _ = place.insert(vertices[k], corners[k]));
+            }
             let id = faces.len() as u32;
             of_triangle[triangle as usize] = id;
-            let name = |k: usize| *first_at.entry(crate::mesh::bits(corners[k])).or_insert(vertices[k]);
-            let vertices = [0, 1, 2].map(name);
-            (0..3).for_each(|k| _ = place.insert(vertices[k], corners[k]));
             faces.push(Face { id, vertices, corners, axis, turn });
             triangles.push(triangle);
         }

@@ -5,15 +5,17 @@ use super::triangulation::{NONE, Triangulation};
 use crate::numeric::implicit::{Definition, Point, others};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A triangle that nothing crosses, of one face or of several that coincide there.
 #[derive(Clone, Debug)]
 pub struct Facet {
     /// Points, in the order of the first face that it belongs to.
     pub corners: [u32; 3],
-    /// Faces that it is part of, those of lower operands first, so that neighbours are turned alike.
-    pub cover: Vec<Covering>,
+    /// The face that it is part of, that of the lowest operand if there are several, so that neighbours are turned alike.
+    pub face: u32,
+    /// Others that it is part of.
+    pub others: Vec<Covering>,
 }
 
 /// A face that a facet is part of.
@@ -25,9 +27,16 @@ pub struct Covering {
     pub is_along: bool,
 }
 
+impl Facet {
+    /// All faces that it is part of.
+    pub fn cover(&self) -> impl Iterator<Item = Covering> {
+        std::iter::once(Covering { face: self.face, is_along: true }).chain(self.others.iter().copied())
+    }
+}
+
 /// Divides all touched faces; faces that overlap in one plane are divided together.
 pub fn divide(arrangement: &Arrangement) -> Vec<Facet> {
-    let mut sheets: HashMap<u32, usize> = HashMap::new();
+    let mut sheets: FxHashMap<u32, usize> = FxHashMap::default();
     let mut members: Vec<Vec<u32>> = Vec::new();
     for face in arrangement.touched() {
         let sheet = *sheets.entry(arrangement.sheets.root(face)).or_insert_with(|| {
@@ -63,7 +72,7 @@ struct Sheet<'a> {
     arrangement: &'a Arrangement,
     triangulation: Triangulation<'a>,
     /// Number inside by point.
-    inside: HashMap<u32, u32>,
+    inside: FxHashMap<u32, u32>,
     /// Point by number inside; [`NONE`] for helping points.
     outside: Vec<u32>,
 }
@@ -107,11 +116,6 @@ impl<'a> Sheet<'a> {
 
 fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
     let (content, shape) = (&arrangement.contents[face as usize], &arrangement.faces[face as usize]);
-    let border = border(arrangement, face);
-    let cover = vec![Covering { face, is_along: true }];
-    if border.len() == 3 && content.inner.is_empty() && content.segments.is_empty() {
-        return vec![Facet { corners: content.corners, cover }];
-    }
     let [a, b, c] = content.corners;
     let corners = if shape.turn > 0.0 { [a, b, c] } else { [a, c, b] };
     let mut sheet = Sheet {
@@ -120,9 +124,19 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
         inside: corners.into_iter().zip(0..).collect(),
         outside: corners.to_vec(),
     };
-    border.into_iter().for_each(|point| sheet.insert(point));
+    for k in 0..3_u8 {
+        // Sides in the order of the corners here.
+        let (side, is_turned) = if shape.turn > 0.0 { (k, false) } else { (2 - k, true) };
+        let mut points = arrangement.on_edge(face, side);
+        if is_turned {
+            points.reverse();
+        }
+        sheet.triangulation.insert_on_side(k, points.iter().map(|&p| &arrangement.points[p as usize]));
+        sheet.inside.extend(points.iter().copied().zip(sheet.outside.len() as u32..));
+        sheet.outside.extend(points);
+    }
     sheet.fill(face);
-    let facet = |triangle| Facet { corners: sheet.facet(triangle, shape.turn), cover: cover.clone() };
+    let facet = |triangle| Facet { corners: sheet.facet(triangle, shape.turn), face, others: Vec::new() };
     (0..sheet.triangulation.triangles.len()).map(facet).collect()
 }
 
@@ -132,7 +146,7 @@ fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     let mut sheet = Sheet {
         arrangement,
         triangulation: Triangulation::new(first.axis, helpers.each_ref()),
-        inside: HashMap::new(),
+        inside: FxHashMap::default(),
         outside: vec![NONE; 3],
     };
     let borders: Vec<Vec<u32>> = faces.iter().map(|&face| border(arrangement, face)).collect();
@@ -153,9 +167,9 @@ fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     let turn = |face: u32| arrangement.faces[face as usize].turn;
     let mut facets = Vec::new();
     for (triangle, faces) in covers.into_iter().enumerate() {
-        if let Some(&first) = faces.first() {
-            let cover = faces.iter().map(|&face| Covering { face, is_along: turn(face) == turn(first) }).collect();
-            facets.push(Facet { corners: sheet.facet(triangle, turn(first)), cover });
+        if let Some((&face, others)) = faces.split_first() {
+            let others = others.iter().map(|&other| Covering { face: other, is_along: turn(other) == turn(face) });
+            facets.push(Facet { corners: sheet.facet(triangle, turn(face)), face, others: others.collect() });
         }
     }
     facets
@@ -178,9 +192,9 @@ fn inside_of(sheet: &Sheet, turn: f64, border: &[u32]) -> Vec<u32> {
     let sides = (0..numbers.len()).map(|k| (numbers[k], numbers[(k + 1) % numbers.len()]));
     let sides: Vec<(u32, u32)> = sides.map(|(a, b)| if turn > 0.0 { (a, b) } else { (b, a) }).collect();
     let triangulation = &sheet.triangulation;
-    let is_border: std::collections::HashSet<(u32, u32)> = sides.iter().copied().collect();
+    let is_border: FxHashSet<(u32, u32)> = sides.iter().copied().collect();
     let mut found = Vec::new();
-    let mut seen = std::collections::HashSet::new();
+    let mut seen = FxHashSet::default();
     let mut stack: Vec<u32> = sides.iter().filter_map(|&(a, b)| Some(triangulation.along(a, b)?.0)).collect();
     while let Some(triangle) = stack.pop() {
         if !seen.insert(triangle) {

@@ -21,9 +21,11 @@ mod contact;
 mod facets;
 mod operand;
 mod parts;
+mod relevance;
 mod result;
 mod triangulation;
 mod union_find;
+mod winding;
 
 pub use arrangement::Counts;
 pub use result::Outcome;
@@ -71,16 +73,17 @@ impl Expression {
 /// Evaluates an expression over closed, consistently oriented meshes without collapsed triangles.
 pub(super) fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
     let operands = Operands::new(meshes);
-    let arrangement = Arrangement::new(&operands);
+    let arrangement = Arrangement::new(&operands, expression);
     let facets = facets::divide(&arrangement);
-    let mut is_divided = vec![false; operands.triangle_count()];
+    // Triangles that stay whole, if they stay.
+    let mut is_whole = arrangement.is_relevant.clone();
     for face in arrangement.touched() {
-        is_divided[arrangement.triangles[face as usize] as usize] = true;
+        is_whole[arrangement.triangles[face as usize] as usize] = false;
     }
-    let parts = Parts::new(&operands, &arrangement, &facets, &is_divided, |inside| expression.contains(inside));
+    let parts = Parts::new(&operands, &arrangement, &facets, &is_whole, |inside| expression.contains(inside));
     let mut counts = arrangement.counts;
     counts.divided = arrangement.touched().count() as u64;
     counts.facets = facets.len() as u64;
     (counts.parts, counts.rays) = (parts.count, parts.rays);
-    result::assemble(&operands, &arrangement, &facets, &is_divided, &parts, counts)
+    result::assemble(&operands, &arrangement, &facets, &is_whole, &parts, counts)
 }

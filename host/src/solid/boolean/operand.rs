@@ -89,7 +89,8 @@ impl<'a> Operands<'a> {
     pub fn pairs(&self) -> Vec<[u32; 2]> {
         let count = self.meshes.len() as u32;
         let touching = |&(i, j): &(u32, u32)| self.sorted(i).bounds().touches(self.sorted(j).bounds());
-        let tasks: Vec<(u32, u32)> = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).filter(touching).collect();
+        let tasks: Vec<(u32, u32)> =
+            (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).filter(touching).collect();
         let found: Vec<Vec<[u32; 2]>> = tasks
             .into_par_iter()
             .map(|(i, j)| {

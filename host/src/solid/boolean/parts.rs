@@ -4,11 +4,10 @@ use super::arrangement::Arrangement;
 use super::facets::Facet;
 use super::operand::Operands;
 use super::union_find::UnionFind;
-use crate::numeric::bounds::Bounds;
-use crate::numeric::implicit::{Definition, Point, side_of, turn};
-use glam::DVec3;
+use super::winding::winding;
+use crate::numeric::implicit::{Definition, Point};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// What becomes of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +24,7 @@ pub enum Fate {
 pub struct Parts {
     nodes: UnionFind,
     vertices: usize,
-    fates: HashMap<u32, Fate>,
+    fates: FxHashMap<u32, Fate>,
     /// Number of parts.
     pub count: u64,
     /// Rays that were sent.
@@ -43,21 +42,21 @@ struct Sample {
 impl Parts {
     /// Finds the parts and decides what becomes of each.
     ///
-    /// - `is_divided`: whether a triangle, counted over all operands, became facets.
+    /// - `is_whole`: whether a triangle, counted over all operands, may matter and did not become facets.
     /// - `inside`: whether a point belongs to the result, by whether it is in each operand.
     pub fn new(
         operands: &Operands,
         arrangement: &Arrangement,
         facets: &[Facet],
-        is_divided: &[bool],
+        is_whole: &[bool],
         inside: impl Fn(&[bool]) -> bool + Sync,
     ) -> Parts {
         let vertices = operands.vertex_count();
         let mut nodes = UnionFind::new(vertices + facets.len());
         for (operand, mesh) in operands.meshes().iter().enumerate() {
             let first = operands.first_vertex(operand as u32);
-            let divided = &is_divided[operands.first_triangle(operand as u32) as usize..];
-            for (triangle, _) in mesh.triangles.iter().zip(divided).filter(|(_, divided)| !**divided) {
+            let whole = &is_whole[operands.first_triangle(operand as u32) as usize..];
+            for (triangle, _) in mesh.triangles.iter().zip(whole).filter(|(_, whole)| **whole) {
                 nodes.join(triangle[0] + first, triangle[1] + first);
                 nodes.join(triangle[1] + first, triangle[2] + first);
             }
@@ -71,18 +70,14 @@ impl Parts {
                 nodes.join((vertices + index) as u32, vertex);
             }
         }
-        join_neighbours(&mut nodes, vertices as u32, facets);
-        let samples = samples(operands, &mut nodes, facets, is_divided);
-        let fates: Vec<(Fate, u64)> = samples
-            .par_iter()
-            .map(|sample| {
-                let mut rays = 0;
-                (fate(operands, arrangement, facets, sample, &inside, &mut rays), rays)
-            })
-            .collect();
-        let count = samples.len() as u64;
+        join_neighbours(&mut nodes, operands, arrangement, facets);
+        let samples = samples(operands, &mut nodes, facets, is_whole);
+        let fates: Vec<(Fate, u64)> =
+            samples.par_iter().map(|sample| fate(operands, arrangement, facets, sample, &inside)).collect();
         let rays = fates.iter().map(|(_, rays)| rays).sum();
-        let fates = samples.iter().zip(&fates).map(|(sample, (fate, _))| (sample.root, *fate)).collect();
+        let fates = fates.into_iter().map(|(fate, _)| fate);
+        let count = samples.len() as u64;
+        let fates = samples.iter().zip(fates).map(|(sample, fate)| (sample.root, fate)).collect();
         Parts { nodes, vertices, fates, count, rays }
     }
 
@@ -97,26 +92,36 @@ impl Parts {
     }
 }
 
-/// Joins facets that are alone on the two sides of an edge.
-fn join_neighbours(nodes: &mut UnionFind, first: u32, facets: &[Facet]) {
-    let mut sides: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * facets.len());
-    for (index, facet) in facets.iter().enumerate() {
+/// Joins facets that are alone on the two sides of an edge, of the same operands: nothing else is there.
+///
+/// Operands differ where a face that cannot matter was left out.
+fn join_neighbours(nodes: &mut UnionFind, operands: &Operands, arrangement: &Arrangement, facets: &[Facet]) {
+    let first = operands.vertex_count() as u32;
+    let operand = |face: u32| operands.of_triangle(arrangement.triangles[face as usize]);
+    let are_alike = |one: u32, two: u32| {
+        let cover = |index: u32| facets[(index - first) as usize].cover().map(|c| (operand(c.face), c.is_along));
+        cover(one).eq(cover(two))
+    };
+    let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * facets.len());
+    for (facet, index) in facets.iter().zip(first..) {
         for k in 0..3 {
             let (a, b) = (facet.corners[k], facet.corners[(k + 1) % 3]);
-            sides.push((a.min(b), a.max(b), first + index as u32));
+            sides.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), index));
         }
     }
     sides.par_sort_unstable();
-    for group in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        if let [one, two] = group {
-            nodes.join(one.2, two.2);
+    for group in sides.chunk_by(|a, b| a.0 == b.0) {
+        if let [one, two] = group
+            && are_alike(one.1, two.1)
+        {
+            nodes.join(one.1, two.1);
         }
     }
 }
 
-fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_divided: &[bool]) -> Vec<Sample> {
+fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_whole: &[bool]) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::new();
-    let mut known: HashMap<u32, usize> = HashMap::new();
+    let mut known: FxHashMap<u32, usize> = FxHashMap::default();
     let mut place = |samples: &mut Vec<Sample>, root: u32| {
         *known.entry(root).or_insert_with(|| {
             samples.push(Sample { root, vertex: None, facet: None });
@@ -131,9 +136,9 @@ fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_divi
     }
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let first = operands.first_vertex(operand as u32);
-        let divided = &is_divided[operands.first_triangle(operand as u32) as usize..];
+        let whole = &is_whole[operands.first_triangle(operand as u32) as usize..];
         let mut last = u32::MAX;
-        for (triangle, _) in mesh.triangles.iter().zip(divided).filter(|(_, divided)| !**divided) {
+        for (triangle, _) in mesh.triangles.iter().zip(whole).filter(|(_, whole)| **whole) {
             let root = nodes.find(triangle[0] + first);
             if root != last {
                 let sample = place(&mut samples, root);
@@ -145,6 +150,36 @@ fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_divi
     samples
 }
 
+/// How often each operand goes along the part of a sample less how often against it; the sample's facet has no other
+/// sides.
+fn steps(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], sample: &Sample) -> Vec<i32> {
+    let mut steps = vec![0; operands.meshes().len()];
+    match (sample.vertex, sample.facet) {
+        (Some(vertex), _) => steps[operands.of_vertex(vertex) as usize] = 1,
+        (None, Some(facet)) => {
+            for covering in facets[facet as usize].cover() {
+                let operand = operands.of_triangle(arrangement.triangles[covering.face as usize]);
+                steps[operand as usize] += if covering.is_along { 1 } else { -1 };
+            }
+        }
+        (None, None) => {}
+    }
+    steps
+}
+
+/// Asks by rays which operands a part lies in; those that it is part of itself are left out.
+fn ask(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], sample: &Sample) -> (Vec<bool>, u64) {
+    let point = match (sample.vertex, sample.facet) {
+        (Some(vertex), _) => Point::new(Definition::Given(operands.vertex(vertex))),
+        (None, Some(facet)) => Point::middle(facets[facet as usize].corners.map(|p| &arrangement.points[p as usize])),
+        (None, None) => return (vec![false; operands.meshes().len()], 0),
+    };
+    let mut rays = 0;
+    let steps = steps(operands, arrangement, facets, sample);
+    let is_in = |(step, operand): (i32, u32)| step == 0 && winding(operands, operand, &point, &mut rays) > 0;
+    (steps.into_iter().zip(0..).map(is_in).collect(), rays)
+}
+
 /// What becomes of the part of a sample.
 fn fate(
     operands: &Operands,
@@ -152,87 +187,16 @@ fn fate(
     facets: &[Facet],
     sample: &Sample,
     inside: impl Fn(&[bool]) -> bool,
-    rays: &mut u64,
-) -> Fate {
-    let count = operands.meshes().len();
-    // Winding numbers of all operands in front of the part and behind it.
-    let mut front = vec![None; count];
-    let mut behind = vec![None; count];
-    let mut step = vec![0; count];
-    let point = match (sample.vertex, sample.facet) {
-        (Some(vertex), _) => {
-            step[operands.of_vertex(vertex) as usize] = 1;
-            Point::new(Definition::Given(operands.vertex(vertex)))
-        }
-        (None, Some(facet)) => {
-            let facet = &facets[facet as usize];
-            for covering in &facet.cover {
-                let operand = operands.of_triangle(arrangement.triangles[covering.face as usize]);
-                step[operand as usize] += if covering.is_along { 1 } else { -1 };
-            }
-            Point::middle(facet.corners.map(|p| &arrangement.points[p as usize]))
-        }
-        (None, None) => return Fate::Dropped,
+) -> (Fate, u64) {
+    let (state, rays) = ask(operands, arrangement, facets, sample);
+    let steps = steps(operands, arrangement, facets, sample);
+    let side = |is_in: fn(i32) -> bool| -> Vec<bool> {
+        steps.iter().zip(&state).map(|(&step, &state)| if step == 0 { state } else { is_in(step) }).collect()
     };
-    for operand in 0..count {
-        (behind[operand], front[operand]) = match step[operand] {
-            0 => {
-                let is_inside = winding(operands, operand as u32, &point, rays) > 0;
-                (Some(is_inside), Some(is_inside))
-            }
-            along => (Some(along > 0), Some(along < 0)),
-        };
-    }
-    let result = |side: Vec<Option<bool>>| inside(&side.into_iter().map(|s| s.unwrap_or(false)).collect::<Vec<_>>());
-    match (result(behind), result(front)) {
+    let fate = match (inside(&side(|step| step > 0)), inside(&side(|step| step < 0))) {
         (true, false) => Fate::Kept,
         (false, true) => Fate::Turned,
         _ => Fate::Dropped,
-    }
-}
-
-/// How often an operand winds around a point that is not on its surface.
-///
-/// Counts the triangles beside a ray along x. The ray is thought to be moved a little along y and much less along z, so
-/// that it meets neither vertex nor edge.
-fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64) -> i32 {
-    let bounds = operands.sorted(operand).bounds();
-    let near = point.bounds();
-    if !bounds.touches(near) {
-        return 0;
-    }
-    *rays += 1;
-    let mesh = operands.meshes()[operand as usize];
-    let beside = Bounds { min: near.min, max: near.max.with_x(f64::INFINITY) };
-    let mut winding = 0;
-    operands.sorted(operand).touching(beside, |triangle| {
-        let corners = mesh.corners(triangle as usize);
-        if Bounds::of(corners).touches(beside) {
-            winding += passes(point, corners);
-        }
-    });
-    winding
-}
-
-/// 1 if the ray along x leaves through the front of a triangle, -1 if through its back, 0 if not at all.
-fn passes(point: &Point, corners: [DVec3; 3]) -> i32 {
-    let [a, b, c] = corners.map(|corner| Point::new(Definition::Given(corner)));
-    let facing = turn(0, &a, &b, &c);
-    if facing == 0.0 {
-        return 0;
-    }
-    for (from, to) in [(&a, &b), (&b, &c), (&c, &a)] {
-        let mut turns = turn(0, point, from, to);
-        if turns == 0.0 {
-            // The derivatives of the turn by y and by z.
-            let (p, q) = (from.near(), to.near());
-            let by = [p.z - q.z, q.y - p.y];
-            turns = if by[0] != 0.0 { by[0] } else { by[1] };
-        }
-        if turns * facing < 0.0 {
-            return 0;
-        }
-    }
-    let is_ahead = side_of(corners, point) * facing > 0.0;
-    if is_ahead { facing as i32 } else { 0 }
+    };
+    (fate, rays)
 }

@@ -5,12 +5,14 @@ use super::facets::Facet;
 use super::operand::Operands;
 use super::parts::{Fate, Parts};
 use crate::mesh::Mesh;
-use std::collections::HashMap;
+use glam::DVec3;
+use rustc_hash::FxHashMap;
 
 /// What an operation gives.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// Its border.
+    /// Its border. Normals and parameters of the corners are there if all operands have them; surfaces too, those of the
+    /// second operand counted on from those of the first.
     pub mesh: Mesh,
     /// For each triangle the operand and the triangle of that operand that it is part of.
     pub sources: Vec<[u32; 2]>,
@@ -23,17 +25,18 @@ pub fn assemble(
     operands: &Operands,
     arrangement: &Arrangement,
     facets: &[Facet],
-    is_divided: &[bool],
+    is_whole: &[bool],
     parts: &Parts,
     counts: Counts,
 ) -> Outcome {
+    let tables = Tables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let operand = operand as u32;
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
         for (index, triangle) in mesh.triangles.iter().enumerate() {
-            if is_divided[first as usize + index] {
+            if !is_whole[first as usize + index] {
                 continue;
             }
             let fate = parts.of_vertex(triangle[0] + first_vertex);
@@ -49,9 +52,10 @@ pub fn assemble(
                 *number
             });
             outcome.push(corners, fate, [operand, index as u32]);
+            tables.copy(&mut outcome.mesh, mesh, operand, index, fate);
         }
     }
-    let mut of_point: HashMap<u32, u32> = HashMap::new();
+    let mut of_point: FxHashMap<u32, u32> = FxHashMap::default();
     for (index, facet) in facets.iter().enumerate() {
         let fate = parts.of_facet(index);
         if fate == Fate::Dropped {
@@ -70,10 +74,12 @@ pub fn assemble(
         });
         // Of faces that coincide the first that looks the right way gives its surface.
         let wanted = fate == Fate::Kept;
-        let cover = facet.cover.iter().find(|c| c.is_along == wanted).or(facet.cover.first());
-        let triangle = cover.map_or(0, |c| arrangement.triangles[c.face as usize]);
+        let face = facet.cover().find(|c| c.is_along == wanted).map_or(facet.face, |c| c.face);
+        let triangle = arrangement.triangles[face as usize];
         let operand = operands.of_triangle(triangle);
-        outcome.push(corners, fate, [operand, triangle - operands.first_triangle(operand)]);
+        let index = triangle - operands.first_triangle(operand);
+        outcome.push(corners, fate, [operand, index]);
+        tables.interpolate(&mut outcome.mesh, operands.meshes()[operand as usize], operand, index as usize);
     }
     outcome
 }
@@ -83,4 +89,82 @@ impl Outcome {
         self.mesh.triangles.push(if fate == Fate::Turned { [a, c, b] } else { [a, b, c] });
         self.sources.push(source);
     }
+}
+
+/// What the triangles of all operands have besides their corners.
+struct Tables {
+    normals: bool,
+    parameters: bool,
+    /// Number of the first surface of each operand; none if an operand has no surfaces.
+    surfaces: Vec<u32>,
+}
+
+impl Tables {
+    fn of(meshes: &[&Mesh]) -> Tables {
+        let all = |has: fn(&Mesh) -> bool| meshes.iter().all(|mesh| mesh.triangles.is_empty() || has(mesh));
+        let mut surfaces = Vec::new();
+        if all(|mesh| !mesh.surfaces.is_empty()) {
+            let mut first = 0;
+            for mesh in meshes {
+                surfaces.push(first);
+                first += mesh.surfaces.iter().max().map_or(0, |last| last + 1);
+            }
+        }
+        Tables {
+            normals: all(|mesh| !mesh.corner_normals.is_empty()),
+            parameters: all(|mesh| !mesh.corner_parameters.is_empty()),
+            surfaces,
+        }
+    }
+
+    /// For a whole triangle.
+    fn copy(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize, fate: Fate) {
+        let is_turned = fate == Fate::Turned;
+        if self.normals {
+            let [a, b, c] = mesh.corner_normals[triangle];
+            result.corner_normals.push(if is_turned { [-a, -c, -b] } else { [a, b, c] });
+        }
+        if self.parameters {
+            let [a, b, c] = mesh.corner_parameters[triangle];
+            result.corner_parameters.push(if is_turned { [a, c, b] } else { [a, b, c] });
+        }
+        self.surface(result, mesh, operand, triangle);
+    }
+
+    fn surface(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize) {
+        if let Some(first) = self.surfaces.get(operand as usize) {
+            result.surfaces.push(first + mesh.surfaces[triangle]);
+        }
+    }
+
+    /// For the part of a triangle that was pushed last.
+    fn interpolate(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize) {
+        self.surface(result, mesh, operand, triangle);
+        let Some(last) = result.triangles.len().checked_sub(1).filter(|_| self.normals || self.parameters) else {
+            return;
+        };
+        let corners = mesh.corners(triangle);
+        let weights = result.corners(last).map(|point| barycentric(corners, point));
+        if self.normals {
+            let normals = mesh.corner_normals[triangle];
+            let along = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(result.area_vector(last)) >= 0.0;
+            let sign = if along { 1.0 } else { -1.0 };
+            let mean = |w: [f64; 3]| normals[0] * w[0] + normals[1] * w[1] + normals[2] * w[2];
+            result.corner_normals.push(weights.map(|w| mean(w).normalize_or(normals[0]) * sign));
+        }
+        if self.parameters {
+            let uv = mesh.corner_parameters[triangle];
+            result.corner_parameters.push(weights.map(|w| uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2]));
+        }
+    }
+}
+
+/// Weights of the corners of a triangle that give a point of it, each 0..=1.
+fn barycentric([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let whole = normal.length_squared();
+    let part = |p: DVec3, q: DVec3| ((p - point).cross(q - point).dot(normal) / whole).clamp(0.0, 1.0);
+    let (u, v) = (part(c, a), part(a, b));
+    let v = v.min(1.0 - u);
+    [1.0 - u - v, u, v]
 }

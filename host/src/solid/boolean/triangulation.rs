@@ -8,8 +8,9 @@
 
 use crate::numeric::implicit::{Point, compare, others, turn};
 use robust::{Coord, incircle};
+use rustc_hash::FxHashSet;
 use std::cmp::Ordering;
-use std::collections::{HashSet, VecDeque};
+use std::collections::VecDeque;
 
 /// No triangle: the edge is on the border.
 pub const NONE: u32 = u32::MAX;
@@ -22,9 +23,11 @@ pub struct Triangulation<'a> {
     pub triangles: Vec<[u32; 3]>,
     /// The triangle beyond the side from corner k to the next, or [`NONE`].
     pub beyond: Vec<[u32; 3]>,
+    /// Sides of the first triangle that each point is on, a bit for each.
+    sides: Vec<u8>,
     /// Some triangle at each point.
     at: Vec<u32>,
-    fixed: HashSet<[u32; 2]>,
+    fixed: FxHashSet<[u32; 2]>,
     last: u32,
 }
 
@@ -38,15 +41,19 @@ impl<'a> Triangulation<'a> {
         Triangulation {
             axis,
             points: corners.to_vec(),
+            sides: vec![0b101, 0b011, 0b110],
             triangles: vec![[0, 1, 2]],
             beyond: vec![[NONE; 3]],
             at: vec![0; 3],
-            fixed: HashSet::new(),
+            fixed: FxHashSet::default(),
             last: 0,
         }
     }
 
     fn turn(&self, a: u32, b: u32, c: u32) -> f64 {
+        if self.sides[a as usize] & self.sides[b as usize] & self.sides[c as usize] != 0 {
+            return 0.0;
+        }
         turn(self.axis, self.points[a as usize], self.points[b as usize], self.points[c as usize])
     }
 
@@ -57,13 +64,12 @@ impl<'a> Triangulation<'a> {
 
     /// Adds a point of the first triangle; returns its number, that of an earlier one at the same place if there is one.
     pub fn insert(&mut self, point: &'a Point) -> u32 {
-        let p = self.points.len() as u32;
-        self.points.push(point);
-        self.at.push(NONE);
+        let p = self.push(point, 0);
         let (triangle, turns) = self.locate(p);
         let on = |k: usize| turns[k] == 0.0;
         if let Some(k) = (0..3).find(|&k| on(k) && on((k + 2) % 3)) {
             self.points.pop();
+            self.sides.pop();
             self.at.pop();
             return self.triangles[triangle as usize][k];
         }
@@ -73,6 +79,25 @@ impl<'a> Triangulation<'a> {
         }
         self.last = self.at[p as usize];
         p
+    }
+
+    /// Adds points on side `k` of the first triangle, in order from corner `k` to the next, before all others.
+    pub fn insert_on_side(&mut self, k: u8, points: impl IntoIterator<Item = &'a Point>) {
+        let (mut from, to) = (u32::from(k), (u32::from(k) + 1) % 3);
+        for point in points {
+            let p = self.push(point, 1 << k);
+            if let Some((triangle, side)) = self.along(from, to) {
+                self.split_side(triangle, side, p);
+            }
+            from = p;
+        }
+    }
+
+    fn push(&mut self, point: &'a Point, sides: u8) -> u32 {
+        self.points.push(point);
+        self.sides.push(sides);
+        self.at.push(NONE);
+        self.points.len() as u32 - 1
     }
 
     /// The triangle that a point is in, and how the point turns from each side.
@@ -302,6 +327,7 @@ impl<'a> Triangulation<'a> {
             let Some((triangle, k)) = self.along(a, b) else { continue };
             let c = self.triangles[triangle as usize][(k + 2) % 3];
             let across = self.beyond[triangle as usize][k];
+            debug_assert!(!self.is_fixed(a, b), "edges that must stay cross");
             if across == NONE || patience == 0 {
                 continue;
             }
@@ -344,7 +370,10 @@ mod tests {
                 let next = t.beyond[index][k];
                 if next != NONE {
                     let side = t.side(next, corners[(k + 1) % 3]);
-                    assert_eq!((t.beyond[next as usize][side], t.triangles[next as usize][(side + 1) % 3]), (index as u32, corners[k]));
+                    assert_eq!(
+                        (t.beyond[next as usize][side], t.triangles[next as usize][(side + 1) % 3]),
+                        (index as u32, corners[k])
+                    );
                 }
             }
         }
@@ -355,9 +384,8 @@ mod tests {
     fn points_and_lines_on_a_grid_are_all_there() {
         // A grid is full of points on one line and on one circle.
         let corners = [given(0.0, 0.0), given(16.0, 0.0), given(0.0, 16.0)];
-        let grid: Vec<Point> = (0..=16)
-            .flat_map(|x| (0..=16 - x).map(move |y| given(f64::from(x), f64::from(y))))
-            .collect();
+        let grid: Vec<Point> =
+            (0..=16).flat_map(|x| (0..=16 - x).map(move |y| given(f64::from(x), f64::from(y)))).collect();
         let mut t = Triangulation::new(2, corners.each_ref());
         let numbers: Vec<u32> = grid.iter().map(|p| t.insert(p)).collect();
         assert_eq!(t.points.len(), 17 * 18 / 2);
@@ -366,7 +394,8 @@ mod tests {
         let number = |x: u32, y: u32| {
             numbers[grid.iter().position(|p| p.near() == DVec3::new(x.into(), y.into(), 0.0)).unwrap()]
         };
-        for (from, to) in [((0, 0), (8, 5)), ((1, 2), (1, 15)), ((4, 2), (11, 3)), ((2, 3), (10, 6)), ((2, 14), (5, 5))] {
+        for (from, to) in [((0, 0), (8, 5)), ((1, 2), (1, 15)), ((4, 2), (11, 3)), ((2, 3), (10, 6)), ((2, 14), (5, 5))]
+        {
             t.fix(number(from.0, from.1), number(to.0, to.1));
             check(&t, 128.0);
         }
@@ -380,7 +409,8 @@ mod tests {
     fn random_points_and_lines_from_a_star_are_all_there() {
         let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(5);
         let corners = [given(-4.0, -2.0), given(4.0, -2.0), given(0.0, 4.0)];
-        let points: Vec<Point> = (0..300).map(|_| given(random.random_range(-0.9..0.9), random.random_range(-0.9..0.9))).collect();
+        let points: Vec<Point> =
+            (0..300).map(|_| given(random.random_range(-0.9..0.9), random.random_range(-0.9..0.9))).collect();
         let mut t = Triangulation::new(2, corners.each_ref());
         let numbers: Vec<u32> = points.iter().map(|p| t.insert(p)).collect();
         for &to in &numbers[1..40] {

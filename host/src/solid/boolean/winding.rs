@@ -1,0 +1,52 @@
+//! How often a closed surface winds around a point, by one ray.
+
+use super::operand::Operands;
+use crate::numeric::bounds::Bounds;
+use crate::numeric::implicit::{Definition, Point, side_of, turn};
+use glam::DVec3;
+
+/// How often an operand winds around a point that is not on its surface.
+///
+/// Counts the triangles beside a ray along x. The ray is thought to be moved a little along y and much less along z, so
+/// that it meets neither vertex nor edge.
+pub fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64) -> i32 {
+    let bounds = operands.sorted(operand).bounds();
+    let near = point.bounds();
+    if !bounds.touches(near) {
+        return 0;
+    }
+    *rays += 1;
+    let mesh = operands.meshes()[operand as usize];
+    let beside = Bounds { min: near.min, max: near.max.with_x(f64::INFINITY) };
+    let mut winding = 0;
+    operands.sorted(operand).touching(beside, |triangle| {
+        let corners = mesh.corners(triangle as usize);
+        if Bounds::of(corners).touches(beside) {
+            winding += passes(point, corners);
+        }
+    });
+    winding
+}
+
+/// 1 if the ray along x leaves through the front of a triangle, -1 if through its back, 0 if not at all.
+fn passes(point: &Point, corners: [DVec3; 3]) -> i32 {
+    let [a, b, c] = corners.map(|corner| Point::new(Definition::Given(corner)));
+    let facing = turn(0, &a, &b, &c);
+    if facing == 0.0 {
+        return 0;
+    }
+    for (from, to) in [(&a, &b), (&b, &c), (&c, &a)] {
+        let mut turns = turn(0, point, from, to);
+        if turns == 0.0 {
+            // The derivatives of the turn by y and by z.
+            let (p, q) = (from.near(), to.near());
+            let by = [p.z - q.z, q.y - p.y];
+            turns = if by[0] != 0.0 { by[0] } else { by[1] };
+        }
+        if turns * facing < 0.0 {
+            return 0;
+        }
+    }
+    let is_ahead = side_of(corners, point) * facing > 0.0;
+    if is_ahead { facing as i32 } else { 0 }
+}
