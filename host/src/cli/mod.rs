@@ -2,10 +2,13 @@
 
 #[macro_use]
 mod say;
+mod boolean;
+mod check;
 mod convert;
 mod exit;
 mod functions;
 mod job;
+mod measure;
 mod octree;
 mod plan;
 mod progress;
@@ -40,8 +43,20 @@ pub struct Row {
 }
 
 /// Every sub-command.
-pub const COMMANDS: &[Row] =
-    &[job::DEMO, job::RUN, show::ROW, render::ROW, plan::ROW, octree::ROW, study::ROW, convert::ROW, functions::ROW];
+pub const COMMANDS: &[Row] = &[
+    job::DEMO,
+    job::RUN,
+    show::ROW,
+    render::ROW,
+    plan::ROW,
+    octree::ROW,
+    study::ROW,
+    convert::ROW,
+    boolean::ROW,
+    check::ROW,
+    measure::ROW,
+    functions::ROW,
+];
 
 /// The command line as clap knows it.
 pub fn command() -> Command {

@@ -71,6 +71,18 @@ impl Mesh {
         }
     }
 
+    /// Counts triangles that have the same three positions as an earlier one, however they are turned.
+    pub fn duplicate_triangles(&self) -> usize {
+        let same = self.first_of_each_position();
+        let corners = |triangle: &[u32; 3]| {
+            let mut corners = triangle.map(|vertex| same[vertex as usize]);
+            corners.sort_unstable();
+            corners
+        };
+        let mut seen = std::collections::HashSet::with_capacity(self.triangles.len());
+        self.triangles.iter().filter(|triangle| !seen.insert(corners(triangle))).count()
+    }
+
     /// Counts what the edges say of the mesh.
     pub fn edge_report(&self) -> EdgeReport {
         let table = EdgeTable::of(self);

@@ -85,20 +85,17 @@ impl Sorted {
         let (corners, other_corners) = (&corners, &other_corners);
         // Breadth first, until there is work for many threads.
         let mut tasks = vec![(one, two)];
-        while tasks.len() < TASKS && tasks.iter().any(|(one, two)| one.level + two.level > 0) {
-            tasks = tasks.into_iter().flat_map(|task| self.descend(other, task)).collect();
-            if tasks.is_empty() {
-                return Vec::new();
-            }
+        while !tasks.is_empty() && tasks.len() < TASKS && tasks.iter().any(|(one, two)| one.level + two.level > 0) {
+            let mut next = Vec::new();
+            tasks.into_iter().for_each(|task| self.descend(other, task, &mut next));
+            tasks = next;
         }
         let search = |task: (Place, Place)| {
             let mut pairs = Vec::new();
             let mut stack = vec![task];
             while let Some((one, two)) = stack.pop() {
                 if one.level + two.level > 0 {
-                    let next = stack.len();
-                    stack.extend(self.descend(other, (one, two)));
-                    stack[next..].reverse();
+                    self.descend(other, (one, two), &mut stack);
                     continue;
                 }
                 let near = other.at(two);
@@ -153,17 +150,16 @@ impl Sorted {
         (first..self.levels[level].len().min(first + FAN)).map(move |index| Place { level, index })
     }
 
-    /// The pairs under a pair of boxes, the larger of which is opened, that touch.
-    fn descend(&self, other: &Sorted, (one, two): (Place, Place)) -> Vec<(Place, Place)> {
+    /// Adds the pairs under a pair of boxes, the larger of which is opened, that touch; the pair itself at the bottom.
+    fn descend(&self, other: &Sorted, (one, two): (Place, Place), found: &mut Vec<(Place, Place)>) {
         let (a, b) = (self.at(one), other.at(two));
-        let touching = |one: Place, two: Place| self.at(one).touches(other.at(two)).then_some((one, two));
-        let open_first = two.level == 0 || one.level > 0 && a.size().max_element() >= b.size().max_element();
+        let is_first_larger = a.size().max_element() >= b.size().max_element();
         if one.level + two.level == 0 {
-            vec![(one, two)]
-        } else if open_first {
-            self.under(one).filter_map(|one| touching(one, two)).collect()
+            found.push((one, two));
+        } else if two.level == 0 || one.level > 0 && is_first_larger {
+            found.extend(self.under(one).filter(|&one| self.at(one).touches(b)).map(|one| (one, two)));
         } else {
-            other.under(two).filter_map(|two| touching(one, two)).collect()
+            found.extend(other.under(two).filter(|&two| other.at(two).touches(a)).map(|two| (one, two)));
         }
     }
 }

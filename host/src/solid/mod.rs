@@ -2,9 +2,11 @@
 
 pub mod boolean;
 mod import;
+mod mass;
 
 pub use boolean::{Counts, Expression, Outcome};
 pub use import::SolidError;
+pub use mass::Mass;
 
 use crate::mesh::Mesh;
 

@@ -262,6 +262,11 @@ impl<'a> Triangulation<'a> {
         let mut from = from;
         // Points on the line divide it.
         while from != to {
+            // Mostly the edge is there; turns of points on one line are the dearest.
+            if self.along(from, to).is_some() || self.along(to, from).is_some() {
+                self.fixed.insert(sorted(from, to));
+                return;
+            }
             let (crossed, reached) = self.crossed(from, to);
             self.uncross(from, reached, crossed);
             self.fixed.insert(sorted(from, reached));
@@ -285,9 +290,6 @@ impl<'a> Triangulation<'a> {
         let mut entry = None;
         for (triangle, k) in self.around(from) {
             let [a, b] = [1, 2].map(|i| self.triangles[triangle as usize][(k + i) % 3]);
-            if a == to || b == to {
-                return (crossed, to);
-            }
             let [left, right] = [self.turn(from, to, b), self.turn(from, to, a)];
             for (corner, turn) in [(a, right), (b, left)] {
                 if turn == 0.0 && self.is_ahead(from, corner, to) {

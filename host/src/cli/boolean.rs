@@ -1,0 +1,95 @@
+//! `peris boolean`: solids from solids.
+
+use super::{Exit, Failure, Row};
+use crate::mesh::{self, Mesh};
+use crate::solid::{Expression, Solid};
+use anyhow::Context;
+use clap::{Args, FromArgMatches, ValueEnum};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub(super) const ROW: Row = Row {
+    name: "boolean",
+    summary: "Unites, intersects or subtracts solids that are given as closed meshes.",
+    arguments: Arguments::augment_args,
+    run: |matches| run(&Arguments::from_arg_matches(matches)?),
+};
+
+/// A set operation on two or more solids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Operation {
+    /// What is in any of them
+    Union,
+    /// What is in all of them
+    Intersection,
+    /// What is in the first and in none of the others
+    Difference,
+    /// What is in an odd number of them
+    SymmetricDifference,
+}
+
+#[derive(Args, Debug)]
+struct Arguments {
+    /// The operation
+    #[arg(value_enum, value_name = "OPERATION")]
+    operation: Operation,
+    /// Closed meshes (.obj, .stl, .ply, .cmesh), two or more
+    #[arg(value_name = "MESH", num_args = 2.., required = true)]
+    meshes: Vec<PathBuf>,
+    /// The file to write; its extension names the format
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Reports as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { operation, meshes, output, json } = arguments;
+    if mesh::Format::of(output).is_none() {
+        return Err(mesh::MeshError::Format { path: output.clone() }.into());
+    }
+    let solids = meshes.iter().map(|path| solid(path)).collect::<Result<Vec<Solid>, Failure>>()?;
+    let all = |range: std::ops::Range<usize>| range.map(Expression::Operand).collect::<Vec<_>>();
+    let expression = match operation {
+        Operation::Union => Expression::Union(all(0..solids.len())),
+        Operation::Intersection => Expression::Intersection(all(0..solids.len())),
+        Operation::Difference => {
+            Expression::difference(Expression::Operand(0), Expression::Union(all(1..solids.len())))
+        }
+        Operation::SymmetricDifference => Expression::SymmetricDifference(all(0..solids.len())),
+    };
+    let start = Instant::now();
+    let (result, outcome) = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
+    let seconds = start.elapsed().as_secs_f64();
+    let mesh = result.mesh();
+    mesh::write(mesh, output)?;
+    let volume = mesh.signed_volume();
+    if *json {
+        let counts = &outcome.counts;
+        let known = serde_json::json!({
+            "file": output, "vertices": mesh.vertices.len(), "triangles": mesh.triangles.len(), "volume": volume,
+            "area": mesh.area(), "seconds": seconds, "pairs": counts.pairs, "contacts": counts.contacts,
+            "points": counts.points, "divided": counts.divided, "facets": counts.facets, "parts": counts.parts,
+            "rays": counts.rays,
+        });
+        say!("{known:#}");
+    } else {
+        let empty = if mesh.triangles.is_empty() { "; the result is empty" } else { "" };
+        say!(
+            "{}: {} vertices, {} triangles, volume {volume}, {:.1} ms{empty}",
+            output.display(),
+            mesh.vertices.len(),
+            mesh.triangles.len(),
+            seconds * 1e3
+        );
+    }
+    Ok(())
+}
+
+/// Reads a mesh that must be a solid.
+pub(super) fn solid(path: &Path) -> Result<Solid, Failure> {
+    let mesh: Mesh = mesh::read(path)?;
+    let solid = Solid::new(mesh).with_context(|| format!("{} is no solid", path.display()));
+    solid.map_err(|error| Failure::new(Exit::Failed, error))
+}
