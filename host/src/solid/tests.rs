@@ -1,5 +1,6 @@
 //! Boolean operations against closed forms and set identities.
 
+use super::Solid;
 use super::boolean::{Expression, Outcome, evaluate};
 use crate::mesh::{Mesh, bunny};
 use crate::numeric::exact::{Exact, cross, dot};
@@ -210,4 +211,109 @@ fn many_turned_cubes_keep_the_identities() {
         let union = volume(&Expression::Union((0..4).map(Expression::Operand).collect()));
         assert!((union - sum).abs() < 1e-13, "{union} {sum}");
     }
+}
+
+/// Pairs of solids that are hard on numbers, by class.
+fn adversarial(class: &str, random: &mut rand_pcg::Pcg64Mcg) -> [Mesh; 2] {
+    let mut number = |low: f64, high: f64| random.random_range(low..high);
+    let half = DVec3::splat(0.5);
+    let unit = cube(-half, half);
+    let axis = |x: f64, y: f64| DVec3::new(x, y, 0.7).normalize();
+    match class {
+        "near coincident" => {
+            let gap = 10f64.powf(number(-15.0, -3.0));
+            let shift = DVec3::new(number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)) * gap;
+            [unit.clone(), moved(&unit, DAffine3::from_translation(shift))]
+        }
+        "tiny rotation" => {
+            let angle = 10f64.powf(number(-12.0, -3.0));
+            let turn = DAffine3::from_axis_angle(axis(number(-1.0, 1.0), number(-1.0, 1.0)), angle);
+            [unit.clone(), moved(&unit, turn)]
+        }
+        "spheres turned a little" => {
+            let sphere = ball(DVec3::ZERO, 1.0, 0.02);
+            let angle = 10f64.powf(number(-15.0, -3.0));
+            let turn = DAffine3::from_axis_angle(axis(number(-1.0, 1.0), number(-1.0, 1.0)), angle);
+            [sphere.clone(), moved(&sphere, turn)]
+        }
+        "needles" => {
+            let thin = 10f64.powf(number(-9.0, -3.0));
+            let needle = cube(DVec3::new(-1.0, -thin, -thin), DVec3::new(1.0, thin, thin));
+            let turn = DAffine3::from_axis_angle(axis(number(-1.0, 1.0), number(-1.0, 1.0)), number(0.0, 3.0));
+            [needle.clone(), moved(&needle, turn)]
+        }
+        "slivers" => {
+            let thin = 10f64.powf(number(-12.0, -3.0));
+            let plate = cube(DVec3::new(-1.0, -thin, -1.0), DVec3::new(1.0, thin, 1.0));
+            let turn = DAffine3::from_rotation_z(number(0.0, 4.0) * thin);
+            [plate.clone(), moved(&plate, turn)]
+        }
+        "tangent spheres" => {
+            let direction = axis(number(-1.0, 1.0), number(-1.0, 1.0));
+            let gap = 10f64.powf(number(-16.0, -6.0));
+            [ball(DVec3::ZERO, 1.0, 0.02), ball(direction * (2.0 - gap), 1.0, 0.02)]
+        }
+        "sizes in one model" => {
+            let size = 10f64.powf(number(-6.0, 0.0));
+            let at = DVec3::new(0.5, number(-0.4, 0.4), number(-0.4, 0.4));
+            [moved(&unit, DAffine3::from_scale(DVec3::splat(1e6))), ball(at * 1e6, size, size * 0.02)]
+        }
+        "far from the origin" => {
+            let far = DVec3::new(1e7, -2e7, 3e7);
+            let shift = DAffine3::from_translation(far);
+            let turn = DAffine3::from_axis_angle(axis(number(-1.0, 1.0), 0.1), number(0.0, 3.0));
+            [moved(&unit, shift), moved(&unit, shift * turn)]
+        }
+        "nested shells" => {
+            let outer = ball(DVec3::ZERO, 1.0, 0.01);
+            let scale = 1.0 - 10f64.powf(number(-15.0, -3.0));
+            [outer.clone(), moved(&outer, DAffine3::from_scale(DVec3::splat(scale)))]
+        }
+        _ => {
+            let bunny = bunny().simplified(500);
+            let gap = 10f64.powf(number(-15.0, -1.0));
+            let turn = DAffine3::from_axis_angle(axis(number(-1.0, 1.0), number(-1.0, 1.0)), gap);
+            [bunny.clone(), moved(&bunny, turn)]
+        }
+    }
+}
+
+#[test]
+fn adversarial_pairs_keep_the_identities() {
+    const CLASSES: [&str; 10] = [
+        "near coincident",
+        "tiny rotation",
+        "spheres turned a little",
+        "needles",
+        "slivers",
+        "tangent spheres",
+        "sizes in one model",
+        "far from the origin",
+        "nested shells",
+        "bunnies turned a little",
+    ];
+    let mut wrong = Vec::new();
+    for class in CLASSES {
+        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(21);
+        for round in 0..12 {
+            let [one, two] = adversarial(class, &mut random);
+            let [union, common, less, either] = all(&one, &two).map(|o| o.mesh);
+            let [a, b] = [exact_volume(&one), exact_volume(&two)];
+            let [u, c, d, e] = [&union, &common, &less, &either].map(exact_volume);
+            // Rounded vertices move by half a unit in their last place, and sweep a volume with the surface.
+            let reach = one.vertices.iter().chain(&two.vertices).fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
+            let bound = 4.0 * f64::EPSILON * reach * (one.area() + two.area());
+            let gaps = [(a + b) - (u + c), d - (a - c), e - (u - c)];
+            let worst = gaps.iter().fold(0.0_f64, |m, gap| m.max(gap.abs()));
+            if worst > bound || c < -bound || d < -bound || u + bound < a.max(b) {
+                wrong.push(format!("{class} {round}: {gaps:?} {bound:e}; {a} {b} {u} {c}"));
+            }
+            for result in [union, common, less, either] {
+                if let Err(error) = Solid::new(result) {
+                    wrong.push(format!("{class} {round}: {error}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
 }
