@@ -2,11 +2,13 @@
 //!
 //! Modelling space is right-handed: x right, y up, z towards the viewer. Lengths are in scene units.
 
+mod composite;
 mod error;
 mod prepared;
 mod shape;
 mod view;
 
+pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
 pub use prepared::{Prepared, PreparedObject};
 pub use shape::{Shape, ShapeError};

@@ -223,11 +223,24 @@ impl Object {
         Ok((mesh, own.unwrap_or(0.0) * stretch))
     }
 
+    /// Triangles within `chord` of the surface after a transformation, in own coordinates.
+    pub(super) fn own_mesh(&self, chord: f64, transform: &DMat4) -> Result<Mesh, ShapeError> {
+        self.shape.mesh(chord / largest_stretch(transform))
+    }
+
     /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
     pub(super) fn chord_error(&self, scene_tolerance: Option<f64>) -> Result<f64, SceneError> {
+        let stretch = largest_stretch(&self.transform);
+        if let Shape::Composite(composite) = &self.shape {
+            let given = self.tolerance.or(scene_tolerance);
+            let own = self.shape.extent().map(|extent| given.map_or(extent * RELATIVE_TOLERANCE, |t| t / stretch));
+            let errors = composite.operands.iter().map(|operand| operand.chord_error(own));
+            let largest = errors.reduce(|a, b| Ok(a?.max(b?))).unwrap_or(Ok(0.0))?;
+            return Ok(largest * stretch);
+        }
         let (mesh, _) = self.mesh(scene_tolerance)?;
         let error = self.shape.chord_error(&mesh).map_err(|source| self.failed(source))?;
-        Ok(error * largest_stretch(&self.transform))
+        Ok(error * stretch)
     }
 
     fn failed(&self, source: ShapeError) -> SceneError {
@@ -241,6 +254,10 @@ impl Shape {
         match self {
             Shape::Sphere { radius } => Some(2.0 * radius * 3f64.sqrt()),
             Shape::Teapot => Some(TEAPOT_DIAGONAL),
+            Shape::Composite(composite) => {
+                let extent = |o: &Object| Some(o.shape.extent()? * largest_stretch(&o.transform));
+                composite.operands.iter().filter_map(extent).reduce(f64::max)
+            }
             Shape::Box { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => None,
         }
     }

@@ -1,6 +1,8 @@
 //! Shapes in their own coordinates, and their triangles.
 
+use super::composite::{Composite, MAX_NESTING};
 use crate::mesh::{self, Mesh, MeshError};
+use crate::solid::SolidError;
 use crate::surface::{self, Sphere, TessellationError, Tolerance, box_faces, chord_error, ground, tessellate};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -21,6 +23,14 @@ pub enum ShapeError {
     /// The surface cannot be approximated to the tolerance.
     #[error(transparent)]
     Tessellation(#[from] TessellationError),
+    /// The surface encloses nothing.
+    #[error("{object} bounds no solid: {source}")]
+    Solid {
+        /// Name of the object.
+        object: String,
+        /// Why.
+        source: SolidError,
+    },
 }
 
 /// The form of an object in its own coordinates.
@@ -51,6 +61,8 @@ pub enum Shape {
         /// The file.
         path: PathBuf,
     },
+    /// A solid made of other objects.
+    Composite(Box<Composite>),
 }
 
 impl Shape {
@@ -63,6 +75,7 @@ impl Shape {
             Shape::Box { .. } => "box",
             Shape::Ground { .. } => "ground",
             Shape::Mesh { .. } => "mesh",
+            Shape::Composite(composite) => composite.operation.word(),
         }
     }
 
@@ -77,12 +90,21 @@ impl Shape {
             Shape::Box { size } => Err(format!("size {size} has a side that is not a length above 0")),
             Shape::Ground { size } if positive(*size) => Ok(()),
             Shape::Ground { size } => Err(format!("size {size} is not a length above 0")),
+            Shape::Composite(composite) if composite.nesting > MAX_NESTING => {
+                Err(format!("solids are nested more than {MAX_NESTING} deep"))
+            }
+            Shape::Composite(composite) => {
+                composite.operands.iter().try_for_each(|o| o.check().map_err(|error| error.to_string()))
+            }
         }
     }
 
     /// Whether it is tessellated from a curved surface that is known exactly.
     pub fn is_exact_and_curved(&self) -> bool {
-        matches!(self, Shape::Teapot | Shape::Sphere { .. })
+        match self {
+            Shape::Composite(composite) => composite.operands.iter().any(|o| o.shape.is_exact_and_curved()),
+            _ => matches!(self, Shape::Teapot | Shape::Sphere { .. }),
+        }
     }
 
     /// Triangles within `chord` of the shape, in own coordinates.
@@ -92,6 +114,7 @@ impl Shape {
     pub fn mesh(&self, chord: f64) -> Result<Mesh, ShapeError> {
         let tolerance = Tolerance::new(chord, LARGEST_TURN_DEGREES);
         match self {
+            Shape::Composite(composite) => composite.mesh(chord),
             Shape::Bunny => Ok(mesh::bunny()),
             Shape::Mesh { path } => Ok(mesh::read(path)?),
             Shape::Teapot => Ok(tessellate(&surface::teapot(), tolerance)?),
@@ -108,7 +131,10 @@ impl Shape {
         let accuracy = match self {
             Shape::Teapot => chord_error(mesh, &surface::teapot(), MEASURED_STEPS)?,
             Shape::Sphere { radius } => chord_error(mesh, &[Sphere::new(DVec3::ZERO, *radius)], MEASURED_STEPS)?,
-            Shape::Box { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => return Ok(0.0),
+            // Composites ask their operands.
+            Shape::Box { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } | Shape::Composite(_) => {
+                return Ok(0.0);
+            }
         };
         Ok(accuracy.maximum)
     }

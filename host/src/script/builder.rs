@@ -1,7 +1,7 @@
 //! The scene while a script builds it.
 
 use crate::illumination::Material;
-use crate::scene::{MAX_OBJECTS, Object, Scene, Shape};
+use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Object, Operation, Scene, Shape};
 use glam::DMat4;
 use std::path::PathBuf;
 
@@ -12,30 +12,92 @@ pub(super) struct Handle(usize);
 /// The scene so far.
 pub(super) struct Builder {
     pub(super) scene: Scene,
+    /// Objects by handle; none where one became part of another.
+    objects: Vec<Option<Object>>,
     /// Where relative paths begin.
     pub(super) folder: PathBuf,
 }
 
 impl Builder {
+    /// An empty scene.
+    pub(super) fn new(folder: PathBuf) -> Builder {
+        Builder { scene: Scene::default(), objects: Vec::new(), folder }
+    }
+
+    /// The scene as it stands.
+    pub(super) fn finish(&self) -> Scene {
+        Scene { objects: self.objects.iter().flatten().cloned().collect(), ..self.scene.clone() }
+    }
+
     /// Adds an object of default material, named after its kind and number.
     pub(super) fn add(&mut self, shape: Shape, tolerance: Option<f64>) -> Result<Handle, String> {
-        let index = self.scene.objects.len();
+        let index = self.objects.len();
         if index >= MAX_OBJECTS {
             return Err(format!("more than {MAX_OBJECTS} objects"));
         }
-        let same = self.scene.objects.iter().filter(|o| o.shape.word() == shape.word()).count();
+        let same = self.objects.iter().flatten().filter(|o| o.shape.word() == shape.word()).count();
         let name = match same {
             0 => shape.word().to_owned(),
             n => format!("{} {}", shape.word(), n + 1),
         };
         let (transform, material) = (DMat4::IDENTITY, Material::default());
-        self.scene.objects.push(Object { name, shape, transform, material, tolerance });
+        self.objects.push(Some(Object { name, shape, transform, material, tolerance }));
         Ok(Handle(index))
     }
 
     /// The object behind a handle.
     pub(super) fn object(&mut self, handle: Option<Handle>) -> Result<&mut Object, String> {
-        handle.and_then(|h| self.scene.objects.get_mut(h.0)).ok_or_else(|| "there is no such object".into())
+        let object = handle.and_then(|h| self.objects.get_mut(h.0)).ok_or("there is no such object")?;
+        object.as_mut().ok_or_else(|| "the object became part of another; copy() it before".into())
+    }
+
+    /// Adds a copy of an object.
+    pub(super) fn copy(&mut self, handle: Option<Handle>) -> Result<Handle, String> {
+        let Object { shape, transform, material, tolerance, .. } = self.object(handle)?.clone();
+        let copy = self.add(shape, tolerance)?;
+        let object = self.object(Some(copy))?;
+        (object.transform, object.material) = (transform, material);
+        Ok(copy)
+    }
+
+    /// Makes one solid of two objects, which are no objects of their own any more; it has the material of the first.
+    pub(super) fn combine(
+        &mut self,
+        operation: Operation,
+        one: Option<Handle>,
+        two: Option<Handle>,
+    ) -> Result<Option<Handle>, String> {
+        if one == two {
+            return Err("an object cannot be combined with itself; copy() it before".into());
+        }
+        self.object(two)?;
+        let first = self.object(one)?.clone();
+        let second = self.object(two)?.clone();
+        let nesting = |object: &Object| if let Shape::Composite(c) = &object.shape { c.nesting } else { 0 };
+        let material = first.material;
+        let composite = match first {
+            // A chain of the same operation is one.
+            Object { shape: Shape::Composite(mut chain), transform, .. }
+                if chain.operation == operation && transform == DMat4::IDENTITY =>
+            {
+                chain.nesting = chain.nesting.max(nesting(&second) + 1);
+                chain.operands.push(second);
+                chain
+            }
+            first => {
+                let nesting = nesting(&first).max(nesting(&second)) + 1;
+                Box::new(Composite { operation, operands: vec![first, second], nesting })
+            }
+        };
+        if composite.nesting > MAX_NESTING {
+            return Err(format!("solids are nested more than {MAX_NESTING} deep"));
+        }
+        for handle in [one, two].into_iter().flatten() {
+            self.objects[handle.0] = None;
+        }
+        let whole = self.add(Shape::Composite(composite), None)?;
+        self.object(Some(whole))?.material = material;
+        Ok(Some(whole))
     }
 
     /// Moves an object by a further transformation, after those before.

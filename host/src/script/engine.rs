@@ -5,7 +5,6 @@ use super::builder::{Builder, Handle};
 use super::error::{self, ScriptError};
 use super::function::Function;
 use super::{Evaluated, FUNCTIONS};
-use crate::scene::Scene;
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, NativeCallContext};
 use std::cell::RefCell;
@@ -30,6 +29,9 @@ const MAX_PRINTED: usize = 10_000;
 /// Words that scripts may not use: they run text and load other files.
 const FORBIDDEN: [&str; 2] = ["eval", "import"];
 
+/// Operators between objects, and the functions that they stand for.
+const OPERATORS: [(&str, &str); 3] = [("+", "union"), ("*", "intersection"), ("-", "difference")];
+
 type State = Rc<RefCell<Builder>>;
 
 /// Reads a script.
@@ -46,7 +48,7 @@ pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
 
 /// Runs a script.
 pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluated, ScriptError> {
-    let state: State = Rc::new(RefCell::new(Builder { scene: Scene::default(), folder: folder.into() }));
+    let state: State = Rc::new(RefCell::new(Builder::new(folder.into())));
     let printed = Rc::new(RefCell::new(Vec::new()));
     let mut engine = limited();
     let lines = Rc::clone(&printed);
@@ -60,11 +62,17 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluate
     engine.register_type_with_name::<Handle>("object");
     for function in FUNCTIONS {
         bind(&mut engine, function, &state);
+        if let Some((symbol, _)) = OPERATORS.iter().find(|(_, name)| *name == function.name) {
+            let state = Rc::clone(&state);
+            engine.register_fn(*symbol, move |context: NativeCallContext<'_>, a: Handle, b: Handle| -> Answer {
+                call(function, &state, &context, &[Dynamic::from(a), Dynamic::from(b)])
+            });
+        }
     }
     let outcome = engine.run(text);
     drop(engine);
     outcome.map_err(|e| error::place(&e, text, name))?;
-    let scene = state.borrow().scene.clone();
+    let scene = state.borrow().finish();
     scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
     let printed = printed.borrow().clone();
     Ok(Evaluated { scene, name: name.to_owned(), printed })

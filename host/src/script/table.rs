@@ -6,7 +6,7 @@ use super::function::Default::{Is, Required};
 use super::function::{Function, Kind, Parameter};
 use crate::illumination::{Light, Material};
 use crate::picture::MAX_PIXELS;
-use crate::scene::{Camera, MAX_LIGHTS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Shape};
+use crate::scene::{Camera, MAX_LIGHTS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Operation, Shape};
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
 
@@ -19,6 +19,8 @@ const TOLERANCE: Parameter = Parameter {
     help: "largest distance between surface and triangles, scene units",
 };
 const OBJECT: Parameter = Parameter { name: "object", kind: Kind::Object, default: Required, help: "the object" };
+const OTHER: Parameter =
+    Parameter { name: "other", kind: Kind::Object, default: Required, help: "the other object; both must be closed" };
 const ANY: Kind = Kind::Number(f64::NEG_INFINITY, f64::INFINITY);
 
 const fn parameter(name: &'static str, kind: Kind, default: super::function::Default, help: &'static str) -> Parameter {
@@ -85,6 +87,36 @@ pub const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("file", Kind::Text, Required, "its path; relative to the folder of the script")],
         example: "let bunny = mesh(\"bunny.ply\");",
         action: add_mesh,
+    },
+    Function {
+        name: "union",
+        summary: "Makes one solid of two objects, that what is in either; also a + b.",
+        parameters: &[OBJECT, OTHER],
+        example: "let dumbbell = sphere(1).translate(-2, 0, 0) + sphere(1).translate(2, 0, 0) + box(4, 0.5, 0.5);",
+        action: |builder, bound| builder.combine(Operation::Union, bound.object("object"), bound.object("other")),
+    },
+    Function {
+        name: "intersection",
+        summary: "Makes one solid of two objects, that what is in both; also a * b.",
+        parameters: &[OBJECT, OTHER],
+        example: "let lens = sphere(2).translate(0, 0, -1.5) * sphere(2).translate(0, 0, 1.5);",
+        action: |builder, bound| {
+            builder.combine(Operation::Intersection, bound.object("object"), bound.object("other"))
+        },
+    },
+    Function {
+        name: "difference",
+        summary: "Makes one solid of two objects, what is in the first and not in the second; also a - b.",
+        parameters: &[OBJECT, OTHER],
+        example: "let bowl = sphere(1) - sphere(0.9) - box(3, 1, 3).translate(0, 0.5, 0);",
+        action: |builder, bound| builder.combine(Operation::Difference, bound.object("object"), bound.object("other")),
+    },
+    Function {
+        name: "copy",
+        summary: "Adds a copy of an object, as combined objects are used up.",
+        parameters: &[OBJECT],
+        example: "let second = pot.copy().translate(8, 0, 0);",
+        action: |builder, bound| builder.copy(bound.object("object")).map(Some),
     },
     Function {
         name: "material",
