@@ -7,6 +7,7 @@ pub mod polygon;
 pub mod picture;
 pub mod mesh;
 pub mod octree;
+pub mod subdivision;
 pub mod surface;
 pub mod illumination;
 pub mod scene;

@@ -269,8 +269,11 @@ fn size_and_distance_do_not_matter() {
     assert_eq!(triangulate(&[subnormal], Shape::Any).unwrap().triangles.len(), 1);
     let huge = contour(&[(-f64::MAX, 0.0), (f64::MAX, -f64::MAX), (0.0, f64::MAX)]);
     assert_eq!(triangulate(&[huge], Shape::Delaunay).unwrap().triangles.len(), 1);
-    let mixed = contour(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1e-300), (1e-300, 1e-300), (0.0, 1e300)]);
-    assert!(triangulate(&[mixed], Shape::Delaunay).is_ok());
+    let mixed = |size: f64, tiny: f64| contour(&[(0.0, 0.0), (size, 0.0), (size, tiny), (tiny, tiny), (0.0, size)]);
+    assert_eq!(triangulate(&[mixed(1e20, 1e-100)], Shape::Delaunay).unwrap().triangles.len(), 3);
+    // Too small beside the greatest to be told from zero.
+    let error = triangulate(&[mixed(1e300, 1e-300)], Shape::Delaunay).unwrap_err();
+    assert_eq!(error, PolygonError::Overlap { first: edge(0, 0), second: edge(0, 1) });
 }
 
 fn edge(contour: usize, corner: usize) -> PolygonEdge {

@@ -1,0 +1,58 @@
+//! Smooth surfaces of arbitrary topology, by recursive cutting and grinding of a polyhedron.
+//!
+//! Each step cuts every corner and grinds every edge: each face, each edge and each vertex gives way to a new face. All
+//! new positions are averages of old ones, so that the surface stays within the convex hull of each face's
+//! neighbourhood, and a change stays near its place. On regular parts (four corners a face, four faces a vertex) the
+//! limit is the biquadratic B-spline; elsewhere its tangent planes are still continuous.
+//!
+//! Borders are quadratic B-spline curves of the border polygons, with their ends where a vertex has one face only.
+//! Edges that are sharp for ever are creases: curves of the same kind, at which both sides end as at a border. Where
+//! more than two creases and borders meet, and at sharp vertices, the surface has a corner.
+//!
+//! # Source
+//! Doo and Sabin 1978; semi-sharp creases by steps after DeRose, Kass and Truong 1998; the rules at creases are ours.
+
+mod error;
+mod limit;
+mod polyhedron;
+mod rings;
+mod sharp;
+mod smooth;
+mod weights;
+
+pub use error::SubdivisionError;
+pub use polyhedron::Polyhedron;
+
+use crate::mesh::Mesh;
+use polyhedron::MOST_CORNERS;
+
+impl Polyhedron {
+    /// The polyhedron after so many steps.
+    ///
+    /// A step makes four corners of one. Vertex h of the result of one step is what corner h becomes, as long as nothing
+    /// is sharp and there is no border.
+    ///
+    /// # Errors
+    /// A result of more than 2^30 corners, or faces that touch each other twice at a crease.
+    pub fn subdivided(&self, steps: usize) -> Result<Polyhedron, SubdivisionError> {
+        let mut result = self.clone();
+        for _ in 0..steps {
+            if result.corners.len() > MOST_CORNERS / 4 {
+                return Err(SubdivisionError::TooLarge { corners: 4 * result.corners.len() });
+            }
+            result = if result.is_smooth() { smooth::refined(&result) } else { sharp::refined(&result)? };
+        }
+        Ok(result)
+    }
+
+    /// Triangles between points of the limit surface, with its normals at their corners.
+    ///
+    /// The vertices are the limit points of the faces, exact but for rounding; there are
+    /// triangles for each vertex of the polyhedron. Normals differ between the triangles at a crease.
+    pub fn limit(&self) -> Mesh {
+        limit::mesh(self)
+    }
+}
+
+#[cfg(test)]
+mod tests;
