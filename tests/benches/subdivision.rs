@@ -31,7 +31,7 @@ fn main() {
             let result = result.expect("the result is not too large");
             let name = format!("ours, {steps} steps, {name}");
             row(&name, linking, time, result.points().len(), result.face_count());
-            let limit = || best(runs, || result.limit());
+            let limit = || best(runs, || result.limit().expect("nothing is sharp"));
             let (time, limit) = pool.map_or_else(limit, |pool| pool.install(limit));
             println!("{:<44} {:>9} {:>9.4}", format!("  its {} limit triangles", limit.triangles.len()), "", time);
         }
@@ -62,7 +62,7 @@ fn prove(mesh: &Mesh, steps: usize) {
     assert!(result.is_closed());
     assert_eq!(result.points().len(), sides);
     assert_eq!(result.points().len() + result.face_count(), 2 * sides + 2, "Euler's number is not 2");
-    let limit = result.limit();
+    let limit = result.limit().expect("nothing is sharp");
     assert!(limit.is_closed());
     let [inner, outer] = [limit.bounds(), mesh.bounds()].map(|bounds| bounds.expect("there are vertices"));
     assert!(inner.min.cmpge(outer.min).all() && inner.max.cmple(outer.max).all());

@@ -12,6 +12,7 @@
 //! # Source
 //! Doo and Sabin 1978; semi-sharp creases by steps after DeRose, Kass and Truong 1998; the rules at creases are ours.
 
+mod adaptive;
 mod error;
 mod limit;
 mod polyhedron;
@@ -22,6 +23,8 @@ mod weights;
 
 pub use error::SubdivisionError;
 pub use polyhedron::Polyhedron;
+
+use std::borrow::Cow;
 
 use crate::mesh::Mesh;
 use polyhedron::MOST_CORNERS;
@@ -47,10 +50,42 @@ impl Polyhedron {
 
     /// Triangles between points of the limit surface, with its normals at their corners.
     ///
-    /// The vertices are the limit points of the faces, exact but for rounding; there are
-    /// triangles for each vertex of the polyhedron. Normals differ between the triangles at a crease.
-    pub fn limit(&self) -> Mesh {
-        limit::mesh(self)
+    /// The vertices are the limit points of the faces, exact but for rounding; there are triangles for each vertex of the
+    /// polyhedron. Normals differ between the triangles at a crease. Finite sharpness is used up first, by as many steps
+    /// as it lasts.
+    ///
+    /// # Errors
+    /// As [`Polyhedron::subdivided`].
+    pub fn limit(&self) -> Result<Mesh, SubdivisionError> {
+        let lasting = self.lasting()?;
+        Ok(limit::mesh(&lasting))
+    }
+
+    /// Triangles of the limit surface that are small only where it is curved, with its normals at their corners.
+    ///
+    /// All vertices lie on the limit surface, and there are no cracks. Faces that several creases or borders hold apart,
+    /// such as a strip one face wide or a flat cap, are not divided, but follow the curves around them.
+    ///
+    /// - `tolerance`: how far the middle of a triangle or side may be from the surface, in units of the positions.
+    ///
+    /// # Errors
+    /// A tolerance that is not positive, or so small that more than four million patches do not meet it; else as
+    /// [`Polyhedron::subdivided`].
+    pub fn tessellated(&self, tolerance: f64) -> Result<Mesh, SubdivisionError> {
+        if tolerance.is_nan() || tolerance <= 0.0 {
+            return Err(SubdivisionError::Tolerance { tolerance });
+        }
+        adaptive::mesh(&self.lasting()?.subdivided(1)?, tolerance)
+    }
+
+    /// The polyhedron after as many steps as its finite sharpness lasts.
+    fn lasting(&self) -> Result<Cow<'_, Polyhedron>, SubdivisionError> {
+        let all = self.edge_sharpness.iter().chain(&self.vertex_sharpness);
+        let longest = all.copied().filter(|sharpness| sharpness.is_finite()).fold(0.0, f64::max);
+        if longest == 0.0 {
+            return Ok(Cow::Borrowed(self));
+        }
+        self.subdivided(longest.ceil().min(f64::from(u16::MAX)) as usize).map(Cow::Owned)
     }
 }
 

@@ -20,6 +20,8 @@ pub(super) struct Creases<'a> {
     ring: Vec<u32>,
     /// For each vertex how much it is held: 1 where the surface has a corner.
     pub vertex_hold: Vec<f64>,
+    /// The corners of faces that alone fill the angle of a crease: the face is cut there along the crease.
+    pub cut: Vec<bool>,
 }
 
 struct Sector {
@@ -34,7 +36,8 @@ impl<'a> Creases<'a> {
         let vertex_hold = (0..mesh.points.len())
             .map(|vertex| mesh.vertex_sharpness.get(vertex).map_or(0.0, |sharpness| sharpness.min(1.0)))
             .collect();
-        let mut creases = Creases { mesh, last: mesh.last(), sectors: Vec::new(), ring: Vec::new(), vertex_hold };
+        let mut creases =
+            Creases { mesh, last: mesh.last(), sectors: Vec::new(), ring: Vec::new(), vertex_hold, cut: Vec::new() };
         creases.find_sectors();
         creases.hold_corners();
         creases
@@ -73,22 +76,37 @@ impl<'a> Creases<'a> {
         }
     }
 
-    /// Where three creases meet, and where one face fills the angle of two, the surface has a corner.
+    /// Where three creases meet, and where a border has one face only, the surface has a corner. Where one face fills the
+    /// angle of a crease, it is cut, unless the other side has one face, too.
     fn hold_corners(&mut self) {
-        let mut meeting = vec![0_u8; self.mesh.points.len()];
+        // The three sharpest edges at each vertex, the third first.
+        let mut sharpest = vec![[0.0_f64; 3]; self.mesh.points.len()];
         for side in 0..self.mesh.corners.len() as u32 {
+            let sharpness = self.mesh.sharpness(side).min(1.0);
             // An edge of two faces is seen from both, at either end once.
             let ends = [side, self.mesh.next[side as usize]].map(|h| self.mesh.corners[h as usize] as usize);
             let seen = if self.mesh.twins[side as usize] == NONE { 2 } else { 1 };
-            if self.is_crease(side) {
-                ends[..seen].iter().for_each(|&end| meeting[end] = meeting[end].saturating_add(1));
+            for &end in &ends[..seen] {
+                sharpest[end][0] = sharpness.max(sharpest[end][0]);
+                sharpest[end].sort_unstable_by(f64::total_cmp);
             }
         }
-        let counted = self.vertex_hold.iter_mut().zip(&meeting);
-        counted.filter(|(_, count)| **count > 2).for_each(|(hold, _)| *hold = 1.0);
+        for (hold, sharpest) in self.vertex_hold.iter_mut().zip(&sharpest) {
+            *hold = hold.max(sharpest[0]);
+        }
+        self.cut = vec![false; self.mesh.corners.len()];
         for sector in self.sectors.iter().filter(|sector| !sector.is_closed && sector.end - sector.begin == 1) {
-            let vertex = self.mesh.corners[self.ring[sector.begin] as usize];
-            self.vertex_hold[vertex as usize] = 1.0;
+            let corner = self.ring[sector.begin];
+            let hold = &mut self.vertex_hold[self.mesh.corners[corner as usize] as usize];
+            let [before, behind] = [self.last[corner as usize], corner].map(|side| self.mesh.twins[side as usize]);
+            if before == NONE || behind == NONE || self.mesh.next[behind as usize] == before {
+                *hold = 1.0;
+            } else {
+                self.cut[corner as usize] = true;
+            }
+        }
+        for (cut, &vertex) in self.cut.iter_mut().zip(&self.mesh.corners) {
+            *cut &= self.vertex_hold[vertex as usize] < 1.0;
         }
     }
 
@@ -97,18 +115,9 @@ impl<'a> Creases<'a> {
         let next = self.mesh.next[corner as usize];
         let last = self.last[corner as usize];
         let before_last = self.last[last as usize];
-        // Along a side, its end at `corner` is held by `other`, the other side of the face there. Along a crease only
-        // the vertex holds, so that the faces at both sides agree.
-        let hold = |side: u32, corner: u32, other: u32| {
-            let vertex = self.vertex_hold[self.mesh.corners[corner as usize] as usize];
-            if self.is_crease(side) { vertex } else { vertex.max(self.mesh.sharpness(other).min(1.0)) }
-        };
-        Held {
-            here_forward: hold(corner, corner, last),
-            there_forward: hold(corner, next, next),
-            here_backward: hold(last, corner, corner),
-            there_backward: hold(last, last, before_last),
-        }
+        let hold = |corner: u32| self.vertex_hold[self.mesh.corners[corner as usize] as usize];
+        let sides = [before_last, last, corner, next].map(|side| self.mesh.sharpness(side));
+        Held::by(sides, [last, corner, next].map(hold))
     }
 
     /// The new positions of all corners, from positions that may differ between the corners of a vertex.
@@ -129,7 +138,10 @@ impl<'a> Creases<'a> {
         for side in 0..self.mesh.corners.len() as u32 {
             let twin = self.mesh.twins[side as usize];
             if twin != NONE && self.is_crease(side) {
-                joined.join(side, self.mesh.next[twin as usize]);
+                let other = self.mesh.next[twin as usize];
+                if !self.cut[side as usize] && !self.cut[other as usize] {
+                    joined.join(side, other);
+                }
             }
         }
         for sector in &self.sectors {
@@ -141,20 +153,57 @@ impl<'a> Creases<'a> {
     }
 
     /// The faces of the next step as runs of old corners: one within each face, one for each edge, one for each vertex.
-    pub fn each_face(&self, mut with: impl FnMut(&[u32])) {
+    /// With them the old corners to whose faces they belong: others only where a face is cut.
+    pub fn each_face(&self, mut with: impl FnMut(&[u32], &[u32])) {
+        self.each_inner_face(&mut with);
+        self.sectors().for_each(|(run, _)| with(run, run));
+    }
+
+    /// The corners of each face for a vertex, counter-clockwise, and whether they go all around it.
+    pub fn sectors(&self) -> impl Iterator<Item = (&[u32], bool)> {
+        self.sectors.iter().map(|sector| (&self.ring[sector.begin..sector.end], sector.is_closed))
+    }
+
+    /// The faces of the next step but for those of vertices.
+    pub fn each_inner_face(&self, mut with: impl FnMut(&[u32], &[u32])) {
         let sides: Vec<u32> = (0..self.mesh.corners.len() as u32).collect();
+        let (mut run, mut owners) = (Vec::new(), Vec::new());
         for face in self.mesh.starts.windows(2) {
-            with(&sides[face[0] as usize..face[1] as usize]);
+            run.clear();
+            owners.clear();
+            for &corner in &sides[face[0] as usize..face[1] as usize] {
+                self.push_corner(corner, &mut run);
+                owners.resize(run.len(), corner);
+            }
+            with(&run, &owners);
         }
         for &side in &sides {
             let twin = self.mesh.twins[side as usize];
             if twin != NONE && side < twin && !self.is_crease(side) {
                 let [after_side, after_twin] = [side, twin].map(|h| self.mesh.next[h as usize]);
-                with(&[after_side, side, after_twin, twin]);
+                let corners = [after_side, side, after_twin, twin];
+                with(&corners, &corners);
             }
         }
-        for sector in &self.sectors {
-            with(&self.ring[sector.begin..sector.end]);
+    }
+
+    /// The corners that become the ends of a crease; where its own are cut, those beyond.
+    pub fn ends(&self, side: u32) -> [u32; 2] {
+        let (next, twin) = (self.mesh.next[side as usize], self.mesh.twins[side as usize]);
+        let beyond = |corner: u32, other: u32| if self.cut[corner as usize] { other } else { corner };
+        match twin {
+            NONE => [side, next],
+            _ => [beyond(side, self.mesh.next[twin as usize]), beyond(next, twin)],
+        }
+    }
+
+    /// A corner as a run of corners; where it is cut, those of the faces beyond the crease stand for it.
+    fn push_corner(&self, corner: u32, run: &mut Vec<u32>) {
+        if self.cut[corner as usize] {
+            let [before, behind] = [self.last[corner as usize], corner].map(|side| self.mesh.twins[side as usize]);
+            run.extend([before, self.mesh.next[behind as usize]]);
+        } else {
+            run.push(corner);
         }
     }
 
@@ -163,7 +212,7 @@ impl<'a> Creases<'a> {
         let mut heirs = Vec::new();
         for side in 0..self.mesh.corners.len() as u32 {
             if self.mesh.twins[side as usize] != NONE && self.is_crease(side) {
-                heirs.push(([side, self.mesh.next[side as usize]], self.mesh.sharpness(side) - 1.0));
+                heirs.push((self.ends(side), self.mesh.sharpness(side) - 1.0));
             }
         }
         for sector in self.sectors.iter().filter(|sector| !sector.is_closed) {
@@ -183,16 +232,16 @@ pub(super) fn refined(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError>
     let creases = Creases::of(mesh);
     let mut joined = Joined::new(mesh.corners.len());
     creases.join(&mut joined);
-    let (names, count) = joined.names();
+    let (names, count) = joined.names(&creases.cut);
     let mut points = vec![DVec3::ZERO; count];
     // The lowest of joined corners gives the position.
     let moved = creases.moved(&|corner| mesh.points[mesh.corners[corner as usize] as usize]);
-    for (corner, position) in moved.into_iter().enumerate().rev() {
+    for (corner, position) in moved.into_iter().enumerate().rev().filter(|(corner, _)| !creases.cut[*corner]) {
         points[names[corner] as usize] = position;
     }
     let mut corners = Vec::with_capacity(4 * mesh.corners.len());
     let mut starts = vec![0];
-    creases.each_face(|face| push_face(face, &names, &mut corners, &mut starts));
+    creases.each_face(|face, _| push_face(face, &names, &mut corners, &mut starts));
     let mut refined = Polyhedron::linked(points, corners, starts)?;
     inherit(&creases, &names, &mut refined);
     Ok(refined)
@@ -222,7 +271,7 @@ fn inherit(creases: &Creases<'_>, names: &[u32], refined: &mut Polyhedron) {
     let mesh = creases.mesh;
     if mesh.vertex_sharpness.iter().any(|&sharpness| sharpness > 1.0) {
         refined.vertex_sharpness = vec![0.0; refined.points.len()];
-        for (corner, &vertex) in mesh.corners.iter().enumerate() {
+        for (corner, &vertex) in mesh.corners.iter().enumerate().filter(|(corner, _)| !creases.cut[*corner]) {
             let left = (mesh.vertex_sharpness[vertex as usize] - 1.0).max(0.0);
             refined.vertex_sharpness[names[corner] as usize] = left;
         }
@@ -274,11 +323,12 @@ impl Joined {
         self.lower[a.max(b) as usize] = a.min(b);
     }
 
-    /// For each corner the number of its set, and how many sets there are.
-    pub fn names(mut self) -> (Vec<u32>, usize) {
+    /// For each corner the number of its set, and how many sets there are. Corners that are `left_out`, which stand
+    /// alone, have none.
+    pub fn names(mut self, left_out: &[bool]) -> (Vec<u32>, usize) {
         let mut count = 0;
-        let mut names = vec![0; self.lower.len()];
-        for corner in 0..names.len() as u32 {
+        let mut names = vec![NONE; self.lower.len()];
+        for corner in (0..names.len() as u32).filter(|&corner| !left_out[corner as usize]) {
             let lowest = self.lowest(corner);
             names[corner as usize] = if lowest == corner { count } else { names[lowest as usize] };
             count += u32::from(lowest == corner);

@@ -23,6 +23,28 @@ pub(super) struct Held {
 impl Held {
     /// Nowhere.
     pub const NOT: Held = Held { here_forward: 0.0, there_forward: 0.0, here_backward: 0.0, there_backward: 0.0 };
+
+    /// How a corner is held by the sides and corners around it.
+    ///
+    /// Along a side, an end is held by the other side of the face there. Along a crease only the vertex holds, so that
+    /// the faces at both sides agree.
+    ///
+    /// - `sides`: sharpness of the second side before the corner, of the one before it, of the one behind it, and of the
+    ///   next.
+    /// - `vertices`: how much the corner before, this one and the next one are held.
+    pub fn by(sides: [f64; 4], vertices: [f64; 3]) -> Held {
+        let [before_last, last, here, next] = sides;
+        let along = |side: f64, vertex: f64, other: f64| {
+            // Between two sides that are nearly creases the corner is nearly cut: half as much is held.
+            if side >= 1.0 { vertex } else { vertex.max(other.min(1.0) * (1.0 - 0.5 * side)) }
+        };
+        Held {
+            here_forward: along(here, vertices[1], last),
+            there_forward: along(here, vertices[2], next),
+            here_backward: along(last, vertices[1], here),
+            there_backward: along(last, vertices[0], before_last),
+        }
+    }
 }
 
 /// The new corners of a smooth face.
