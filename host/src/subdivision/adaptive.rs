@@ -48,9 +48,9 @@ impl Face {
     }
 
     /// The face within it after a step.
-    fn refined(&self) -> Rc<Face> {
+    fn refined(&self) -> &Rc<Face> {
         let step = || Face { corners: self.rim.step(&self.corners), rim: self.rim.clone(), refined: OnceCell::new() };
-        self.refined.get_or_init(|| Rc::new(step())).clone()
+        self.refined.get_or_init(|| Rc::new(step()))
     }
 }
 
@@ -192,9 +192,8 @@ impl Surface {
                 leaves.push(patch);
                 continue;
             }
-            let division = Division::of(&patch);
-            if self.error(&patch, &division) > self.tolerance {
-                self.split(&patch, &division, &mut waiting);
+            if self.error(&patch) > self.tolerance {
+                self.split(&patch, &Division::of(&patch), &mut waiting);
             } else {
                 leaves.push(patch);
             }
@@ -203,17 +202,17 @@ impl Surface {
     }
 
     /// How far the triangles of a patch are from the surface: on its sides, and in its middle.
-    fn error(&self, patch: &Patch, division: &Division) -> f64 {
+    fn error(&self, patch: &Patch) -> f64 {
         let count = patch.points.len();
         let point = |k: usize| self.vertices[patch.points[k % count].0 as usize].point;
-        let chord = |(k, middle): (usize, &Limit)| distance(middle.point, [point(k), point(k + 1), point(k + 1)]);
-        let sides = division.middles.iter().enumerate().map(chord).fold(0.0, f64::max);
+        let (middles, center) = middles(patch);
+        let chord = |(k, middle): (usize, &DVec3)| distance(*middle, [point(k), point(k + 1), point(k + 1)]);
+        let sides = middles.iter().enumerate().map(chord).fold(0.0, f64::max);
         let from_fan = |first: usize| {
             let triangles = (1..count - 1).map(|k| [first, first + k, first + k + 1].map(point));
-            triangles.map(|triangle| distance(division.center.point, triangle)).fold(f64::INFINITY, f64::min)
+            triangles.map(|triangle| distance(center, triangle)).fold(f64::INFINITY, f64::min)
         };
-        let closing =
-            if patch.is_closed { 0.0 } else { distance(division.center.point, [point(count - 1), point(0), point(0)]) };
+        let closing = if patch.is_closed { 0.0 } else { distance(center, [point(count - 1), point(0), point(0)]) };
         // Of four points the better diagonal is taken.
         let middle = if count == 4 { from_fan(0).min(from_fan(1)) } else { from_fan(0) };
         sides.max(closing) + middle
@@ -363,14 +362,15 @@ impl Surface {
     /// Makes an outline ready for triangles from its first point: the better diagonal of four points, else a new point in
     /// the middle of the patch.
     fn lead(&mut self, patch: &Patch, outline: &mut Vec<(u32, DVec3)>) {
-        let center = Division::of(patch).center;
+        let (_, center) = middles(patch);
         let at = |k: usize| self.vertices[outline[k].0 as usize].point;
         if outline.len() == 4 {
-            let far = |k: usize| (center.point - (at(k) + at(k + 2)) * 0.5).length_squared();
+            let far = |k: usize| (center - (at(k) + at(k + 2)) * 0.5).length_squared();
             if far(1) < far(0) {
                 outline.rotate_left(1);
             }
         } else if patch.is_closed {
+            let center = Division::of(patch).center;
             let first = outline[0];
             outline.insert(0, (self.vertices.len() as u32, center.normal));
             outline.push(first);
@@ -379,10 +379,28 @@ impl Surface {
     }
 }
 
+/// The limit points that divide the sides of a patch between its faces, and the one in its middle.
+fn middles(patch: &Patch) -> (Vec<DVec3>, DVec3) {
+    if !patch.is_closed || patch.fan.iter().any(|place| !place.face.rim.is_smooth()) {
+        let division = Division::of(patch);
+        return (division.middles.iter().map(|limit| limit.point).collect(), division.center.point);
+    }
+    // Centroids, for which no faces need be made.
+    let count = patch.fan.len();
+    let corner = |k: usize, shift: usize| {
+        let place = &patch.fan[k % count];
+        place.face.refined().corners[place.at(shift)]
+    };
+    let before = |k: usize| corner(k, patch.fan[k].face.corners.len() - 1);
+    let middle = |k: usize| (corner(k, 0) + before(k) + corner(k + 1, 1) + corner(k + 1, 0)) * 0.25;
+    let center = (0..count).map(|k| corner(k, 0)).sum::<DVec3>() / count as f64;
+    ((0..count).map(middle).collect(), center)
+}
+
 impl Division {
     fn of(patch: &Patch) -> Division {
         let count = patch.fan.len();
-        let refined: Vec<Rc<Face>> = patch.fan.iter().map(|place| place.face.refined()).collect();
+        let refined: Vec<Rc<Face>> = patch.fan.iter().map(|place| place.face.refined().clone()).collect();
         let places: Vec<Place> =
             refined.iter().zip(&patch.fan).map(|(face, place)| Place::new(face, place.corner)).collect();
         let edges = if patch.is_closed { count } else { count - 1 };

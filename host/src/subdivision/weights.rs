@@ -82,13 +82,16 @@ pub(super) fn step(corners: &[DVec3], new: &mut [DVec3]) {
 /// The sums of cos(j t) v_j and sin(j t) v_j over the corners, t = 2 pi / n: they span the tangent plane of the limit
 /// surface in the middle of a smooth face.
 pub(super) fn waves(corners: &[DVec3]) -> [DVec3; 2] {
-    let count = corners.len() as f64;
-    // Positions relative to one of them: far from the origin the sums would lose digits.
-    let Some(&origin) = corners.first() else { return [DVec3::ZERO; 2] };
-    corners.iter().enumerate().fold([DVec3::ZERO; 2], |[cosine, sine], (k, corner)| {
-        let (s, c) = (TAU * k as f64 / count).sin_cos();
-        [cosine + (*corner - origin) * c, sine + (*corner - origin) * s]
-    })
+    match *corners {
+        [a, b, c] => [a - (b + c) * 0.5, (b - c) * (0.5 * 3.0_f64.sqrt())],
+        [a, b, c, d] => [a - c, b - d],
+        [] => [DVec3::ZERO; 2],
+        // Relative to one of them: far from the origin the sums would lose digits.
+        [origin, ..] => corners.iter().enumerate().fold([DVec3::ZERO; 2], |[cosine, sine], (k, corner)| {
+            let (s, c) = (TAU * k as f64 / corners.len() as f64).sin_cos();
+            [cosine + (*corner - origin) * c, sine + (*corner - origin) * s]
+        }),
+    }
 }
 
 /// The new position of corner `index` of a face that is held at some of its sides.
