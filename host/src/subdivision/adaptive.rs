@@ -17,7 +17,7 @@ use super::sharp::Creases;
 use crate::mesh::Mesh;
 
 /// The most patches, for tolerances that rounding never meets.
-const MOST_PATCHES: usize = 1 << 22;
+const MOST_PATCHES: usize = 1 << 21;
 
 /// The limit surface of a polyhedron without finite sharpness, within `tolerance`.
 pub(super) fn mesh(polyhedron: &Polyhedron, tolerance: f64) -> Result<Mesh, SubdivisionError> {

@@ -3,8 +3,8 @@
 /// Why a polyhedron cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SubdivisionError {
-    /// A position is not a point.
-    #[error("vertex {vertex} is not finite")]
+    /// A position is not finite, or so far out that its square would not be.
+    #[error("vertex {vertex} is not finite, or farther out than 1e150")]
     NotFinite {
         /// The vertex, from 0.
         vertex: usize,
@@ -52,6 +52,14 @@ pub enum SubdivisionError {
         ends: [u32; 2],
         /// The two faces.
         faces: [usize; 2],
+    },
+    /// A vertex that does not exist.
+    #[error("there is no vertex {vertex}, only {vertices}")]
+    Unknown {
+        /// The vertex, from 0.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
     },
     /// Two vertices that no face joins by a side.
     #[error("there is no edge from vertex {} to vertex {}", ends[0], ends[1])]

@@ -69,7 +69,7 @@ impl Polyhedron {
     /// - `tolerance`: how far the middle of a triangle or side may be from the surface, in units of the positions.
     ///
     /// # Errors
-    /// A tolerance that is not positive, or so small that more than four million patches do not meet it; else as
+    /// A tolerance that is not positive, or so small that more than two million patches do not meet it; else as
     /// [`Polyhedron::subdivided`].
     pub fn tessellated(&self, tolerance: f64) -> Result<Mesh, SubdivisionError> {
         if tolerance.is_nan() || tolerance <= 0.0 {

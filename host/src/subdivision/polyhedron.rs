@@ -12,6 +12,9 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The most corners of faces that a polyhedron may have.
 pub(super) const MOST_CORNERS: usize = 1 << 30;
 
+/// The greatest coordinate: products of two stay finite.
+const FARTHEST: f64 = 1e150;
+
 /// A mesh of faces with any number of corners, closed or with borders.
 ///
 /// Faces run counter-clockwise seen from outside. An edge belongs to one face or two; around a vertex there may be
@@ -44,14 +47,14 @@ impl Polyhedron {
     /// - `faces`: the vertices of each, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// A position that is not finite, a face that is none, an edge of more than two faces, two faces that run the same
+    /// A position that is not finite or beyond 1e150, a face that is none, an edge of more than two faces, two faces that run the same
     /// way along an edge; each with its place.
     pub fn new<F: AsRef<[u32]>>(points: Vec<DVec3>, faces: &[F]) -> Result<Polyhedron, SubdivisionError> {
         let count: usize = faces.iter().map(|face| face.as_ref().len()).sum();
         if count > MOST_CORNERS || points.len() > MOST_CORNERS {
             return Err(SubdivisionError::TooLarge { corners: count.max(points.len()) });
         }
-        if let Some(vertex) = points.iter().position(|point| !point.is_finite()) {
+        if let Some(vertex) = points.iter().position(|point| !point.abs().cmple(DVec3::splat(FARTHEST)).all()) {
             return Err(SubdivisionError::NotFinite { vertex });
         }
         let mut corners = Vec::with_capacity(count);
@@ -152,7 +155,7 @@ impl Polyhedron {
     pub fn sharpen_vertex(&mut self, vertex: u32, sharpness: f64) -> Result<(), SubdivisionError> {
         check_sharpness(sharpness)?;
         if vertex as usize >= self.points.len() {
-            return Err(SubdivisionError::NoSuchEdge { ends: [vertex, vertex] });
+            return Err(SubdivisionError::Unknown { vertex, vertices: self.points.len() });
         }
         self.vertex_sharpness.resize(self.points.len(), 0.0);
         self.vertex_sharpness[vertex as usize] = sharpness;

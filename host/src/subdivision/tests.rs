@@ -394,6 +394,7 @@ fn bad_polyhedra_are_refused_with_the_place() {
     assert_eq!(Polyhedron::new(points, &[[0, 1, 2]]).unwrap_err(), SubdivisionError::NotFinite { vertex: 3 });
     let mut start = cube();
     assert_eq!(start.sharpen_edge([0, 7], 1.0).unwrap_err(), SubdivisionError::NoSuchEdge { ends: [0, 7] });
+    assert_eq!(start.sharpen_vertex(8, 1.0).unwrap_err(), SubdivisionError::Unknown { vertex: 8, vertices: 8 });
     assert!(matches!(start.sharpen_edge([0, 1], f64::NAN), Err(SubdivisionError::Sharpness { .. })));
     assert!(matches!(start.subdivided(30), Err(SubdivisionError::TooLarge { .. })));
 }
@@ -492,4 +493,39 @@ fn flat_parts_stay_coarse() {
 fn a_tolerance_must_be_positive_and_may_be_refused() {
     assert_eq!(cube().tessellated(0.0).unwrap_err(), SubdivisionError::Tolerance { tolerance: 0.0 });
     assert!(matches!(cube().tessellated(f64::NAN), Err(SubdivisionError::Tolerance { .. })));
+}
+
+#[test]
+fn any_sharpness_and_any_holes_keep_the_surface_whole() {
+    let mut stream = Stream::new(9, 0);
+    for round in 0..300 {
+        let whole = match round % 3 {
+            0 => cube().subdivided(1).unwrap(),
+            1 => solid(3 + round % 7, round % 2 == 0),
+            _ => torus(4, 5),
+        };
+        let missing = if round % 2 == 0 { 0.0 } else { 0.2 };
+        let faces: Vec<&[u32]> = whole.faces().filter(|_| stream.uniform() >= missing).collect();
+        let mut start = Polyhedron::new(whole.points.clone(), &faces).unwrap();
+        let sharpness = [0.5, 1.0, 1.7, f64::INFINITY];
+        for face in &faces {
+            if stream.uniform() < 0.3 {
+                start.sharpen_edge([face[0], face[1]], sharpness[stream.below(4)]).unwrap();
+            }
+        }
+        start.sharpen_vertex(stream.below(5) as u32, sharpness[stream.below(4)]).unwrap();
+        let found = start.subdivided(2).unwrap();
+        assert_eq!(found.is_closed(), start.is_closed(), "{round}");
+        for mesh in [start.limit().unwrap(), found.limit().unwrap(), start.tessellated(0.05).unwrap()] {
+            assert!(mesh.vertices.iter().all(|p| p.is_finite()), "{round}");
+            assert!(mesh.corner_normals.iter().flatten().all(|n| n.is_finite()), "{round}");
+            let mut sides = HashMap::new();
+            for t in &mesh.triangles {
+                (0..3).for_each(|k| *sides.entry([t[k], t[(k + 1) % 3]]).or_insert(0) += 1);
+            }
+            let border = sides.keys().filter(|[a, b]| !sides.contains_key(&[*b, *a])).count();
+            assert!(sides.values().all(|&count| count == 1), "{round}");
+            assert_eq!(border == 0, start.is_closed(), "{round}: {border}");
+        }
+    }
 }
