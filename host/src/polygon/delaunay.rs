@@ -60,7 +60,7 @@ fn next(side: u32) -> u32 {
 
 /// The side before `side` in its triangle.
 fn last(side: u32) -> u32 {
-    if side % 3 == 0 { side + 2 } else { side - 1 }
+    if side.is_multiple_of(3) { side + 2 } else { side - 1 }
 }
 
 /// For each side the one that runs along it the other way.

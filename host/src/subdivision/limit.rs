@@ -159,12 +159,15 @@ impl Rim {
         let count = corners.len();
         let mut new = corners.to_vec();
         step(corners, &mut new);
-        for k in 0..self.held.len() {
+        if self.is_smooth() {
+            return new;
+        }
+        for (k, new) in new.iter_mut().enumerate() {
             let [before_last, last, next] = [count - 2, count - 1, 1].map(|shift| (k + shift) % count);
             let one = |is: bool| f64::from(u8::from(is));
             let sides = [before_last, last, k, next].map(|side| one(self.creases[side]));
             let hold = Held::by(sides, [last, k, next].map(|corner| one(self.held[corner])));
-            new[k] = held(corners, k, hold, new[k]);
+            *new = held(corners, k, hold, *new);
         }
         new
     }
