@@ -36,13 +36,15 @@ impl Polyhedron {
     /// is sharp and there is no border.
     ///
     /// # Errors
-    /// A result of more than 2^30 corners, or faces that touch each other twice at a crease.
+    /// A result of more than 2^28 corners, or faces that touch each other twice at a crease.
     pub fn subdivided(&self, steps: usize) -> Result<Polyhedron, SubdivisionError> {
+        let growth = u32::try_from(steps).ok().and_then(|steps| 4_usize.checked_pow(steps)).unwrap_or(usize::MAX);
+        let corners = self.corners.len().saturating_mul(growth);
+        if corners > MOST_CORNERS {
+            return Err(SubdivisionError::TooLarge { corners });
+        }
         let mut result = self.clone();
         for _ in 0..steps {
-            if result.corners.len() > MOST_CORNERS / 4 {
-                return Err(SubdivisionError::TooLarge { corners: 4 * result.corners.len() });
-            }
             result = if result.is_smooth() { smooth::refined(&result) } else { sharp::refined(&result)? };
         }
         Ok(result)

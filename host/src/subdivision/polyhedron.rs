@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 pub(super) const NONE: u32 = u32::MAX;
 
 /// The most corners of faces that a polyhedron may have.
-pub(super) const MOST_CORNERS: usize = 1 << 30;
+pub(super) const MOST_CORNERS: usize = 1 << 28;
 
 /// The greatest coordinate: products of two stay finite.
 const FARTHEST: f64 = 1e150;
