@@ -44,8 +44,8 @@ pub struct Triangulation {
 /// Divides a polygon into triangles.
 ///
 /// n corners, without those that are dropped, and h holes give n + 2 h - 2 triangles, the fewest possible, if contours
-/// do not touch. A point where contours touch joins the inside of fewer ways and saves two triangles; a corner that
-/// touches the middle of an edge is a corner of that edge, too. No point is added. Takes time n log n.
+/// do not touch. Each point where a hole touches the rest saves two of them; a corner that touches the middle of an edge
+/// divides that edge, which counts as one corner more. No point is added. Takes time n log n.
 ///
 /// - `contours`: corners of each, any unit, in either direction; the last is followed by the first. Nothing for no
 ///   contours. Coordinates below 2^-367 of the greatest are rounded to 2^-420 of it.

@@ -13,7 +13,7 @@ use super::weights::{Held, held, step};
 pub(super) struct Creases<'a> {
     pub mesh: &'a Polyhedron,
     /// For each corner the one before it in its face.
-    pub last: Vec<u32>,
+    last: Vec<u32>,
     /// The corners between two neighbouring creases (or borders) at a vertex, counter-clockwise, one sector after the
     /// other; where a vertex has no crease, all corners around it.
     sectors: Vec<Sector>,
@@ -120,12 +120,12 @@ impl<'a> Creases<'a> {
         Held::by(sides, [last, corner, next].map(hold))
     }
 
-    /// The new positions of all corners, from positions that may differ between the corners of a vertex.
-    pub fn moved(&self, position: &(impl Fn(u32) -> DVec3 + Sync)) -> Vec<DVec3> {
+    /// The new positions of all corners.
+    fn moved(&self) -> Vec<DVec3> {
         by_face(self.mesh, &|face, new: &mut [DVec3]| {
             let first = self.mesh.starts[face];
             let sides = first..first + new.len() as u32;
-            let corners: Vec<DVec3> = sides.clone().map(position).collect();
+            let corners: Vec<DVec3> = self.mesh.face_points(face).collect();
             step(&corners, new);
             for (k, side) in sides.enumerate() {
                 new[k] = held(&corners, k, self.held(side), new[k]);
@@ -235,8 +235,8 @@ pub(super) fn refined(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError>
     let (names, count) = joined.names(&creases.cut);
     let mut points = vec![DVec3::ZERO; count];
     // The lowest of joined corners gives the position.
-    let moved = creases.moved(&|corner| mesh.points[mesh.corners[corner as usize] as usize]);
-    for (corner, position) in moved.into_iter().enumerate().rev().filter(|(corner, _)| !creases.cut[*corner]) {
+    for (corner, position) in creases.moved().into_iter().enumerate().rev().filter(|(corner, _)| !creases.cut[*corner])
+    {
         points[names[corner] as usize] = position;
     }
     let mut corners = Vec::with_capacity(4 * mesh.corners.len());
