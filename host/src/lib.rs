@@ -3,9 +3,11 @@
 //! The order of the modules is their layer order, lowest first.
 
 pub mod numeric;
+pub mod polygon;
 pub mod picture;
 pub mod mesh;
 pub mod octree;
+pub mod subdivision;
 pub mod surface;
 pub mod solid;
 pub mod illumination;
