@@ -4,6 +4,7 @@
 
 pub mod numeric;
 pub mod picture;
+pub mod curve;
 pub mod mesh;
 pub mod octree;
 pub mod surface;
