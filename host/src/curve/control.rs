@@ -70,6 +70,28 @@ pub(crate) fn control_row(row: usize, points: &[DVec3], weights: &[f64]) -> Resu
     control.collect()
 }
 
+/// Checks a rectangular mesh of control points and joins them with their weights, row by row; no weights at all stand
+/// for weights of 1.
+///
+/// # Errors
+/// [`SplineError`] with the row and the place in it.
+pub(crate) fn control_net(points: &[Vec<DVec3>], weights: &[Vec<f64>]) -> Result<Vec<ControlPoint>, SplineError> {
+    let Some(needed) = points.first().map(Vec::len).filter(|length| *length > 0) else {
+        return Err(SplineError::TooFew { what: "rows of control points", found: 0, least: 1 });
+    };
+    if !weights.is_empty() && weights.len() != points.len() {
+        return Err(SplineError::Count { what: "rows of weights", found: weights.len(), needed: points.len() });
+    }
+    let mut control = Vec::with_capacity(points.len() * needed);
+    for (row, line) in points.iter().enumerate() {
+        if line.len() != needed {
+            return Err(SplineError::Row { what: "control points", row, found: line.len(), needed });
+        }
+        control.extend(control_row(row, line, weights.get(row).map_or(&[], Vec::as_slice))?);
+    }
+    Ok(control)
+}
+
 /// A weighted sum of consecutive control points: what one step from control points to others needs for each of them.
 ///
 /// The weights add up to 1. In a closed spline the last control point is followed by the first.

@@ -17,9 +17,9 @@ pub(crate) use basis::Refinement;
 pub use bezier::{BezierCurve, MAX_DEGREE};
 pub(crate) use bezier::{bernstein, casteljau};
 pub use control::ControlPoint;
-pub(crate) use control::control_row;
+pub(crate) use control::control_net;
 pub use error::SplineError;
-pub(crate) use form::{BezierForm, apply};
+pub(crate) use form::apply;
 pub use spline::SplineCurve;
 
 use glam::DVec3;

@@ -3,22 +3,30 @@
 mod accuracy;
 mod bezier;
 mod border;
+mod curvature;
 mod nearest;
 mod parallelogram;
 mod patches;
 mod placed;
+mod revolution;
 mod sphere;
+mod spline;
 mod teapot;
+mod tensor;
 mod tessellation;
 
 pub use accuracy::{Accuracy, chord_error};
 pub use bezier::BezierPatch;
+pub use curvature::{Curved, normal_curvature};
 pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};
 pub use patches::{PatchError, PatchProblem, PatchSet};
 pub use placed::Placed;
+pub use revolution::{rational_sphere, rational_torus, revolved};
 pub use sphere::Sphere;
+pub use spline::{Direction, SplineSurface};
 pub use teapot::{teapot, teapot_parts};
+pub use tensor::TensorPatch;
 pub use tessellation::{TessellationError, Tolerance, tessellate};
 
 use glam::{DVec2, DVec3};
