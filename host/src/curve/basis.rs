@@ -191,6 +191,18 @@ impl Basis {
         &self.form
     }
 
+    /// Whether the same control points give the same curve, to rounding, with spans of the same lengths.
+    pub(crate) fn agrees_with(&self, other: &Basis) -> bool {
+        let (a, b) = (&self.form, &other.form);
+        let lengths =
+            |form: &BezierForm| -> Vec<f64> { form.breaks.windows(2).map(|pair| pair[1] - pair[0]).collect() };
+        let is_shaped_alike = (a.degree, a.control_count, a.spans(), a.rows.len())
+            == (b.degree, b.control_count, b.spans(), b.rows.len());
+        is_shaped_alike
+            && lengths(a).iter().zip(lengths(b)).all(|(x, y)| (x - y).abs() <= CLOSE * x)
+            && a.rows.iter().zip(&b.rows).all(|(x, y)| x.is_close(y, CLOSE))
+    }
+
     /// Whether the spline passes through a control point at `t`, so that it can be cut there.
     fn is_full(&self, t: f64) -> bool {
         match &self.kind {
@@ -327,6 +339,9 @@ impl Basis {
         Refinement { basis, steps: vec![rows] }
     }
 }
+
+/// The difference that reversing a basis twice may make.
+const CLOSE: f64 = 1e-12;
 
 /// The most control points in one direction.
 const MAX_CONTROL: usize = 1 << 20;

@@ -131,6 +131,13 @@ impl Row {
         ControlPoint { point: around.point + offset, weight }
     }
 
+    /// Whether the same points have weights that differ by no more than `within`.
+    pub fn is_close(&self, other: &Row, within: f64) -> bool {
+        let mut pairs = self.weights.iter().zip(&other.weights);
+        let has_same_points = self.first == other.first && self.weights.len() == other.weights.len();
+        has_same_points && pairs.all(|(a, b)| (a - b).abs() <= within)
+    }
+
     /// The weights with the index of the point that each belongs to.
     pub fn terms(&self, count: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.weights.iter().enumerate().map(move |(k, weight)| ((self.first + k) % count, *weight))

@@ -3,7 +3,9 @@
 mod accuracy;
 mod bezier;
 mod border;
+mod continuity;
 mod curvature;
+mod join;
 mod nearest;
 mod parallelogram;
 mod patches;
@@ -14,10 +16,13 @@ mod spline;
 mod teapot;
 mod tensor;
 mod tessellation;
+mod trim;
 
 pub use accuracy::{Accuracy, chord_error};
 pub use bezier::BezierPatch;
+pub use continuity::{Joint, SurfaceSide, continuity, joint};
 pub use curvature::{Curved, normal_curvature};
+pub use join::{JoinError, Smoothness, joined};
 pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};
 pub use patches::{PatchError, PatchProblem, PatchSet};
@@ -28,6 +33,7 @@ pub use spline::{Direction, SplineSurface};
 pub use teapot::{teapot, teapot_parts};
 pub use tensor::TensorPatch;
 pub use tessellation::{TessellationError, Tolerance, tessellate};
+pub use trim::{TrimEdge, TrimError, TrimmedSurface, tessellate_adaptively, tessellate_trimmed};
 
 use glam::{DVec2, DVec3};
 
@@ -103,3 +109,5 @@ fn between(low: f64, high: f64, fraction: f64) -> f64 {
 
 #[cfg(test)]
 mod contract;
+#[cfg(test)]
+mod spline_tests;
