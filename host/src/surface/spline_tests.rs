@@ -206,59 +206,107 @@ fn joined_surfaces_have_no_crack() {
     assert_eq!((report.crowded, report.misoriented, report.euler_characteristic()), (0, 0, 1));
 }
 
-#[test]
-fn zz_scratch() {
-    let mut rows = Vec::new();
-    let mut run = |name: String, surface: &SplineSurface, chord: f64, angle: f64| {
-        let faces: Vec<_> =
-            surface.patches().iter().map(|p| TrimmedSurface::with_holes(p.clone(), vec![]).unwrap()).collect();
-        let start = std::time::Instant::now();
-        let grid = tessellate(surface.patches(), Tolerance::new(chord, angle)).unwrap();
-        let time = start.elapsed().as_secs_f64() * 1e3;
-        let start = std::time::Instant::now();
-        match tessellate_trimmed(&faces, Tolerance::new(chord, angle)) {
-            Ok(mesh) => {
-                let time2 = start.elapsed().as_secs_f64() * 1e3;
-                let report = mesh.edge_report();
-                let error = if mesh.triangles.len() < 4000 {
-                    chord_error(&mesh, surface.patches(), 3).unwrap().maximum
-                } else {
-                    0.0
-                };
-                rows.push(format!("{name} chord {chord} angle {angle}: {} in {time:.1} ms, trim {} in {time2:.1} ms, error {:.3} of chord, crowded {} mis {} coll {} sliv {} chi {} {}",
-                    grid.triangles.len(), mesh.triangles.len(), error / chord, report.crowded, report.misoriented, report.collapsed, report.slivers, report.euler_characteristic(), grid.edge_report().euler_characteristic()));
-            }
-            Err(error) => rows.push(format!("{name} {chord} {angle}: {error}")),
-        }
+/// Surfaces that are hard to tessellate.
+fn hard() -> Vec<(String, SplineSurface)> {
+    let beta = |bias, tension| {
+        let u = Basis::beta(6, bias, tension).unwrap();
+        SplineSurface::new(u.clone(), u, &net(6, 6), &[]).unwrap()
     };
-    for (chord, angle) in [(0.1, 180.0), (0.01, 180.0), (0.001, 180.0), (10.0, 10.0)] {
-        run("bbb".into(), &bbb_surface(1.0), chord, angle);
-        run("bbb rational".into(), &bbb_surface(10.0), chord, angle);
-        run("bbb wild".into(), &bbb_surface(1e6), chord, angle);
-        run("sphere".into(), &rational_sphere(1.0).unwrap(), chord, angle);
-        run("torus".into(), &rational_torus(2.0, 0.5).unwrap(), chord, angle);
-        for (bias, tension) in [(1e-3, 0.0), (1e3, 0.0), (1.0, 1e3), (1.0, 1e6), (1e3, 1e6)] {
-            let u = Basis::beta(6, bias, tension).unwrap();
-            let surface = SplineSurface::new(u.clone(), u, &net(6, 6), &[]).unwrap();
-            run(format!("beta {bias} {tension}"), &surface, chord, angle);
+    let cubic = || Basis::clamped(3, 6).unwrap();
+    let mut points = net(6, 6);
+    points[0] = vec![points[0][0]; 6];
+    points[3][3] = points[3][2];
+    points[4] = points[5].clone();
+    let coinciding = SplineSurface::new(cubic(), cubic(), &points, &[]).unwrap();
+    let mut surfaces = vec![
+        ("BBB".to_owned(), bbb_surface(1.0)),
+        ("rational".to_owned(), bbb_surface(10.0)),
+        ("wild weights".to_owned(), bbb_surface(1e6)),
+        ("coinciding".to_owned(), coinciding),
+        ("sphere".to_owned(), rational_sphere(1.0).unwrap()),
+        ("torus".to_owned(), rational_torus(2.0, 0.5).unwrap()),
+    ];
+    let extremes = [(1e-3, 0.0), (1e3, 0.0), (1.0, 1e3), (1.0, 1e6), (1e3, 1e6)];
+    surfaces.extend(extremes.map(|(bias, tension)| (format!("Beta {bias} {tension}"), beta(bias, tension))));
+    surfaces
+}
+
+#[test]
+fn spline_surfaces_are_tessellated_within_the_tolerance_without_cracks() {
+    for (name, surface) in hard() {
+        for chord in [0.1, 0.01] {
+            let tolerance = Tolerance::new(chord, 180.0);
+            let patches = surface.patches();
+            let meshes = [tessellate(patches, tolerance).unwrap(), tessellate_adaptively(patches, tolerance).unwrap()];
+            let surfaces: Vec<i64> = meshes.iter().map(|mesh| mesh.edge_report().euler_characteristic()).collect();
+            assert_eq!(surfaces[0], surfaces[1], "{name}");
+            for (mesh, least) in meshes.iter().zip([0.1, 0.3]) {
+                let report = mesh.edge_report();
+                assert_eq!((report.crowded, report.misoriented, report.collapsed), (0, 0, 0), "{name}");
+                let error =
+                    chord_error(mesh, patches, if mesh.triangles.len() < 3000 { 3 } else { 1 }).unwrap().maximum;
+                assert!(error <= chord, "{name}: {} of {chord}", error / chord);
+                assert!(error >= least * chord || mesh.triangles.len() > 3000, "{name}: {} of {chord}", error / chord);
+            }
         }
-        let mut points = net(6, 6);
-        points[0] = vec![points[0][0]; 6];
-        points[3][3] = points[3][2];
-        points[4] = points[5].clone();
-        let surface =
-            SplineSurface::new(Basis::clamped(3, 6).unwrap(), Basis::clamped(3, 6).unwrap(), &points, &[]).unwrap();
-        run("coinciding".into(), &surface, chord, angle);
-        let mut points = net(6, 6);
-        points.iter_mut().flatten().for_each(|p| p.z = 0.0);
-        let surface = SplineSurface::new(
-            Basis::clamped(3, 6).unwrap(),
-            Basis::clamped(3, 6).unwrap(),
-            &points,
-            &weights(6, 6, 3.0),
-        )
-        .unwrap();
-        run("flat".into(), &surface, chord, angle);
     }
-    println!("{}", rows.join("\n"));
+}
+
+#[test]
+fn adaptive_meshes_take_fewer_triangles_where_the_surface_is_uneven() {
+    for (name, surface) in hard().into_iter().filter(|(name, _)| name.starts_with("Beta") || name == "wild weights") {
+        let tolerance = Tolerance::new(0.01, 180.0);
+        let grid = tessellate(surface.patches(), tolerance).unwrap().triangles.len();
+        let adaptive = tessellate_adaptively(surface.patches(), tolerance).unwrap().triangles.len();
+        assert!(3 * adaptive < grid, "{name}: {adaptive} and {grid}");
+    }
+}
+
+#[test]
+fn flat_patches_are_refined_only_where_their_outline_bends() {
+    let flatten = |mut points: Vec<Vec<DVec3>>| {
+        points.iter_mut().flatten().for_each(|point| point.z = 0.0);
+        points
+    };
+    let cubic = Basis::clamped(3, 6).unwrap();
+    // Straight sides, uneven weights inside: two triangles for each patch.
+    let mut weights = weights(6, 6, 3.0);
+    weights.iter_mut().for_each(|row| row.fill(1.0));
+    let surface = SplineSurface::new(cubic.clone(), cubic, &flatten(net(6, 6)), &weights).unwrap();
+    for chord in [0.1, 1e-6] {
+        let mesh = tessellate_adaptively(surface.patches(), Tolerance::new(chord, 1.0)).unwrap();
+        assert_eq!(mesh.triangles.len(), 2 * surface.patches().len());
+        let mesh = tessellate(surface.patches(), Tolerance::new(chord, 1.0)).unwrap();
+        assert_eq!(mesh.triangles.len(), 2 * surface.patches().len());
+    }
+}
+
+#[test]
+fn the_teapot_has_no_cracks_when_refined_where_it_bends() {
+    for chord in [0.1, 0.02, 0.005] {
+        let patches = teapot();
+        let mesh = tessellate_adaptively(&patches, Tolerance::new(chord, 180.0)).unwrap();
+        let report = mesh.edge_report();
+        assert_eq!((report.crowded, report.misoriented, report.collapsed), (0, 0, 0));
+        assert_eq!(report.euler_characteristic(), 2 - 1);
+        assert!(mesh.with_holes_filled().is_closed());
+        let error = chord_error(&mesh, &patches, 3).unwrap().maximum;
+        assert!(error <= chord && error > 0.4 * chord, "{error} for {chord}");
+    }
+}
+
+#[test]
+fn normals_follow_the_angle_also_where_the_bend_is_sharp() {
+    for (name, surface) in hard().into_iter().filter(|(name, _)| !name.contains("1000000")) {
+        let mesh = tessellate_adaptively(surface.patches(), Tolerance::new(10.0, 25.0)).unwrap();
+        let report = mesh.edge_report();
+        assert_eq!((report.crowded, report.misoriented), (0, 0), "{name}");
+        let sharp = (0..mesh.triangles.len()).filter(|&triangle| {
+            let (n, p) = (mesh.corner_normals[triangle], mesh.corners(triangle));
+            let pairs = [(0, 1), (1, 2), (2, 0)];
+            let is_large = pairs.iter().any(|&(a, b)| p[a].distance(p[b]) > 0.1);
+            is_large && pairs.iter().any(|&(a, b)| n[a].angle_between(n[b]).to_degrees() > 25.1)
+        });
+        assert_eq!(sharp.count(), 0, "{name}");
+    }
 }

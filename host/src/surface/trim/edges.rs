@@ -213,7 +213,7 @@ fn segment_follows<S: Surface>(
     [from, to]: [f64; 2],
     tolerance: Tolerance,
 ) -> bool {
-    const STEPS: usize = 8;
+    const STEPS: usize = 16;
     let samples: Vec<(DVec3, DVec3)> = (0..=STEPS)
         .map(|k| inside(surface, at(from + (to - from) * k as f64 / STEPS as f64)))
         .map(|uv| (surface.point(uv), surface.normal(uv)))

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
+use super::super::accuracy::{distances, lattice};
 use super::super::tessellation::wanted_segments;
 use super::super::{Surface, TessellationError, Tolerance};
 use super::edges::Edges;
@@ -26,7 +27,10 @@ const MEASURED_PART: f64 = 0.85;
 /// sake of it: at a sharp edge or the tip of a cone the normals differ however near they are.
 const SHARP: f64 = 0.3;
 /// Triangles flatter than this, as height by length, are not divided in their middle.
-const FLAT: f64 = 1e-3;
+const FLAT: f64 = 1e-4;
+/// Steps of a side of the lattice where the triangles are measured as long as there are few.
+const DENSE_STEPS: usize = 6;
+const FEW_TRIANGLES: usize = 256;
 /// Where the distance of a triangle from the surface is measured, as weights of its corners.
 const MEASURED_AT: [[f64; 3]; 7] = {
     const T: f64 = 1.0 / 3.0;
@@ -176,7 +180,11 @@ impl<'a, S: Surface> Region<'a, S> {
                 let segments = triangles.len();
                 return Err(TessellationError::TooFine { surface: self.face, segments }.into());
             }
-            let far = triangles.par_iter().map(|triangle| self.is_far(*triangle, tolerance)).collect::<Vec<bool>>();
+            // While the triangles are few and large, something may hide between a few places of measuring.
+            let dense = lattice(DENSE_STEPS);
+            let places = if triangles.len() < FEW_TRIANGLES { &dense[..] } else { &MEASURED_AT[..] };
+            let is_far = |triangle: &[usize; 3]| self.is_far(*triangle, tolerance, places);
+            let far = triangles.par_iter().map(is_far).collect::<Vec<bool>>();
             let wanted: Vec<_> =
                 triangles.iter().zip(far).filter(|(_, far)| *far).map(|(triangle, _)| *triangle).collect();
             if wanted.is_empty() {
@@ -193,16 +201,24 @@ impl<'a, S: Surface> Region<'a, S> {
                 break;
             }
         }
-        let error = self.triangles().into_iter().map(|triangle| self.distance(triangle)).fold(0.0, f64::max);
-        if error <= tolerance.chord {
-            return Ok(());
-        }
-        Err(TessellationError::NotReached { surface: self.face, error }.into())
+        self.check(tolerance.chord)
+    }
+
+    /// Whether what could not be divided is near enough after all: by its nearest points, which are nearer than those of
+    /// equal parameters where the parameters are uneven.
+    fn check(&self, chord: f64) -> Result<(), TrimError> {
+        let off = self.triangles().into_iter().filter(|triangle| self.distance(*triangle, &MEASURED_AT) > chord);
+        let nearest = |triangle: [usize; 3]| {
+            let positions = triangle.map(|corner| self.corners[corner].position);
+            distances(self.surface, positions, triangle.map(|corner| self.corners[corner].uv), &MEASURED_AT).0
+        };
+        let error = off.map(nearest).fold(0.0, f64::max);
+        if error <= chord { Ok(()) } else { Err(TessellationError::NotReached { surface: self.face, error }.into()) }
     }
 
     /// Whether a triangle is too far from the surface, or its normals differ by too much.
-    fn is_far(&self, triangle: [usize; 3], tolerance: Tolerance) -> bool {
-        if self.distance(triangle) > MEASURED_PART * tolerance.chord {
+    fn is_far(&self, triangle: [usize; 3], tolerance: Tolerance, places: &[[f64; 3]]) -> bool {
+        if self.distance(triangle, places) > MEASURED_PART * tolerance.chord {
             return true;
         }
         let [a, b, c] = triangle.map(|corner| &self.corners[corner]);
@@ -212,15 +228,15 @@ impl<'a, S: Surface> Region<'a, S> {
         turns.into_iter().any(|turn| turn > tolerance.angle) && longest > self.size * (SHARP * tolerance.angle / 360.0)
     }
 
-    /// The distance between a triangle and the surface, as measured.
-    fn distance(&self, triangle: [usize; 3]) -> f64 {
+    /// The distance between a triangle and the surface as measured at `places`, the weights of its corners.
+    fn distance(&self, triangle: [usize; 3], places: &[[f64; 3]]) -> f64 {
         let [a, b, c] = triangle.map(|corner| &self.corners[corner]);
-        let off = MEASURED_AT.map(|[x, y, z]| {
-            let uv = a.uv * x + b.uv * y + c.uv * z;
-            let offset = a.position * x + b.position * y + c.position * z - self.surface.point(uv);
+        let off = places.iter().map(|[x, y, z]| {
+            let uv = a.uv * *x + b.uv * *y + c.uv * *z;
+            let offset = a.position * *x + b.position * *y + c.position * *z - self.surface.point(uv);
             offset.dot(self.surface.normal(uv)).abs()
         });
-        off.into_iter().fold(0.0, f64::max)
+        off.fold(0.0, f64::max)
     }
 
     /// Where to divide a triangle: in the middle of its longest edge, or, where that belongs to the outline, in its own
