@@ -49,6 +49,10 @@ impl Basis {
         Basis { form: bbb.form(), kind: Kind::Bbb(bbb) }
     }
 
+    fn checked(self) -> Result<Basis, SplineError> {
+        self.form.check_spans().map(|()| self)
+    }
+
     /// A single Bezier curve, parameters 0..=1.
     ///
     /// # Errors
@@ -63,7 +67,7 @@ impl Basis {
     /// # Errors
     /// [`SplineError`] with the knot that is wrong.
     pub fn b_spline(degree: usize, knots: &[f64]) -> Result<Basis, SplineError> {
-        Ok(Basis::of_knots(Knots::new(degree, knots.to_vec(), false)?))
+        Basis::of_knots(Knots::new(degree, knots.to_vec(), false)?).checked()
     }
 
     /// A closed B-spline: `knots` are those of one period with its end, one more than control points. Control point i has
@@ -72,7 +76,7 @@ impl Basis {
     /// # Errors
     /// [`SplineError`] with the knot that is wrong.
     pub fn closed_b_spline(degree: usize, knots: &[f64]) -> Result<Basis, SplineError> {
-        Ok(Basis::of_knots(Knots::new(degree, knots.to_vec(), true)?))
+        Basis::of_knots(Knots::new(degree, knots.to_vec(), true)?).checked()
     }
 
     /// The uniform B-spline of `count` control points, parameters 0..=`count` - `degree`.
@@ -126,7 +130,7 @@ impl Basis {
     /// # Errors
     /// [`SplineError`] with the joint or interval that is wrong.
     pub fn bbb(bias: &[f64], tension: &[f64], intervals: &[f64]) -> Result<Basis, SplineError> {
-        Ok(Basis::of_bbb(Bbb::new(bias.to_vec(), tension.to_vec(), intervals.to_vec(), false)?))
+        Basis::of_bbb(Bbb::new(bias.to_vec(), tension.to_vec(), intervals.to_vec(), false)?).checked()
     }
 
     /// The closed BBB-spline, as [`Basis::bbb`] but with as many intervals as joints, and a curve that begins and ends
@@ -135,7 +139,7 @@ impl Basis {
     /// # Errors
     /// [`SplineError`] with the joint or interval that is wrong.
     pub fn closed_bbb(bias: &[f64], tension: &[f64], intervals: &[f64]) -> Result<Basis, SplineError> {
-        Ok(Basis::of_bbb(Bbb::new(bias.to_vec(), tension.to_vec(), intervals.to_vec(), true)?))
+        Basis::of_bbb(Bbb::new(bias.to_vec(), tension.to_vec(), intervals.to_vec(), true)?).checked()
     }
 
     /// The Beta-spline of `count` control points: one bias and one tension for all joints, intervals of 1.
@@ -226,7 +230,8 @@ impl Basis {
     /// The same spline with another joint at `t`.
     ///
     /// # Errors
-    /// [`SplineError::Outside`]; [`SplineError::Multiplicity`] if there is no room for another joint.
+    /// [`SplineError::Outside`]; [`SplineError::Multiplicity`] if there is no room for another joint, [`SplineError::Short`]
+    /// if it would lie too near to another.
     pub(crate) fn inserted(&self, t: f64) -> Result<Refinement, SplineError> {
         self.check_parameter(t, false)?;
         if self.is_full(t) {
@@ -238,7 +243,7 @@ impl Basis {
             Kind::Knots(knots) => with(knots.inserted(t), Basis::of_knots),
             Kind::Bbb(bbb) => with(bbb.inserted(t), Basis::of_bbb),
         };
-        Ok(Refinement { basis, steps: vec![rows] })
+        Ok(Refinement { basis: basis.checked()?, steps: vec![rows] })
     }
 
     /// The same spline with as many joints at `t` as there is room for, and the parameter of these joints.

@@ -114,7 +114,12 @@ pub(crate) fn casteljau(count: usize, t: f64, at: impl Fn(usize) -> ControlPoint
     if t == 0.0 || t == 1.0 {
         return at(if t == 0.0 { 0 } else { count - 1 });
     }
-    let mut work = [ControlPoint::new(DVec3::ZERO); MAX_DEGREE + 1];
+    // Most degrees are low: a short list costs less to fill.
+    if count <= 8 { mixed::<8>(count, t, at) } else { mixed::<{ MAX_DEGREE + 1 }>(count, t, at) }
+}
+
+fn mixed<const MOST: usize>(count: usize, t: f64, at: impl Fn(usize) -> ControlPoint) -> ControlPoint {
+    let mut work = [ControlPoint::new(DVec3::ZERO); MOST];
     for (k, point) in work[..count].iter_mut().enumerate() {
         *point = at(k);
     }

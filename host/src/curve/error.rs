@@ -81,6 +81,14 @@ pub enum SplineError {
         /// The first of the three.
         index: usize,
     },
+    /// A span that is too short beside the others.
+    #[error("span {span} is {length} long; it must be zero or at least 1e-13 of the domain")]
+    Short {
+        /// Which span of those above zero.
+        span: usize,
+        /// Its length.
+        length: f64,
+    },
     /// A domain without length.
     #[error("no span has a length above zero")]
     NoSpan,

@@ -1,6 +1,10 @@
 //! The Bezier form of a spline: how the Bezier points of its spans come from its control points.
 
+use super::SplineError;
 use super::control::{ControlPoint, Row};
+
+/// The shortest span, as a part of the domain: below it, parameters are mostly rounding.
+const SHORTEST: f64 = 1e-13;
 
 /// The spans between breaks, each a Bezier curve of the degree; neighbours share the Bezier point of their joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +22,17 @@ impl BezierForm {
     /// The number of spans.
     pub fn spans(&self) -> usize {
         self.breaks.len() - 1
+    }
+
+    /// # Errors
+    /// [`SplineError::Short`] if a span is too short for the parameters in it to have digits.
+    pub fn check_spans(&self) -> Result<(), SplineError> {
+        let least = SHORTEST * (self.breaks[self.spans()] - self.breaks[0]);
+        let lengths = self.breaks.windows(2).map(|pair| pair[1] - pair[0]);
+        match lengths.enumerate().find(|(_, length)| !(*length >= least && *length > 1e-100)) {
+            Some((span, length)) => Err(SplineError::Short { span, length }),
+            None => Ok(()),
+        }
     }
 
     /// The Bezier point `k`, 0..=degree, of a span.

@@ -198,7 +198,10 @@ fn bad_bases_are_refused_with_the_place() {
     let fault_of = |intervals: &[f64]| fault(Basis::bbb(&[1.0; 4], &[0.0; 4], intervals));
     assert!(fault_of(&[1.0, 1.0, 0.0, 0.0, 0.0]).starts_with("the intervals 2 and the two that follow it"));
     assert_eq!(fault_of(&[1.0, 1.0, 0.0, 1.0, 1.0]), "no span has a length above zero");
+    let fault_of = |intervals: &[f64]| fault(Basis::bbb(&[1.0; 5], &[0.0; 5], intervals));
+    assert!(fault_of(&[1.0, 1.0, 1e12, 1e-12, 1.0, 1.0]).starts_with("span 1 is 0 long"));
     let curve = curve(&Basis::uniform(2, 4).unwrap(), 1.0);
+    assert!(matches!(curve.with_joint(1.0 + 1e-15), Err(SplineError::Short { .. })));
     assert_eq!(curve.with_joint(7.0).unwrap_err().to_string(), "parameter 7 is not inside 0..2");
     assert!(curve.subdivided(0.0).is_err() && curve.with_joint(f64::NAN).is_err());
 }

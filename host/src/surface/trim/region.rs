@@ -17,8 +17,13 @@ use crate::mesh::Mesh;
 
 /// The most that the scales of the two directions may differ.
 const MOST_UNEVEN: f64 = 1e3;
-/// The most triangles of a face.
+/// The most triangles of a face, and of all of them.
 const MAX_TRIANGLES: usize = 1 << 20;
+const MAX_TRIANGLES_OF_ALL: usize = 1 << 24;
+/// Faces that are refined at the same time.
+const AT_ONCE: usize = 16;
+/// The finest chord of an outline, as a part of what was asked for, that is tried for outlines that cross.
+const FINEST_OUTLINE: f64 = 1e-4;
 /// Rounds of refining; each halves the longest edges of the triangles that are too far away.
 const MAX_ROUNDS: usize = 64;
 /// The part of the chord that may be measured: a little more may be found between the places of measuring.
@@ -51,17 +56,15 @@ pub fn tessellate_trimmed<S: Surface>(faces: &[TrimmedSurface<S>], tolerance: To
     if !(chord > 0.0 && angle > 0.0) {
         return Err(TessellationError::Tolerance { chord, angle }.into());
     }
-    let mut edges = Edges::of(faces, tolerance)?;
-    let regions: Vec<Result<Region<S>, TrimError>> = faces
-        .par_iter()
-        .enumerate()
-        .map(|(face, trimmed)| {
-            let mut region = Region::outlined(face, trimmed, &edges, tolerance)?;
-            region.refine(tolerance)?;
-            Ok(region)
-        })
-        .collect();
-    let regions = regions.into_iter().collect::<Result<Vec<_>, _>>()?;
+    // Outlines that are near each other may cross when they are coarse: then they are made finer.
+    let mut outline = Tolerance::new(chord, angle);
+    let (mut edges, regions) = loop {
+        let edges = Edges::of(faces, outline)?;
+        match regions(faces, &edges, tolerance) {
+            Err(TrimError::Crossing { .. }) if outline.chord > FINEST_OUTLINE * chord => outline.chord *= 0.125,
+            result => break (edges, result?),
+        }
+    };
     for &(a, b) in regions.iter().flat_map(|region| &region.same) {
         edges.join(a, b);
     }
@@ -71,6 +74,29 @@ pub fn tessellate_trimmed<S: Surface>(faces: &[TrimmedSurface<S>], tolerance: To
         region.append(&mut mesh, &edges, &mut outline);
     }
     Ok(mesh)
+}
+
+/// The triangles of all faces over the vertices of their edges.
+fn regions<'a, S: Surface>(
+    faces: &'a [TrimmedSurface<S>],
+    edges: &Edges,
+    tolerance: Tolerance,
+) -> Result<Vec<Region<'a, S>>, TrimError> {
+    let outlined =
+        faces.par_iter().enumerate().map(|(face, trimmed)| Region::outlined(face, trimmed, edges, tolerance));
+    let mut regions = outlined.collect::<Result<Vec<_>, _>>()?;
+    let mut triangles = 0;
+    // Together they could be too many, so not all at once.
+    for some in regions.chunks_mut(AT_ONCE) {
+        let refined: Vec<Result<(), TrimError>> = some.par_iter_mut().map(|region| region.refine(tolerance)).collect();
+        refined.into_iter().collect::<Result<(), _>>()?;
+        triangles += some.iter().map(|region| 2 * region.corners.len()).sum::<usize>();
+        if triangles > MAX_TRIANGLES_OF_ALL {
+            let surface = some.first().map_or(0, |region| region.face);
+            return Err(TessellationError::TooFine { surface, segments: triangles }.into());
+        }
+    }
+    Ok(regions)
 }
 
 /// Approximates whole surfaces by triangles that are small only where the surface bends.

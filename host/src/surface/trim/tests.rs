@@ -181,6 +181,30 @@ fn a_trimmed_torus_stays_within_the_tolerance_and_angle() {
 }
 
 #[test]
+fn outlines_that_nearly_touch_are_made_finer_until_they_do_not_cross() {
+    let turned = circle(DVec2::ZERO, 0.25 * (1.0 - 1e-5)).transformed(&glam::DAffine3::from_rotation_z(0.3));
+    let inner = turned.transformed(&glam::DAffine3::from_translation(DVec3::new(0.5, 0.5, 0.0)));
+    let loops = vec![vec![edge(circle(DVec2::splat(0.5), 0.25))], vec![edge(inner)]];
+    let ring = [TrimmedSurface::new(plate(), loops).unwrap()];
+    let mesh = tessellate_trimmed(&ring, Tolerance::new(0.1, 180.0)).unwrap();
+    assert_eq!(mesh.edge_report().euler_characteristic(), 0);
+    assert!((mesh.area() - PI / 2.0 * (1.0 - (1.0f64 - 1e-5).powi(2))).abs() < 1e-5, "{}", mesh.area());
+}
+
+#[test]
+fn tolerances_too_fine_and_surfaces_that_are_not_finite_are_refused() {
+    let sphere = [TrimmedSurface::with_holes(Sphere::new(DVec3::ZERO, 1.0), vec![]).unwrap()];
+    for (chord, angle) in [(1e-30, 10.0), (0.1, 1e-9)] {
+        let fault = tessellate_trimmed(&sphere, Tolerance::new(chord, angle)).unwrap_err();
+        assert!(matches!(fault, TrimError::Tessellation(TessellationError::TooFine { surface: 0, .. })), "{fault}");
+    }
+    let broken = Parallelogram::new(DVec3::ZERO, DVec3::X, DVec3::splat(f64::NAN));
+    let broken = [TrimmedSurface::with_holes(broken, vec![]).unwrap()];
+    let fault = tessellate_trimmed(&broken, Tolerance::new(0.1, 10.0)).unwrap_err();
+    assert!(matches!(fault, TrimError::Tessellation(TessellationError::NotFinite { surface: 0 })));
+}
+
+#[test]
 fn bad_loops_are_refused_with_the_place() {
     let fault = |loops| TrimmedSurface::new(plate(), loops).unwrap_err().to_string();
     assert_eq!(fault(vec![vec![]]), "loop 0 has no edges");
