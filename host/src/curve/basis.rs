@@ -2,6 +2,7 @@
 
 use super::SplineError;
 use super::bbb::Bbb;
+use super::bezier::check_degree;
 use super::control::{ControlPoint, Row};
 use super::form::{BezierForm, apply};
 use super::knots::Knots;
@@ -58,7 +59,7 @@ impl Basis {
     /// # Errors
     /// [`SplineError::Degree`].
     pub fn bezier(degree: usize) -> Result<Basis, SplineError> {
-        Basis::clamped(degree, degree + 1)
+        Basis::clamped(degree, degree.saturating_add(1))
     }
 
     /// A B-spline over `knots`: as many as control points and `degree` + 1 more. The domain begins and ends `degree`
@@ -84,9 +85,9 @@ impl Basis {
     /// # Errors
     /// [`SplineError`] if the degree or the number of points does not fit.
     pub fn uniform(degree: usize, count: usize) -> Result<Basis, SplineError> {
-        let knots: Vec<f64> = (0..count.saturating_add(degree + 1)).map(|k| k as f64 - degree as f64).collect();
+        check_degree(degree)?;
         Basis::check_count(count, degree + 1)?;
-        Basis::b_spline(degree, &knots)
+        Basis::b_spline(degree, &(0..=count + degree).map(|k| k as f64 - degree as f64).collect::<Vec<_>>())
     }
 
     /// The closed uniform B-spline of `count` control points, parameters 0..=`count`.
@@ -94,6 +95,7 @@ impl Basis {
     /// # Errors
     /// [`SplineError`] if the degree or the number of points does not fit.
     pub fn closed_uniform(degree: usize, count: usize) -> Result<Basis, SplineError> {
+        check_degree(degree)?;
         Basis::check_count(count, degree + 1)?;
         Basis::closed_b_spline(degree, &(0..=count).map(|k| k as f64).collect::<Vec<_>>())
     }
@@ -104,14 +106,18 @@ impl Basis {
     /// # Errors
     /// [`SplineError`] if the degree or the number of points does not fit.
     pub fn clamped(degree: usize, count: usize) -> Result<Basis, SplineError> {
+        check_degree(degree)?;
         Basis::check_count(count, degree + 1)?;
         let knot = |k: usize| k.clamp(degree, count) as f64 - degree as f64;
         Basis::b_spline(degree, &(0..=count + degree).map(knot).collect::<Vec<_>>())
     }
 
     fn check_count(found: usize, least: usize) -> Result<(), SplineError> {
-        let is_enough = found >= least && found <= MAX_CONTROL;
-        if is_enough { Ok(()) } else { Err(SplineError::TooFew { what: "control points", found, least }) }
+        let what = "control points";
+        if found < least {
+            return Err(SplineError::TooFew { what, found, least });
+        }
+        if found > MAX_CONTROL { Err(SplineError::TooMany { what, found, most: MAX_CONTROL }) } else { Ok(()) }
     }
 
     /// The cubic BBB-spline with a bias and a tension for each control point and an interval before and after each.

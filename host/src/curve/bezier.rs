@@ -177,7 +177,7 @@ mod tests {
         for (degree, t) in [(1, 0.3), (2, 0.0), (3, 0.7), (5, 1.0), (9, 0.41), (32, 0.5)] {
             let values = bernstein(degree, t);
             let mut binomial = 1.0;
-            for k in 0..=degree {
+            for (k, found) in (0..=degree).map(|k| (k, [0, 1, 2].map(|order| values[order][k]))) {
                 let power = |base: f64, exponent: isize| if exponent < 0 { 0.0 } else { base.powi(exponent as i32) };
                 let (i, j) = (k as isize, (degree - k) as isize);
                 let (fi, fj) = (k as f64, (degree - k) as f64);
@@ -188,9 +188,9 @@ mod tests {
                     * (fi * (fi - 1.0) * term(i - 2, j) - 2.0 * fi * fj * term(i - 1, j - 1)
                         + fj * (fj - 1.0) * term(i, j - 2));
                 let scale = (degree * degree) as f64;
-                assert!((values[0][k] - value).abs() < 1e-15, "{degree} {k}");
-                assert!((values[1][k] - first).abs() < 1e-14 * scale, "{degree} {k}");
-                assert!((values[2][k] - second).abs() < 1e-14 * scale, "{degree} {k}: {} {second}", values[2][k]);
+                assert!((found[0] - value).abs() < 1e-15, "{degree} {k}");
+                assert!((found[1] - first).abs() < 1e-14 * scale, "{degree} {k}");
+                assert!((found[2] - second).abs() < 1e-14 * scale, "{degree} {k}: {} {second}", found[2]);
                 binomial *= (degree - k) as f64 / (k + 1) as f64;
             }
         }

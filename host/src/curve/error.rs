@@ -31,6 +31,16 @@ pub enum SplineError {
         /// The least length.
         least: usize,
     },
+    /// A list that is too long.
+    #[error("{found} {what} were given, the limit is {most}")]
+    TooMany {
+        /// What the list holds.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The greatest length.
+        most: usize,
+    },
     /// A row of a control mesh with another length than the first.
     #[error("row {row} has {found} {what}, row 0 has {needed}")]
     Row {

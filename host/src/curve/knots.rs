@@ -27,7 +27,7 @@ impl Knots {
             return Err(SplineError::TooFew { what: "knots", found: values.len(), least });
         }
         for (index, &value) in values.iter().enumerate() {
-            if !(value.abs() <= 1e100) {
+            if !value.is_finite() || value.abs() > 1e100 {
                 return Err(SplineError::Value { what: "knot", index, value, range: "a number within 1e100" });
             }
             if index > 0 && value < values[index - 1] {
@@ -103,8 +103,9 @@ impl Knots {
                 let low = self.at(k - (p - j) as isize);
                 let high = self.at(k + (j + 1 - r) as isize);
                 let (keep, take) = ((high - x) / (high - low), (x - low) / (high - low));
-                for m in 0..=p {
-                    rows[j][m] = keep * rows[j - 1][m] + take * rows[j][m];
+                let (before, own) = rows.split_at_mut(j);
+                for (own, other) in own[0].iter_mut().zip(&before[j - 1]) {
+                    *own = keep * other + take * *own;
                 }
             }
         }

@@ -1,4 +1,10 @@
 //! Surfaces that are known exactly, and the meshes that approximate them to a tolerance.
+//!
+//! A [`SplineSurface`] is a mesh of control points over a [`crate::curve::Basis`] in each direction; its
+//! [`SplineSurface::patches`] are what is tessellated. [`tessellate`] makes grids, the better choice for even surfaces;
+//! [`tessellate_adaptively`] makes triangles that are small only where the surface bends, and [`tessellate_trimmed`] the
+//! same for surfaces of which curves cut parts off. [`joined`] makes surfaces meet smoothly, [`continuity`] tells how
+//! smoothly they do.
 
 mod accuracy;
 mod bezier;

@@ -18,7 +18,7 @@ fn circle_basis() -> Result<Basis, SplineError> {
 }
 
 fn circle_weight(k: usize) -> f64 {
-    if k % 2 == 0 { FRAC_1_SQRT_2 } else { 1.0 }
+    if k.is_multiple_of(2) { FRAC_1_SQRT_2 } else { 1.0 }
 }
 
 /// The surface that `profile`, a curve in the plane z = 0, makes when it turns about the y axis.

@@ -234,7 +234,7 @@ fn hard() -> Vec<(String, SplineSurface)> {
 #[test]
 fn spline_surfaces_are_tessellated_within_the_tolerance_without_cracks() {
     for (name, surface) in hard() {
-        for chord in [0.1, 0.01] {
+        for chord in [0.1, 0.02] {
             let tolerance = Tolerance::new(chord, 180.0);
             let patches = surface.patches();
             let meshes = [tessellate(patches, tolerance).unwrap(), tessellate_adaptively(patches, tolerance).unwrap()];

@@ -79,17 +79,15 @@ impl TensorPatch {
         let orders = [(1, 0), (0, 1), (2, 0), (1, 1), (0, 2)];
         let mut points = [DVec3::ZERO; 5];
         let mut weights = [0.0; 5];
-        for i in 0..=p {
-            for j in 0..=q {
-                let control = self.control(i, j);
-                let ratio = control.weight / origin.weight;
-                let offset = (control.point - origin.point) * ratio;
-                for (k, (a, b)) in orders.into_iter().enumerate() {
-                    let part = by_u[a][i] * by_v[b][j];
-                    points[k] += offset * part;
-                    // The parts of a derivative add up to 0: taking off the weight at uv costs nothing, keeps digits.
-                    weights[k] += (ratio - 1.0) * part;
-                }
+        for (index, control) in self.control.iter().enumerate() {
+            let (i, j) = (index / (q + 1), index % (q + 1));
+            let ratio = control.weight / origin.weight;
+            let offset = (control.point - origin.point) * ratio;
+            for (k, (a, b)) in orders.into_iter().enumerate() {
+                let part = by_u[a][i] * by_v[b][j];
+                points[k] += offset * part;
+                // The parts of a derivative add up to 0: taking off the weight at uv costs nothing, keeps digits.
+                weights[k] += (ratio - 1.0) * part;
             }
         }
         // With the origin in the point itself, the quotient rule loses its first terms.
@@ -107,17 +105,15 @@ impl TensorPatch {
         let along_v = [bernstein_along(q, uv.y, inward.y), derivative_along(q, uv.y, inward.y)];
         // Homogeneous coordinates, their derivatives by u and by v, each as a polynomial in the way.
         let mut series = [(); 3].map(|()| (vec![DVec3::ZERO; p + q + 1], vec![0.0; p + q + 1]));
-        for i in 0..=p {
-            for j in 0..=q {
-                let control = self.control(i, j);
-                let ratio = control.weight / origin.weight;
-                let offset = (control.point - origin.point) * ratio;
-                for ((points, weights), (a, b)) in series.iter_mut().zip([(0, 0), (1, 0), (0, 1)]) {
-                    for (k, x) in along_u[a][i].iter().enumerate() {
-                        for (l, y) in along_v[b][j].iter().enumerate() {
-                            points[k + l] += offset * (x * y);
-                            weights[k + l] += ratio * (x * y);
-                        }
+        for (index, control) in self.control.iter().enumerate() {
+            let (i, j) = (index / (q + 1), index % (q + 1));
+            let ratio = control.weight / origin.weight;
+            let offset = (control.point - origin.point) * ratio;
+            for ((points, weights), (a, b)) in series.iter_mut().zip([(0, 0), (1, 0), (0, 1)]) {
+                for (k, x) in along_u[a][i].iter().enumerate() {
+                    for (l, y) in along_v[b][j].iter().enumerate() {
+                        points[k + l] += offset * (x * y);
+                        weights[k + l] += ratio * (x * y);
                     }
                 }
             }

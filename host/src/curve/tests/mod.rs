@@ -179,6 +179,8 @@ fn closed_curves_end_where_they_begin_to_the_bit() {
 fn bad_bases_are_refused_with_the_place() {
     let fault = |result: Result<Basis, SplineError>| result.unwrap_err().to_string();
     assert_eq!(fault(Basis::bezier(0)), "degree 0 is outside 1..=32");
+    assert_eq!(fault(Basis::bezier(usize::MAX)), format!("degree {} is outside 1..=32", usize::MAX));
+    assert_eq!(fault(Basis::uniform(3, 1 << 40)), "1099511627776 control points were given, the limit is 1048576");
     assert_eq!(fault(Basis::uniform(3, 3)), "3 control points were given, at least 4 are needed");
     assert_eq!(fault(Basis::b_spline(1, &[0.0, 1.0])), "2 knots were given, at least 4 are needed");
     let knots = [0.0, 0.0, 1.0, 0.5, 2.0, 2.0];

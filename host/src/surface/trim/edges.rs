@@ -224,6 +224,7 @@ fn segment_follows<S: Surface>(
         let offset = point - a;
         let is_near = (offset - along * offset.dot(along)).length() <= OUTLINE_PART * tolerance.chord;
         let turn = first.angle_between(normal).max(last.angle_between(normal)).to_degrees();
-        is_near && !(turn > OUTLINE_PART * tolerance.angle)
+        // A normal that is not known turns by nothing.
+        is_near && (turn <= OUTLINE_PART * tolerance.angle || turn.is_nan())
     })
 }

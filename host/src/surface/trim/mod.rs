@@ -96,7 +96,7 @@ impl<S: Surface> TrimmedSurface<S> {
                     return Err(TrimError::Outside { loop_index, edge, at });
                 }
                 let gap = current.uv(1.0).distance(edges[(edge + 1) % edges.len()].uv(0.0));
-                if !(gap <= CLOSED * (high - low).max_element()) {
+                if gap > CLOSED * (high - low).max_element() {
                     return Err(TrimError::Open { loop_index, edge, gap });
                 }
             }
@@ -138,7 +138,7 @@ impl<S: Surface> TrimmedSurface<S> {
 
 impl TrimEdge {
     /// The parameters at a fraction of the curve.
-    pub(self) fn uv(&self, fraction: f64) -> DVec2 {
+    fn uv(&self, fraction: f64) -> DVec2 {
         let [low, high] = self.curve.domain();
         self.curve.point(super::between(low, high, fraction)).truncate()
     }

@@ -168,7 +168,7 @@ fn a_trimmed_torus_stays_within_the_tolerance_and_angle() {
     let torus = rational_torus(2.0, 0.7).unwrap();
     let hole = vec![edge(circle(DVec2::new(2.1, 1.8), 0.9))];
     let trimmed = [TrimmedSurface::with_holes(torus.clone(), vec![hole]).unwrap()];
-    for (chord, angle) in [(0.05, 180.0), (0.005, 180.0), (10.0, 12.0)] {
+    for (chord, angle) in [(0.05, 180.0), (0.01, 180.0), (10.0, 12.0)] {
         let mesh = tessellate_trimmed(&trimmed, Tolerance::new(chord, angle)).unwrap();
         let report = mesh.edge_report();
         assert_eq!((report.crowded, report.misoriented, report.euler_characteristic()), (0, 0, -1));
