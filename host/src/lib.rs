@@ -5,6 +5,7 @@
 pub mod numeric;
 pub mod polygon;
 pub mod picture;
+pub mod curve;
 pub mod mesh;
 pub mod octree;
 pub mod subdivision;

@@ -51,7 +51,12 @@ pub fn chord_error<S: Surface>(mesh: &Mesh, surfaces: &[S], density: usize) -> R
 }
 
 /// The largest distance and the sum of the squares at `samples`, the weights of the three corners.
-fn distances<S: Surface>(surface: &S, corners: [DVec3; 3], parameters: [DVec2; 3], samples: &[[f64; 3]]) -> (f64, f64) {
+pub(super) fn distances<S: Surface>(
+    surface: &S,
+    corners: [DVec3; 3],
+    parameters: [DVec2; 3],
+    samples: &[[f64; 3]],
+) -> (f64, f64) {
     let mut maximum = 0.0f64;
     let mut sum = 0.0;
     for &[a, b, c] in samples {
@@ -65,7 +70,7 @@ fn distances<S: Surface>(surface: &S, corners: [DVec3; 3], parameters: [DVec2; 3
 }
 
 /// The points of a triangular lattice of `steps` steps a side, as weights of the corners.
-fn lattice(steps: usize) -> Vec<[f64; 3]> {
+pub(super) fn lattice(steps: usize) -> Vec<[f64; 3]> {
     let at = |k: usize| k as f64 / steps as f64;
     (0..=steps).flat_map(|i| (0..=steps - i).map(move |j| [at(steps - i - j), at(i), at(j)])).collect()
 }

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::*;
+use crate::curve::Basis;
 
 fn members() -> Vec<(&'static str, Box<dyn Surface>)> {
     let sphere = Sphere::new(DVec3::new(1.0, -2.0, 0.5), 3.0);
@@ -20,7 +21,34 @@ fn members() -> Vec<(&'static str, Box<dyn Surface>)> {
     for patch in teapot() {
         members.push(("patch of the teapot", Box::new(patch)));
     }
+    members.extend(splines());
     members
+}
+
+/// Tensor patches and spline surfaces of several kinds, with poles and weights among them.
+fn splines() -> Vec<(&'static str, Box<dyn Surface>)> {
+    let net = |rows: usize, columns: usize| -> Vec<Vec<DVec3>> {
+        let at = |i: usize, j: usize| DVec3::new(i as f64, j as f64, ((i * 3 + j * 5) % 7) as f64 * 0.2);
+        (0..rows).map(|i| (0..columns).map(|j| at(i, j)).collect()).collect()
+    };
+    let weights: Vec<Vec<f64>> = (0..4).map(|i| (0..5).map(|j| 1.0 + ((i + j) % 3) as f64).collect()).collect();
+    let bbb =
+        Basis::bbb(&[1.0, 2.0, 0.5, 1.0, 1.0], &[0.0, 3.0, 1.0, 9.0, 0.0], &[1.0, 0.5, 1.0, 2.0, 0.0, 1.0]).unwrap();
+    let sphere = rational_sphere(2.0).unwrap();
+    vec![
+        ("rational patch", Box::new(TensorPatch::new(&net(4, 5), &weights).unwrap())),
+        ("patch of a sphere", Box::new(sphere.patches()[3].clone())),
+        ("patch at a pole", Box::new(sphere.patches()[4].clone())),
+        ("torus", Box::new(rational_torus(2.0, 0.7).unwrap().patches()[6].clone())),
+        ("B-spline", {
+            let (u, v) = (Basis::clamped(3, 4).unwrap(), Basis::bezier(4).unwrap());
+            Box::new(SplineSurface::new(u, v, &net(4, 5), &weights).unwrap())
+        }),
+        ("patch of a BBB-spline", {
+            let surface = SplineSurface::new(bbb.clone(), Basis::closed_beta(4, 1.5, 2.0).unwrap(), &net(5, 4), &[]);
+            Box::new(surface.unwrap().patches()[5].clone())
+        }),
+    ]
 }
 
 fn samples(surface: &dyn Surface, count: usize) -> Vec<DVec2> {

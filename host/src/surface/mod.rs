@@ -1,25 +1,45 @@
 //! Surfaces that are known exactly, and the meshes that approximate them to a tolerance.
+//!
+//! A [`SplineSurface`] is a mesh of control points over a [`crate::curve::Basis`] in each direction; its
+//! [`SplineSurface::patches`] are what is tessellated. [`tessellate`] makes grids, the better choice for even surfaces;
+//! [`tessellate_adaptively`] makes triangles that are small only where the surface bends, and [`tessellate_trimmed`] the
+//! same for surfaces of which curves cut parts off. [`joined`] makes surfaces meet smoothly, [`continuity`] tells how
+//! smoothly they do.
 
 mod accuracy;
 mod bezier;
 mod border;
+mod continuity;
+mod curvature;
+mod join;
 mod nearest;
 mod parallelogram;
 mod patches;
 mod placed;
+mod revolution;
 mod sphere;
+mod spline;
 mod teapot;
+mod tensor;
 mod tessellation;
+mod trim;
 
 pub use accuracy::{Accuracy, chord_error};
 pub use bezier::BezierPatch;
+pub use continuity::{Joint, SurfaceSide, continuity, joint};
+pub use curvature::{Curved, normal_curvature};
+pub use join::{JoinError, Smoothness, joined};
 pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};
 pub use patches::{PatchError, PatchProblem, PatchSet};
 pub use placed::Placed;
+pub use revolution::{rational_sphere, rational_torus, revolved};
 pub use sphere::Sphere;
+pub use spline::{Direction, SplineSurface};
 pub use teapot::{teapot, teapot_parts};
+pub use tensor::TensorPatch;
 pub use tessellation::{TessellationError, Tolerance, tessellate};
+pub use trim::{TrimEdge, TrimError, TrimmedSurface, tessellate_adaptively, tessellate_trimmed};
 
 use glam::{DVec2, DVec3};
 
@@ -95,3 +115,5 @@ fn between(low: f64, high: f64, fraction: f64) -> f64 {
 
 #[cfg(test)]
 mod contract;
+#[cfg(test)]
+mod spline_tests;

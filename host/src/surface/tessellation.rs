@@ -128,6 +128,21 @@ struct Look {
     turn: f64,
 }
 
+impl Look {
+    /// The segments that the direction takes, not rounded.
+    fn segments(&self, tolerance: Tolerance) -> f64 {
+        // The sagittas of both directions add up, so each gets half of the chord.
+        let by_chord = (self.sagitta / (0.5 * tolerance.chord)).sqrt();
+        by_chord.max(self.turn / tolerance.angle)
+    }
+}
+
+/// The segments that the directions u and v of a surface take by a first look, not rounded; `None` if a point is not
+/// finite.
+pub(super) fn wanted_segments<S: Surface>(surface: &S, tolerance: Tolerance) -> Option<[f64; 2]> {
+    look(surface).map(|looks| looks.map(|look| look.segments(tolerance)))
+}
+
 impl Grids {
     fn fitted<S: Surface>(surfaces: &[S], borders: &Borders, tolerance: Tolerance) -> Result<Grids, TessellationError> {
         let looks: Vec<Option<[Look; 2]>> = surfaces.par_iter().map(look).collect();
@@ -138,10 +153,7 @@ impl Grids {
         let mut grids = Grids { strips: borders.strips(), segments: vec![1; borders.first.len()] };
         for (surface, looks) in looks.iter().enumerate() {
             for (axis, look) in looks.iter().enumerate() {
-                // The sagittas of both directions add up, so each gets half of the chord.
-                let by_chord = (look.sagitta / (0.5 * tolerance.chord)).sqrt();
-                let by_angle = look.turn / tolerance.angle;
-                grids.raise(borders, surface, axis, by_chord.max(by_angle).ceil().max(1.0))?;
+                grids.raise(borders, surface, axis, look.segments(tolerance).ceil().max(1.0))?;
             }
         }
         grids.raise_until_measured(surfaces, borders, &looks, tolerance.chord)?;
