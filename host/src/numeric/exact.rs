@@ -154,7 +154,7 @@ impl Add for Twofold {
 impl Sub for Twofold {
     type Output = Twofold;
     fn sub(self, other: Twofold) -> Twofold {
-        self + Twofold { high: -other.high, low: -other.low }
+        Add::add(self, Twofold { high: -other.high, low: -other.low })
     }
 }
 
@@ -280,7 +280,7 @@ impl Add for Exact {
 impl Sub for Exact {
     type Output = Exact;
     fn sub(self, other: Exact) -> Exact {
-        self + other.negated()
+        Add::add(self, other.negated())
     }
 }
 

@@ -33,7 +33,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 2] = [
+pub const EMBEDDED: [Embedded; 3] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -43,6 +43,11 @@ pub const EMBEDDED: [Embedded; 2] = [
         name: "primitives",
         summary: "every primitive shape, in a row",
         text: include_str!("../../scenes/primitives.rhai"),
+    },
+    Embedded {
+        name: "flange",
+        summary: "a machine part of solids that are united, intersected and subtracted",
+        text: include_str!("../../scenes/flange.rhai"),
     },
 ];
 
