@@ -4,7 +4,8 @@
 //! Each picture is checked before it is timed: the light is that of the strokes, the bytes are there, and those of both
 //! processors agree within one. A drawer of plain smooth lines (Wu 1991: two pixels a step, no spot, no ramp, no energy,
 //! colour added to bytes) runs beside them.
-//! `THREADS=1` in the environment lets everything run on one thread; otherwise as many as there are processors.
+//! `THREADS=1` in the environment lets everything run on one thread; otherwise as many as there are processors. With the
+//! word `target` as argument only the row of the target is measured.
 
 use ps340::{
     calligraphic::{self, Beam, Controls, Display, Drawer, Gpu},
@@ -146,22 +147,29 @@ fn main() {
     let threads = std::env::var("THREADS").ok().and_then(|word| word.parse().ok()).unwrap_or(0);
     let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { return };
     println!("strokes to light to bytes, {} threads, the shortest of {RUNS} runs", pool.current_num_threads());
-    let mut drawers = vec![Drawer::Processor];
-    match Gpu::open(true) {
-        Ok(gpu) => drawers.push(Drawer::Gpu(Arc::new(gpu))),
-        Err(error) => println!("no graphics processor: {error}"),
-    }
     pool.install(|| {
-        for drawer in &drawers {
-            println!("\ndrawn by {drawer}");
-            each(|strokes, pixels, size| row(strokes, pixels, size, drawer));
+        if !std::env::args().any(|word| word == "target") {
+            every_row();
         }
         println!(
             "\nthe target: 100,000 strokes of ten pixels in a frame of 30 Hz, 33.3 ms, by the processor; even intensity"
         );
         let even = strokes(100_000, 10.0, 1024).into_iter().map(|s| Stroke { intensity: [s.intensity[0]; 2], ..s });
         row(&even.collect::<Vec<_>>(), 10.0, 1024, &Drawer::Processor);
-        println!("\nsmooth lines by Wu, one thread");
-        each(wu_row);
     });
+}
+
+/// Every number, length and size, by every drawer and by the peer.
+fn every_row() {
+    let mut drawers = vec![Drawer::Processor];
+    match Gpu::open(true) {
+        Ok(gpu) => drawers.push(Drawer::Gpu(Arc::new(gpu))),
+        Err(error) => println!("no graphics processor: {error}"),
+    }
+    for drawer in &drawers {
+        println!("\ndrawn by {drawer}");
+        each(|strokes, pixels, size| row(strokes, pixels, size, drawer));
+    }
+    println!("\nsmooth lines by Wu, one thread");
+    each(wu_row);
 }
