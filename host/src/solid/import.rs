@@ -49,6 +49,13 @@ pub fn solid(mesh: Mesh) -> Result<Mesh, SolidError> {
     Ok(mesh)
 }
 
+/// Puts right what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.
+pub fn cleaned(mesh: Mesh) -> Mesh {
+    let mut mesh = welded(mesh);
+    dissolve(&mut mesh);
+    mesh
+}
+
 /// The mesh with one vertex for each place, and without triangles that use one place twice.
 fn welded(mut mesh: Mesh) -> Mesh {
     let first = mesh.first_of_each_position();

@@ -13,8 +13,12 @@ use crate::mesh::Mesh;
 /// What a closed surface bounds.
 ///
 /// Its mesh is closed and consistently oriented: every edge is run through as often one way as the other. No triangle
-/// lacks an area. Edges of four triangles are allowed, as where two cubes share an edge. The surface should not cross
-/// itself; where it does, results of Boolean operations are those of the parts that it winds around.
+/// lacks an area. Edges of four triangles are allowed, as where two cubes share an edge. The surface must not cross itself,
+/// which is not checked.
+///
+/// Results have rounded points. Where two surfaces lie within a few roundings of each other, rounding can make a result
+/// cross itself, so that a further operation on it may go wrong: give the whole of an expression to [`Solid::evaluate`],
+/// which rounds only once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     mesh: Mesh,

@@ -317,3 +317,35 @@ fn adversarial_pairs_keep_the_identities() {
     }
     assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
 }
+
+#[test]
+fn results_serve_as_operands() {
+    let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(31);
+    for round in 0..40 {
+        // Cubes that nearly coincide, turned by little or by much.
+        let power = [-12.0, -9.0, -6.0, -1.0][round % 4];
+        let mut turned = || {
+            let mut number = || random.random_range(-1.0..1.0);
+            let axis = DVec3::new(number(), number(), number()).normalize();
+            let shift = DVec3::new(number(), number(), number()).round() * 0.5;
+            let turn = DAffine3::from_axis_angle(axis, number() * 10f64.powf(power));
+            moved(&cube(DVec3::splat(-0.5), DVec3::splat(0.5)), DAffine3::from_translation(shift) * turn)
+        };
+        let meshes: Vec<Mesh> = (0..5).map(|_| turned()).collect();
+        let (mut solid, mut expression) = (Solid::new(meshes[0].clone()).unwrap(), Expression::Operand(0));
+        for (index, mesh) in meshes.iter().enumerate().skip(1) {
+            let next = Solid::new(mesh.clone()).unwrap();
+            let operand = Expression::Operand(index);
+            (solid, expression) = match (round + index) % 3 {
+                0 => (solid.difference(&next), Expression::difference(expression, operand)),
+                1 => (solid.union(&next), Expression::Union(vec![expression, operand])),
+                _ if index == 4 => (solid.intersection(&next), Expression::Intersection(vec![expression, operand])),
+                _ => (solid.union(&next), Expression::Union(vec![expression, operand])),
+            };
+            let at_once = evaluate(meshes.iter().collect(), &expression).mesh;
+            let (step, whole) = (exact_volume(solid.mesh()), exact_volume(&at_once));
+            assert!((step - whole).abs() < 1e-14, "{round} {index} 1e{power}: {step} {whole}");
+            assert!(Solid::new(solid.mesh().clone()).is_ok() && balanced(&at_once));
+        }
+    }
+}

@@ -160,7 +160,8 @@ fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     ordered.sort_unstable_by_key(|&(face, _)| arrangement.triangles[face as usize]);
     let mut covers: Vec<Vec<u32>> = vec![Vec::new(); sheet.triangulation.triangles.len()];
     for (face, border) in ordered {
-        for triangle in inside_of(&sheet, arrangement.faces[face as usize].turn, border) {
+        let sides = (0..border.len()).map(|k| [border[k], border[(k + 1) % border.len()]]);
+        for triangle in inside_of(&sheet, arrangement.faces[face as usize].turn, sides) {
             covers[triangle as usize].push(face);
         }
     }
@@ -175,6 +176,35 @@ fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     facets
 }
 
+/// A part of the plane of a face.
+pub struct Region<'a> {
+    /// The face.
+    pub face: u32,
+    /// All points in it and on its borders.
+    pub points: &'a [u32],
+    /// Its borders, piece by piece, as the face turns.
+    pub borders: &'a [[u32; 2]],
+}
+
+impl Region<'_> {
+    /// Triangles that cover it, turned as the face.
+    pub fn triangles(&self, arrangement: &Arrangement) -> Vec<[u32; 3]> {
+        let face = &arrangement.faces[self.face as usize];
+        let places = self.points.iter().map(|&p| arrangement.points[p as usize].near());
+        let helpers = around(face.axis, places);
+        let mut sheet = Sheet {
+            arrangement,
+            triangulation: Triangulation::new(face.axis, helpers.each_ref()),
+            inside: FxHashMap::default(),
+            outside: vec![NONE; 3],
+        };
+        self.points.iter().for_each(|&point| sheet.insert(point));
+        self.borders.iter().for_each(|&border| sheet.fix(border));
+        let found = inside_of(&sheet, face.turn, self.borders.iter().copied());
+        found.into_iter().map(|triangle| sheet.facet(triangle as usize, face.turn)).collect()
+    }
+}
+
 /// A triangle far around some points, seen along an axis.
 fn around(axis: usize, points: impl Iterator<Item = DVec3>) -> [Point; 3] {
     let [x, y] = others(axis);
@@ -186,11 +216,10 @@ fn around(axis: usize, points: impl Iterator<Item = DVec3>) -> [Point; 3] {
     })
 }
 
-/// The triangles inside a border that turns one way or the other.
-fn inside_of(sheet: &Sheet, turn: f64, border: &[u32]) -> Vec<u32> {
-    let numbers: Vec<u32> = border.iter().map(|p| sheet.inside[p]).collect();
-    let sides = (0..numbers.len()).map(|k| (numbers[k], numbers[(k + 1) % numbers.len()]));
-    let sides: Vec<(u32, u32)> = sides.map(|(a, b)| if turn > 0.0 { (a, b) } else { (b, a) }).collect();
+/// The triangles inside borders that turn one way or the other.
+fn inside_of(sheet: &Sheet, turn: f64, borders: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
+    let numbers = borders.map(|border| border.map(|p| sheet.inside[&p]));
+    let sides: Vec<(u32, u32)> = numbers.map(|[a, b]| if turn > 0.0 { (a, b) } else { (b, a) }).collect();
     let triangulation = &sheet.triangulation;
     let is_border: FxHashSet<(u32, u32)> = sides.iter().copied().collect();
     let mut found = Vec::new();

@@ -5,7 +5,8 @@
 //! by signs of determinants that are never wrong; points where edges pierce faces are kept as what defines them and not as
 //! rounded numbers. Touched triangles are divided along all that crosses them. The surfaces fall into parts that nothing
 //! crosses; a ray from each part tells which operands are in front of it and behind it, and a part is kept if the result is
-//! on one side only. Only then are the points rounded.
+//! on one side only. Where divided faces lie beside each other in one
+//! plane, points that bound nothing are left out again. Only then are the points rounded.
 //!
 //! All operands of an expression are worked on at once: no intermediate result is made or rounded.
 //!
@@ -19,6 +20,7 @@
 mod arrangement;
 mod contact;
 mod facets;
+mod merge;
 mod operand;
 mod parts;
 mod relevance;

@@ -1,11 +1,15 @@
 //! The mesh of a result.
 
+use super::super::import::cleaned;
 use super::arrangement::{Arrangement, Counts};
 use super::facets::Facet;
+use super::merge::pieces;
 use super::operand::Operands;
 use super::parts::{Fate, Parts};
 use crate::mesh::Mesh;
+use crate::numeric::implicit::projection;
 use glam::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// What an operation gives.
@@ -55,13 +59,10 @@ pub fn assemble(
             tables.copy(&mut outcome.mesh, mesh, operand, index, fate);
         }
     }
+    let first_facet = outcome.mesh.triangles.len();
     let mut of_point: FxHashMap<u32, u32> = FxHashMap::default();
-    for (index, facet) in facets.iter().enumerate() {
-        let fate = parts.of_facet(index);
-        if fate == Fate::Dropped {
-            continue;
-        }
-        let corners = facet.corners.map(|point| {
+    for piece in pieces(operands, arrangement, facets, parts) {
+        let corners = piece.corners.map(|point| {
             let number = match arrangement.vertices[point as usize] {
                 Some(vertex) => &mut of_vertex[vertex as usize],
                 None => of_point.entry(point).or_insert(u32::MAX),
@@ -72,19 +73,33 @@ pub fn assemble(
             }
             *number
         });
-        // Of faces that coincide the first that looks the right way gives its surface.
-        let wanted = fate == Fate::Kept;
-        let face = facet.cover().find(|c| c.is_along == wanted).map_or(facet.face, |c| c.face);
-        let triangle = arrangement.triangles[face as usize];
+        let triangle = arrangement.triangles[piece.face as usize];
         let operand = operands.of_triangle(triangle);
         let index = triangle - operands.first_triangle(operand);
-        outcome.push(corners, fate, [operand, index]);
+        outcome.push(corners, piece.fate, [operand, index]);
         tables.interpolate(&mut outcome.mesh, operands.meshes()[operand as usize], operand, index as usize);
+    }
+    // Points are rounded now. A triangle between points that fell together, or on one line, bounds nothing.
+    let is_flat = |triangle: usize| projection(outcome.mesh.corners(triangle)).is_none();
+    if (first_facet..outcome.mesh.triangles.len()).into_par_iter().any(is_flat) {
+        outcome.clean();
     }
     outcome
 }
 
 impl Outcome {
+    /// Dissolves triangles without an area; those that are left keep their sources.
+    fn clean(&mut self) {
+        let numbers = (0..self.sources.len() as u32).collect();
+        let surfaces = std::mem::replace(&mut self.mesh.surfaces, numbers);
+        self.mesh = cleaned(std::mem::take(&mut self.mesh));
+        let numbers = std::mem::take(&mut self.mesh.surfaces);
+        self.sources = numbers.iter().map(|&n| self.sources[n as usize]).collect();
+        if !surfaces.is_empty() {
+            self.mesh.surfaces = numbers.iter().map(|&n| surfaces[n as usize]).collect();
+        }
+    }
+
     fn push(&mut self, [a, b, c]: [u32; 3], fate: Fate, source: [u32; 2]) {
         self.mesh.triangles.push(if fate == Fate::Turned { [a, c, b] } else { [a, b, c] });
         self.sources.push(source);

@@ -119,7 +119,6 @@ impl<'a> Triangulation<'a> {
         }
         let all = 0..self.triangles.len() as u32;
         let found = all.map(|t| (t, turns_in(t))).find(|(_, turns)| turns.iter().all(|t| *t >= 0.0));
-        debug_assert!(found.is_some(), "a point outside the first triangle");
         found.unwrap_or((0, turns_in(0)))
     }
 
@@ -317,7 +316,6 @@ impl<'a> Triangulation<'a> {
             // The sides of `next` go b to a, a to apex, apex to b; a is on the right, b on the left.
             entry = Some((next, if turn > 0.0 { (j + 1) % 3 } else { (j + 2) % 3 }));
         }
-        debug_assert!(false, "a line that leaves the triangulation");
         (VecDeque::new(), to)
     }
 
@@ -329,7 +327,6 @@ impl<'a> Triangulation<'a> {
             let Some((triangle, k)) = self.along(a, b) else { continue };
             let c = self.triangles[triangle as usize][(k + 2) % 3];
             let across = self.beyond[triangle as usize][k];
-            debug_assert!(!self.is_fixed(a, b), "edges that must stay cross");
             if across == NONE || patience == 0 {
                 continue;
             }

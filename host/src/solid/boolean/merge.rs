@@ -1,0 +1,172 @@
+//! Facets of one plane, joined again where the lines that divided them bound nothing.
+//!
+//! Facets of one operand that lie beside each other in one plane are a region. A point that was made by the operation and
+//! in which two regions of different planes meet, and no third, lies inside a straight edge; one with a single region
+//! around it lies inside that. Neither is needed. All neighbours see the same points, so all leave out the same.
+
+use super::arrangement::Arrangement;
+use super::facets::{Facet, Region};
+use super::operand::Operands;
+use super::parts::{Fate, Parts};
+use super::union_find::UnionFind;
+use crate::numeric::implicit::side;
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// A triangle of the result that was made by the operation.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// Points, as the face turns.
+    pub corners: [u32; 3],
+    /// The face whose surface it has.
+    pub face: u32,
+    /// [`Fate::Kept`] or [`Fate::Turned`], seen from that face.
+    pub fate: Fate,
+}
+
+/// The facets that stay, in as few pieces as their points and borders allow.
+pub fn pieces(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], parts: &Parts) -> Vec<Piece> {
+    let kept: Vec<Piece> =
+        facets.iter().enumerate().filter_map(|(index, facet)| piece(facet, parts.of_facet(index))).collect();
+    let plan = Plan::new(operands, arrangement, &kept);
+    let mut members: Vec<Vec<u32>> = vec![Vec::new(); kept.len()];
+    for index in 0..kept.len() as u32 {
+        members[plan.regions.root(index) as usize].push(index);
+    }
+    let merged: Vec<Vec<Piece>> = members
+        .par_iter()
+        .filter(|members| !members.is_empty())
+        .map(|members| plan.merge(arrangement, &kept, members))
+        .collect();
+    merged.concat()
+}
+
+fn piece(facet: &Facet, fate: Fate) -> Option<Piece> {
+    // Of faces that coincide the first that looks the right way gives its surface.
+    let wanted = match fate {
+        Fate::Dropped => return None,
+        Fate::Kept => true,
+        Fate::Turned => false,
+    };
+    let cover = facet.cover().find(|c| c.is_along == wanted);
+    let [a, b, c] = facet.corners;
+    Some(match cover {
+        Some(cover) if !cover.is_along => Piece { corners: [a, c, b], face: cover.face, fate: Fate::Kept },
+        Some(cover) => Piece { corners: [a, b, c], face: cover.face, fate },
+        None => Piece { corners: [a, b, c], face: facet.face, fate },
+    })
+}
+
+/// Which pieces belong together, and which points are not needed.
+struct Plan {
+    /// Pieces of one region.
+    regions: UnionFind,
+    needless: FxHashSet<u32>,
+}
+
+impl Plan {
+    fn new(operands: &Operands, arrangement: &Arrangement, kept: &[Piece]) -> Plan {
+        let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * kept.len());
+        for (piece, index) in kept.iter().zip(0..) {
+            for k in 0..3 {
+                let (a, b) = (piece.corners[k], piece.corners[(k + 1) % 3]);
+                sides.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), index));
+            }
+        }
+        sides.par_sort_unstable();
+        let mut regions = UnionFind::new(kept.len());
+        for group in sides.chunk_by(|a, b| a.0 == b.0) {
+            if let [one, two] = group
+                && are_one(operands, arrangement, &kept[one.1 as usize], &kept[two.1 as usize])
+            {
+                regions.join(one.1, two.1);
+            }
+        }
+        // Of each point that was made here: the regions around it, three at most, and the borders that end there.
+        let is_new = |point: u32| arrangement.vertices[point as usize].is_none();
+        let mut around: FxHashMap<u32, ([u32; 2], u32, u32)> = FxHashMap::default();
+        for (piece, index) in kept.iter().zip(0..) {
+            let region = regions.find(index);
+            for point in piece.corners.into_iter().filter(|&point| is_new(point)) {
+                let (known, count, _) = around.entry(point).or_insert(([u32::MAX; 2], 0, 0));
+                if !known.contains(&region) {
+                    if let Some(slot) = known.get_mut(*count as usize) {
+                        *slot = region;
+                    }
+                    *count += 1;
+                }
+            }
+        }
+        for group in sides.chunk_by(|a, b| a.0 == b.0) {
+            let is_inner = matches!(group, [one, two] if regions.find(one.1) == regions.find(two.1));
+            // A border of one region with itself, or of several pieces, stays as it is.
+            let weight = if is_inner { 0 } else { if group.len() == 2 { 1 } else { 3 } };
+            for point in [group[0].0 >> 32, group[0].0 & 0xffff_ffff] {
+                if let Some((.., borders)) = around.get_mut(&(point as u32)) {
+                    *borders += weight;
+                }
+            }
+        }
+        let plane = |region: u32| arrangement.faces[kept[region as usize].face as usize].corners;
+        let is_needless = |(regions, count, borders): ([u32; 2], u32, u32)| match (count, borders) {
+            (1, 0) => true,
+            (2, 2) => !are_coplanar(plane(regions[0]), plane(regions[1])),
+            _ => false,
+        };
+        let needless = around.into_iter().filter(|(_, at)| is_needless(*at)).map(|(point, _)| point).collect();
+        Plan { regions, needless }
+    }
+
+    /// The pieces of a region, made anew if a point is not needed.
+    fn merge(&self, arrangement: &Arrangement, kept: &[Piece], members: &[u32]) -> Vec<Piece> {
+        let old: Vec<Piece> = members.iter().map(|&member| kept[member as usize]).collect();
+        if old.iter().flat_map(|piece| piece.corners).all(|point| !self.needless.contains(&point)) {
+            return old;
+        }
+        let sides = |piece: &Piece| [0, 1, 2].map(|k| [piece.corners[k], piece.corners[(k + 1) % 3]]);
+        let all: FxHashSet<[u32; 2]> = old.iter().flat_map(sides).collect();
+        let borders: Vec<[u32; 2]> = old.iter().flat_map(sides).filter(|[a, b]| !all.contains(&[*b, *a])).collect();
+        let onward: FxHashMap<u32, u32> = borders.iter().map(|&[a, b]| (a, b)).collect();
+        let mut straight = Vec::new();
+        for &[from, mut to] in borders.iter().filter(|[from, _]| !self.needless.contains(from)) {
+            // A needless point of a border has one way in and one way out.
+            while self.needless.contains(&to) {
+                let Some(&next) = onward.get(&to) else { return old };
+                to = next;
+            }
+            straight.push([from, to]);
+        }
+        let mut points: Vec<u32> = old.iter().flat_map(|piece| piece.corners).collect();
+        points.sort_unstable();
+        points.dedup();
+        points.retain(|point| !self.needless.contains(point));
+        let first = old[0];
+        let corners = Region { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
+        corners.into_iter().map(|corners| Piece { corners, ..first }).collect()
+    }
+}
+
+/// Whether two pieces beside each other are of one surface and in one plane.
+fn are_one(operands: &Operands, arrangement: &Arrangement, one: &Piece, two: &Piece) -> bool {
+    if one.face == two.face {
+        return one.fate == two.fate;
+    }
+    let [a, b] = [one, two].map(|piece| arrangement.triangles[piece.face as usize]);
+    let operand = operands.of_triangle(a);
+    let surface = |triangle: u32| {
+        let mesh = operands.meshes()[operand as usize];
+        mesh.surfaces.get((triangle - operands.first_triangle(operand)) as usize)
+    };
+    let plane = |piece: &Piece| arrangement.faces[piece.face as usize].corners;
+    one.fate == two.fate
+        && operands.of_triangle(b) == operand
+        && surface(a) == surface(b)
+        && are_coplanar(plane(one), plane(two))
+        // Not folded back onto each other.
+        && arrangement.faces[one.face as usize].axis == arrangement.faces[two.face as usize].axis
+        && arrangement.faces[one.face as usize].turn == arrangement.faces[two.face as usize].turn
+}
+
+fn are_coplanar([a, b, c]: [glam::DVec3; 3], other: [glam::DVec3; 3]) -> bool {
+    other.into_iter().all(|point| side(a, b, c, point) == 0.0)
+}
