@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 pub(super) const ROW: Row = Row {
     name: "check",
-    summary: "Says whether a mesh is closed and consistently oriented, so that it bounds a solid; the exit code tells too.",
+    summary: "Says whether a mesh is closed, consistently oriented and free of self-crossings; the exit code tells too.",
     arguments: Arguments::augment_args,
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
@@ -18,6 +18,9 @@ struct Arguments {
     /// A mesh (.obj, .stl, .ply, .cmesh)
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
+    /// Makes a solid of the mesh, and writes it to this file
+    #[arg(long, value_name = "FILE")]
+    repair: Option<PathBuf>,
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
@@ -27,7 +30,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mesh = mesh::read(&arguments.mesh)?;
     let report = mesh.edge_report();
     let duplicates = mesh.duplicate_triangles();
-    let verdict = Solid::new(mesh);
+    let mut verdict = Solid::new(mesh.clone());
     let problem = verdict.as_ref().err().map(ToString::to_string);
     if arguments.json {
         let known = serde_json::json!({
@@ -51,6 +54,24 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         say!("Euler characteristic    {}", report.euler_characteristic());
         if verdict.is_ok() {
             say!("a solid");
+        }
+    }
+    if let Some(path) = &arguments.repair {
+        verdict = Solid::repaired(mesh).map(|(solid, repair)| {
+            if !arguments.json {
+                say!(
+                    "repaired: {} collapsed and {} double triangles left out, {} turned, {} added in holes{}",
+                    repair.collapsed,
+                    repair.duplicates,
+                    repair.turned,
+                    repair.filled,
+                    if repair.is_resolved { ", divided where it crossed itself" } else { "" }
+                );
+            }
+            solid
+        });
+        if let Ok(solid) = &verdict {
+            mesh::write(solid.mesh(), path)?;
         }
     }
     match verdict {

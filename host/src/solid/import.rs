@@ -1,5 +1,6 @@
 //! From meshes to solids: what must hold is checked, what does no harm is put right.
 
+use super::boolean::{Resolution, UnionFind, overlaps, resolve};
 use crate::mesh::{Fault, Mesh};
 use crate::numeric::implicit::projection;
 use glam::DVec3;
@@ -30,6 +31,18 @@ pub enum SolidError {
         /// The volume, cubic units.
         volume: f64,
     },
+    /// The surface crosses or covers itself, or parts of it lie in each other.
+    #[error(
+        "the surface crosses or covers itself ({overlaps} pairs of triangles): near {near} it winds {winding} times around a point"
+    )]
+    Crossing {
+        /// How often it winds; once behind the surface of a solid.
+        winding: i32,
+        /// Where.
+        near: DVec3,
+        /// Pairs of triangles that have more in common than corners and edges; 0 if parts only lie in each other.
+        overlaps: usize,
+    },
 }
 
 fn list(edges: &[[DVec3; 2]]) -> String {
@@ -39,25 +52,33 @@ fn list(edges: &[[DVec3; 2]]) -> String {
 /// Checks and cleans a mesh.
 pub fn solid(mesh: Mesh) -> Result<Mesh, SolidError> {
     mesh.validate()?;
-    let mut mesh = welded(mesh);
-    check_edges(&mesh)?;
+    let mut mesh = without_collapsed(mesh);
+    let sheets = check_edges(&mesh)?;
     dissolve(&mut mesh);
     let volume = mesh.signed_volume();
     if volume < 0.0 {
         return Err(SolidError::InsideOut { volume });
     }
-    Ok(mesh)
+    let overlaps = overlaps(&mesh);
+    if overlaps == 0 && sheets == 1 {
+        return Ok(mesh);
+    }
+    let Resolution { outcome, is_same, odd } = resolve(&mesh);
+    match odd {
+        Some((winding, near)) => Err(SolidError::Crossing { winding, near, overlaps }),
+        None => Ok(if is_same { mesh } else { outcome.mesh }),
+    }
 }
 
 /// Puts right what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.
 pub fn cleaned(mesh: Mesh) -> Mesh {
-    let mut mesh = welded(mesh);
+    let mut mesh = without_collapsed(mesh);
     dissolve(&mut mesh);
     mesh
 }
 
 /// The mesh with one vertex for each place, and without triangles that use one place twice.
-fn welded(mut mesh: Mesh) -> Mesh {
+pub fn without_collapsed(mut mesh: Mesh) -> Mesh {
     let first = mesh.first_of_each_position();
     if first.iter().zip(0..).any(|(first, index)| *first != index) {
         for triangle in &mut mesh.triangles {
@@ -73,7 +94,7 @@ fn welded(mut mesh: Mesh) -> Mesh {
 }
 
 /// Keeps some triangles, with all that belongs to them.
-fn retain(mesh: &mut Mesh, keep: &[bool]) {
+pub fn retain(mesh: &mut Mesh, keep: &[bool]) {
     fn of<T: Copy>(table: &mut Vec<T>, keep: &[bool]) {
         let mut kept = keep.iter();
         table.retain(|_| *kept.next().unwrap_or(&true));
@@ -84,29 +105,39 @@ fn retain(mesh: &mut Mesh, keep: &[bool]) {
     of(&mut mesh.surfaces, keep);
 }
 
-fn check_edges(mesh: &Mesh) -> Result<(), SolidError> {
+/// Whether all edges are run through both ways alike.
+pub fn is_closed(mesh: &Mesh) -> bool {
+    check_edges(mesh).is_ok()
+}
+
+/// Checks that all edges are run through both ways alike; returns the number of sheets that edges of two triangles join.
+pub fn check_edges(mesh: &Mesh) -> Result<usize, SolidError> {
     // An edge as one number, its direction in the last bit.
-    let mut sides: Vec<u64> = Vec::with_capacity(3 * mesh.triangles.len());
-    for t in &mesh.triangles {
+    let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
+    for (t, triangle) in mesh.triangles.iter().zip(0..) {
         for k in 0..3 {
             let (a, b) = (u64::from(t[k]), u64::from(t[(k + 1) % 3]));
-            sides.push(a.min(b) << 33 | a.max(b) << 1 | u64::from(a > b));
+            sides.push((a.min(b) << 33 | a.max(b) << 1 | u64::from(a > b), triangle));
         }
     }
     sides.par_sort_unstable();
-    let wrong = |group: &&[u64]| group.iter().filter(|side| **side & 1 == 1).count() * 2 != group.len();
-    let groups = sides.chunk_by(|a, b| a >> 1 == b >> 1).filter(wrong);
     let ends =
-        |group: &[u64]| [group[0] >> 33, group[0] >> 1 & 0xffff_ffff].map(|vertex| mesh.vertices[vertex as usize]);
-    let mut count = 0;
-    let mut edges = Vec::new();
-    for group in groups {
-        count += 1;
-        if edges.len() < NAMED {
-            edges.push(ends(group));
+        |group: &[(u64, u32)]| [group[0].0 >> 33, group[0].0 >> 1 & 0xffff_ffff].map(|v| mesh.vertices[v as usize]);
+    let (mut count, mut edges) = (0, Vec::new());
+    let mut sheets = UnionFind::new(mesh.triangles.len());
+    for group in sides.chunk_by(|a, b| a.0 >> 1 == b.0 >> 1) {
+        if let [one, two] = group {
+            sheets.join(one.1, two.1);
+        }
+        if group.iter().filter(|side| side.0 & 1 == 1).count() * 2 != group.len() {
+            count += 1;
+            if edges.len() < NAMED {
+                edges.push(ends(group));
+            }
         }
     }
-    if count == 0 { Ok(()) } else { Err(SolidError::NotClosed { count, edges }) }
+    let sheets = (0..mesh.triangles.len() as u32).filter(|&t| sheets.root(t) == t).count();
+    if count == 0 { Ok(sheets) } else { Err(SolidError::NotClosed { count, edges }) }
 }
 
 /// Dissolves triangles without an area, whose corners are on one line: the neighbour across the longest side takes the

@@ -3,22 +3,24 @@
 pub mod boolean;
 mod import;
 mod mass;
+mod repair;
 
 pub use boolean::{Counts, Expression, Outcome};
 pub use import::SolidError;
 pub use mass::Mass;
+pub use repair::Repair;
 
 use crate::mesh::Mesh;
 
 /// What a closed surface bounds.
 ///
 /// Its mesh is closed and consistently oriented: every edge is run through as often one way as the other. No triangle
-/// lacks an area. Edges of four triangles are allowed, as where two cubes share an edge. The surface must not cross itself,
-/// which is not checked.
+/// lacks an area. The surface is simple: it winds once around what is inside and not at all around what is outside. It may
+/// touch itself, as where two cubes share an edge.
 ///
-/// Results have rounded points. Where two surfaces lie within a few roundings of each other, rounding can make a result
-/// cross itself, so that a further operation on it may go wrong: give the whole of an expression to [`Solid::evaluate`],
-/// which rounds only once.
+/// Results have rounded points. Where surfaces lie within a few roundings of each other, that could make a result cross
+/// itself; it is then made simple again, for which points move by a few roundings more. An expression that is given to
+/// [`Solid::evaluate`] as a whole is rounded only once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     mesh: Mesh,
@@ -28,7 +30,8 @@ impl Solid {
     /// Takes a mesh; vertices at the same place become one, and triangles without an area are dissolved.
     ///
     /// # Errors
-    /// [`SolidError`], which names the edges, if the mesh is not closed, is not consistently oriented, or faces inwards.
+    /// [`SolidError`], which names the places, if the mesh is not closed, is not consistently oriented, faces inwards, or
+    /// crosses itself.
     pub fn new(mesh: Mesh) -> Result<Solid, SolidError> {
         import::solid(mesh).map(|mesh| Solid { mesh })
     }

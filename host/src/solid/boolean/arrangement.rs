@@ -11,7 +11,7 @@ use super::union_find::UnionFind;
 use crate::numeric::implicit::{Definition, Point, coincide, compare, projection, turn};
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::cmp::Ordering;
 use std::collections::hash_map::Entry;
 
@@ -71,6 +71,10 @@ pub struct Counts {
     pub parts: u64,
     /// Rays that were sent to classify them.
     pub rays: u64,
+    /// If rounding made the result cross itself: the attempt that made it simple again, the first as 1.
+    pub settled: u64,
+    /// Pairs of triangles of the result that overlap, because no attempt succeeded.
+    pub crossing: u64,
 }
 
 /// The points, carriers and contents of the faces near other operands.
@@ -99,6 +103,7 @@ pub struct Arrangement {
     of_edge: FxHashMap<Edge, u32>,
     of_faces: FxHashMap<[u32; 2], u32>,
     place: FxHashMap<u32, DVec3>,
+    ambiguous: FxHashSet<u32>,
 }
 
 /// Order along any line: lexicographic.
@@ -107,17 +112,21 @@ fn along(a: &Point, b: &Point) -> Ordering {
 }
 
 impl Arrangement {
-    /// Finds all contacts between different operands.
+    /// Finds all contacts between different operands, and within each that is not simple.
     ///
     /// Those that cannot matter to an expression are left out.
     pub fn new(operands: &Operands, expression: &Expression) -> Arrangement {
         let pairs = operands.pairs();
-        let touching = touching(operands, &pairs);
+        let mut touching = touching(operands, &pairs);
+        if !operands.are_simple {
+            (0..operands.meshes().len() as u32).for_each(|operand| touching.extend(operands.overlaps(operand)));
+        }
         let is_relevant = relevant(operands, expression, &touching);
         let matters = |pair: &&[u32; 2]| pair.iter().all(|&triangle| is_relevant[triangle as usize]);
         let touching: Vec<[u32; 2]> = touching.iter().filter(matters).copied().collect();
         // Names are given to what is left only: a vertex of a face that was left out is no vertex of the others.
-        let faces = Faces::of(operands, &touching, true);
+        let mut faces = Faces::default();
+        faces.add(operands, touching.as_flattened(), true);
         let contacts: Vec<([u32; 2], Contact)> = touching
             .par_iter()
             .with_min_len(256)
@@ -126,6 +135,11 @@ impl Arrangement {
                 (pair, Contact::of(&faces.faces[pair[0] as usize], &faces.faces[pair[1] as usize]))
             })
             .collect();
+        let divided = faces.faces.len();
+        if !operands.are_simple {
+            let around = faces.around(operands, contacts.iter().flat_map(|(_, contact)| &contact.points));
+            faces.add(operands, &around, true);
+        }
         let count = faces.faces.len();
         let mut arrangement = Arrangement {
             contents: vec![Content::default(); count],
@@ -141,12 +155,14 @@ impl Arrangement {
             of_edge: FxHashMap::default(),
             of_faces: FxHashMap::default(),
             place: faces.place,
+            ambiguous: faces.ambiguous,
             faces: faces.faces,
             triangles: faces.triangles,
         };
         for (pair, contact) in &contacts {
             arrangement.take(operands, *pair, contact);
         }
+        arrangement.contents[divided..].iter_mut().for_each(|content| content.is_touched = true);
         arrangement.cross();
         arrangement.order();
         arrangement.corners();
@@ -208,7 +224,7 @@ impl Arrangement {
         let id = self.points.len() as u32;
         self.points.push(Point::new(definition));
         self.vertices.push(if let Key::Vertex(vertex) = key { Some(vertex) } else { None });
-        self.on_other.push(false);
+        self.on_other.push(matches!(key, Key::Vertex(vertex) if self.ambiguous.contains(&vertex)));
         self.same.grow();
         self.of_key.insert(key, id);
         id
@@ -271,7 +287,9 @@ impl Arrangement {
     fn take(&mut self, operands: &Operands, [a, b]: [u32; 2], contact: &Contact) {
         let ids: Vec<u32> = contact.points.iter().map(|point| self.id(point.key)).collect();
         for (which, (face, other)) in [(a, b), (b, a)].into_iter().enumerate() {
-            let partner = operands.of_triangle(self.triangles[other as usize]);
+            // Lines of one operand that does not cross itself cross no others of it.
+            let partner =
+                if operands.are_simple { operands.of_triangle(self.triangles[other as usize]) } else { SEVERAL };
             let content = &mut self.contents[face as usize];
             content.is_touched = true;
             content.partner = match content.partner {
@@ -491,7 +509,8 @@ impl Arrangement {
 
 /// Pairs of triangles that have a point in common; triangles without an area have none.
 fn touching(operands: &Operands, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let faces = Faces::of(operands, pairs, false);
+    let mut faces = Faces::default();
+    faces.add(operands, pairs.as_flattened(), false);
     let touch = |pair: &&[u32; 2]| {
         let [a, b] = pair.map(|triangle| faces.of_triangle[triangle as usize]);
         a != NONE && b != NONE && !Contact::of(&faces.faces[a as usize], &faces.faces[b as usize]).points.is_empty()
@@ -502,7 +521,8 @@ fn touching(operands: &Operands, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
 /// No face.
 const NONE: u32 = u32::MAX;
 
-/// The triangles that occur in pairs.
+/// Triangles with names.
+#[derive(Default)]
 struct Faces {
     faces: Vec<Face>,
     triangles: Vec<u32>,
@@ -510,31 +530,45 @@ struct Faces {
     of_triangle: Vec<u32>,
     /// Where the vertices are, by name.
     place: FxHashMap<u32, DVec3>,
+    /// The names by place.
+    first_at: FxHashMap<[u64; 3], u32>,
+    /// Names that several vertices share.
+    ambiguous: FxHashSet<u32>,
 }
 
 impl Faces {
     /// - `named`: whether vertices at the same place get the same name.
-    fn of(operands: &Operands, pairs: &[[u32; 2]], named: bool) -> Faces {
-        let mut of_triangle = vec![NONE; operands.triangle_count()];
-        let mut faces = Vec::new();
-        let mut triangles = Vec::new();
-        let mut first_at: FxHashMap<[u64; 3], u32> = FxHashMap::default();
-        let mut place = FxHashMap::default();
-        for &triangle in pairs.as_flattened() {
-            if of_triangle[triangle as usize] != NONE {
+    fn add(&mut self, operands: &Operands, triangles: &[u32], named: bool) {
+        self.of_triangle.resize(operands.triangle_count(), NONE);
+        for &triangle in triangles {
+            if self.of_triangle[triangle as usize] != NONE {
                 continue;
             }
             let (mut vertices, corners) = operands.corners(triangle);
             let Some((axis, turn)) = projection(corners) else { continue };
             if named {
-                vertices = [0, 1, 2].map(|k| *first_at.entry(crate::mesh::bits(corners[k])).or_insert(vertices[k]));
-                (0..3).for_each(|k| _ = place.insert(vertices[k], corners[k]));
+                for k in 0..3 {
+                    let name = *self.first_at.entry(crate::mesh::bits(corners[k])).or_insert(vertices[k]);
+                    if name != vertices[k] {
+                        self.ambiguous.insert(name);
+                        vertices[k] = name;
+                    }
+                    self.place.insert(name, corners[k]);
+                }
             }
-            let id = faces.len() as u32;
-            of_triangle[triangle as usize] = id;
-            faces.push(Face { id, vertices, corners, axis, turn });
-            triangles.push(triangle);
+            let id = self.faces.len() as u32;
+            self.of_triangle[triangle as usize] = id;
+            self.faces.push(Face { id, vertices, corners, axis, turn });
+            self.triangles.push(triangle);
         }
-        Faces { faces, triangles, of_triangle, place }
+    }
+
+    /// All triangles around the vertices among some points.
+    fn around<'a>(&self, operands: &Operands, points: impl Iterator<Item = &'a Common>) -> Vec<u32> {
+        let place = |point: &Common| if let Key::Vertex(name) = point.key { self.place.get(&name) } else { None };
+        let places: FxHashSet<[u64; 3]> = points.filter_map(place).map(|place| crate::mesh::bits(*place)).collect();
+        let is_at =
+            |triangle: &u32| operands.corners(*triangle).1.iter().any(|c| places.contains(&crate::mesh::bits(*c)));
+        (0..operands.triangle_count() as u32).filter(is_at).collect()
     }
 }

@@ -3,7 +3,7 @@
 //! Every common point is named by the features of lowest dimension that it lies on: a vertex, two edges, or an edge and a
 //! face. The same point found from a neighbouring triangle has the same name, which is how neighbours agree.
 
-use crate::numeric::implicit::{others, side};
+use crate::numeric::implicit::{others, projection, side};
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
@@ -30,6 +30,12 @@ impl Face {
     pub fn edge(&self, k: u8) -> Edge {
         let (a, b) = (self.vertices[k as usize], self.vertices[(k as usize + 1) % 3]);
         if a < b { [a, b] } else { [b, a] }
+    }
+
+    /// Which way its corners turn, seen along an axis.
+    pub fn turn_along(&self, axis: usize) -> f64 {
+        let [a, b, c] = self.corners;
+        flat_turn(axis, a, b, c)
     }
 
     fn ends(&self, k: usize) -> [DVec3; 2] {
@@ -180,6 +186,47 @@ impl Contact {
             }
         }
     }
+}
+
+/// Whether two triangles with an area have more in common than corners, and the edge between two of these.
+pub fn overlap(one: [DVec3; 3], two: [DVec3; 3]) -> bool {
+    // Which corner of the first each corner of the second is.
+    let shared = two.map(|corner| one.iter().position(|&c| c == corner));
+    let [a, b, c] = one;
+    let beside = |[a, b, c]: [DVec3; 3], p: DVec3, q: DVec3| side(a, b, c, p) * side(a, b, c, q) > 0.0;
+    let is_own = |k: usize| !shared.contains(&Some(k));
+    match shared.iter().flatten().count() {
+        3 => return true,
+        2 => {
+            let apex = (0..3).find(|&k| shared[k].is_none()).map_or(two[0], |k| two[k]);
+            if side(a, b, c, apex) != 0.0 {
+                return false;
+            }
+        }
+        1 => {
+            // Where the common corner is, the other two are next in either.
+            let k = (0..3).find(|&k| shared[k].is_some()).unwrap_or(0);
+            let j = (0..3).find(|&k| !is_own(k)).unwrap_or(0);
+            if beside(one, two[(k + 1) % 3], two[(k + 2) % 3]) || beside(two, one[(j + 1) % 3], one[(j + 2) % 3]) {
+                return false;
+            }
+        }
+        _ => {
+            if beside(one, two[0], two[1]) && beside(one, two[0], two[2])
+                || beside(two, one[0], one[1]) && beside(two, one[0], one[2])
+            {
+                return false;
+            }
+        }
+    }
+    let face = |id: u32, corners: [DVec3; 3], vertices: [u32; 3]| {
+        projection(corners).map(|(axis, turn)| Face { id, vertices, corners, axis, turn })
+    };
+    let names = [0, 1, 2].map(|k| shared[k].map_or(3 + k as u32, |own| own as u32));
+    let (Some(one), Some(two)) = (face(0, one, [0, 1, 2]), face(1, two, names)) else { return false };
+    let contact = Contact::of(&one, &two);
+    contact.points.len() > 2
+        || contact.points.iter().any(|point| !matches!(point.features, [Feature::Corner(_), Feature::Corner(_)]))
 }
 
 /// The name of the point where two edges cross.

@@ -155,17 +155,18 @@ fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
         sheet.fix(border.iter().chain(&border[..1]).copied());
     }
     faces.iter().for_each(|&face| sheet.fill(face));
+    // Faces of one plane may have been seen along different axes.
+    let turn = |face: u32| arrangement.faces[face as usize].turn_along(first.axis);
     // Triangles are counted operand by operand.
     let mut ordered: Vec<(u32, &[u32])> = faces.iter().copied().zip(borders.iter().map(Vec::as_slice)).collect();
     ordered.sort_unstable_by_key(|&(face, _)| arrangement.triangles[face as usize]);
     let mut covers: Vec<Vec<u32>> = vec![Vec::new(); sheet.triangulation.triangles.len()];
     for (face, border) in ordered {
         let sides = (0..border.len()).map(|k| [border[k], border[(k + 1) % border.len()]]);
-        for triangle in inside_of(&sheet, arrangement.faces[face as usize].turn, sides) {
+        for triangle in inside_of(&sheet, turn(face), sides) {
             covers[triangle as usize].push(face);
         }
     }
-    let turn = |face: u32| arrangement.faces[face as usize].turn;
     let mut facets = Vec::new();
     for (triangle, faces) in covers.into_iter().enumerate() {
         if let Some((&face, others)) = faces.split_first() {

@@ -25,12 +25,17 @@ mod operand;
 mod parts;
 mod relevance;
 mod result;
+mod rounding;
+mod simple;
+mod snapping;
 mod triangulation;
 mod union_find;
 mod winding;
 
 pub use arrangement::Counts;
 pub use result::Outcome;
+pub(super) use simple::{Resolution, overlaps, resolve};
+pub(super) use union_find::UnionFind;
 
 use crate::mesh::Mesh;
 use arrangement::Arrangement;
@@ -72,20 +77,38 @@ impl Expression {
     }
 }
 
-/// Evaluates an expression over closed, consistently oriented meshes without collapsed triangles.
+/// Evaluates an expression over meshes that bound solids simply.
 pub(super) fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
-    let operands = Operands::new(meshes);
-    let arrangement = Arrangement::new(&operands, expression);
+    let operands = Operands::new(meshes, true);
+    let Work { outcome, must_settle, .. } = work(&operands, expression);
+    if must_settle { simple::settled(outcome) } else { outcome }
+}
+
+/// What is known when an expression was evaluated once.
+struct Work {
+    outcome: Outcome,
+    /// Whether rounding made the result cross itself, as far as could be seen.
+    must_settle: bool,
+    /// Whether all parts of the surfaces are borders of the result.
+    is_all_kept: bool,
+    /// Where an operand that is not simple winds oddly, and how often.
+    odd: Option<(i32, glam::DVec3)>,
+}
+
+/// Evaluates an expression once.
+fn work(operands: &Operands, expression: &Expression) -> Work {
+    let arrangement = Arrangement::new(operands, expression);
     let facets = facets::divide(&arrangement);
     // Triangles that stay whole, if they stay.
     let mut is_whole = arrangement.is_relevant.clone();
     for face in arrangement.touched() {
         is_whole[arrangement.triangles[face as usize] as usize] = false;
     }
-    let parts = Parts::new(&operands, &arrangement, &facets, &is_whole, |inside| expression.contains(inside));
+    let parts = Parts::new(operands, &arrangement, &facets, &is_whole, |inside| expression.contains(inside));
     let mut counts = arrangement.counts;
     counts.divided = arrangement.touched().count() as u64;
     counts.facets = facets.len() as u64;
     (counts.parts, counts.rays) = (parts.count, parts.rays);
-    result::assemble(&operands, &arrangement, &facets, &is_whole, &parts, counts)
+    let (outcome, must_settle) = result::assemble(operands, &arrangement, &facets, &is_whole, &parts, counts);
+    Work { outcome, must_settle, is_all_kept: parts.are_all_kept(), odd: parts.odd }
 }

@@ -1,5 +1,6 @@
 //! The solids of an operation, with their vertices and triangles counted through.
 
+use super::contact::overlap;
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
 use glam::DVec3;
@@ -7,6 +8,9 @@ use rayon::prelude::*;
 
 /// The operands.
 pub struct Operands<'a> {
+    /// Whether their surfaces bound them simply: they wind once or not at all around any point off them. If not, contacts
+    /// within each are looked for too.
+    pub are_simple: bool,
     meshes: Vec<&'a Mesh>,
     sorted: Vec<Sorted>,
     first_vertex: Vec<u32>,
@@ -15,7 +19,9 @@ pub struct Operands<'a> {
 
 impl<'a> Operands<'a> {
     /// Counts through the vertices and triangles of some meshes, and sorts the triangles of each by place.
-    pub fn new(meshes: Vec<&'a Mesh>) -> Operands<'a> {
+    ///
+    /// - `are_simple`: whether their surfaces are known to bound them simply.
+    pub fn new(meshes: Vec<&'a Mesh>, are_simple: bool) -> Operands<'a> {
         let starts = |count: fn(&Mesh) -> usize| {
             let mut sum = 0;
             let mut starts = vec![0];
@@ -28,7 +34,7 @@ impl<'a> Operands<'a> {
         let first_vertex = starts(|mesh| mesh.vertices.len());
         let first_triangle = starts(|mesh| mesh.triangles.len());
         let sorted = meshes.par_iter().map(|mesh| Sorted::new(&mesh.vertices, &mesh.triangles)).collect();
-        Operands { meshes, sorted, first_vertex, first_triangle }
+        Operands { are_simple, meshes, sorted, first_vertex, first_triangle }
     }
 
     /// The meshes.
@@ -66,17 +72,6 @@ impl<'a> Operands<'a> {
         self.first_triangle.partition_point(|&first| first <= triangle) as u32 - 1
     }
 
-    /// The operand of a vertex.
-    pub fn of_vertex(&self, vertex: u32) -> u32 {
-        self.first_vertex.partition_point(|&first| first <= vertex) as u32 - 1
-    }
-
-    /// Place of a vertex.
-    pub fn vertex(&self, vertex: u32) -> DVec3 {
-        let operand = self.of_vertex(vertex);
-        self.meshes[operand as usize].vertices[(vertex - self.first_vertex(operand)) as usize]
-    }
-
     /// Vertices and corners of a triangle.
     pub fn corners(&self, triangle: u32) -> ([u32; 3], [DVec3; 3]) {
         let operand = self.of_triangle(triangle);
@@ -103,5 +98,15 @@ impl<'a> Operands<'a> {
             })
             .collect();
         found.concat()
+    }
+
+    /// Pairs of triangles of one operand, the lower first, that have more in common than corners and the edges between.
+    pub fn overlaps(&self, operand: u32) -> Vec<[u32; 2]> {
+        let mesh = self.meshes[operand as usize];
+        let corners = |t: u32| mesh.corners(t as usize);
+        let pairs = self.sorted(operand).pairs(corners, self.sorted(operand), corners);
+        let first = self.first_triangle(operand);
+        let is_overlap = |[a, b]: &&[u32; 2]| a < b && overlap(corners(*a), corners(*b));
+        pairs.par_iter().with_min_len(1024).filter(is_overlap).map(|pair| pair.map(|t| t + first)).collect()
     }
 }

@@ -5,7 +5,8 @@ use super::facets::Facet;
 use super::operand::Operands;
 use super::union_find::UnionFind;
 use super::winding::winding;
-use crate::numeric::implicit::{Definition, Point};
+use crate::numeric::implicit::{Definition, Point, turn};
+use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -29,14 +30,28 @@ pub struct Parts {
     pub count: u64,
     /// Rays that were sent.
     pub rays: u64,
+    /// Where an operand winds more than once or less than not at all around what is beside it, and how often.
+    pub odd: Option<(i32, DVec3)>,
 }
 
 /// Something of a part where it can be classified.
 struct Sample {
     root: u32,
-    /// A vertex that nothing else touches, or a facet.
-    vertex: Option<u32>,
+    /// A triangle that nothing else touches, or a facet.
+    triangle: Option<u32>,
     facet: Option<u32>,
+}
+
+impl Sample {
+    /// A point of the part, rounded.
+    fn place(&self, operands: &Operands, arrangement: &Arrangement, facets: &[Facet]) -> DVec3 {
+        let corners = match (self.triangle, self.facet) {
+            (Some(triangle), _) => operands.corners(triangle).1,
+            (None, Some(facet)) => facets[facet as usize].corners.map(|p| arrangement.points[p as usize].near()),
+            (None, None) => [DVec3::ZERO; 3],
+        };
+        (corners[0] + corners[1] + corners[2]) / 3.0
+    }
 }
 
 impl Parts {
@@ -72,13 +87,26 @@ impl Parts {
         }
         join_neighbours(&mut nodes, operands, arrangement, facets);
         let samples = samples(operands, &mut nodes, facets, is_whole);
-        let fates: Vec<(Fate, u64)> =
-            samples.par_iter().map(|sample| fate(operands, arrangement, facets, sample, &inside)).collect();
-        let rays = fates.iter().map(|(_, rays)| rays).sum();
-        let fates = fates.into_iter().map(|(fate, _)| fate);
+        let judged: Vec<(Fate, i32, u64)> = samples
+            .par_iter()
+            .map(|sample| {
+                let mut rays = 0;
+                let windings = windings(operands, arrangement, facets, sample, &mut rays);
+                let odd = windings.as_flattened().iter().copied().find(|winding| !(0..=1).contains(winding));
+                (fate(&windings, &inside), odd.unwrap_or(0), rays)
+            })
+            .collect();
+        let rays = judged.iter().map(|(.., rays)| rays).sum();
         let count = samples.len() as u64;
-        let fates = samples.iter().zip(fates).map(|(sample, fate)| (sample.root, fate)).collect();
-        Parts { nodes, vertices, fates, count, rays }
+        let odd = samples.iter().zip(&judged).find(|(_, (_, odd, _))| *odd != 0);
+        let odd = odd.map(|(sample, (_, odd, _))| (*odd, sample.place(operands, arrangement, facets)));
+        let fates = samples.iter().zip(&judged).map(|(sample, (fate, ..))| (sample.root, *fate)).collect();
+        Parts { nodes, vertices, fates, count, rays, odd }
+    }
+
+    /// Whether all are borders of the result, with the result behind them.
+    pub fn are_all_kept(&self) -> bool {
+        self.fates.values().all(|fate| *fate == Fate::Kept)
     }
 
     /// What becomes of an undivided triangle with this vertex.
@@ -124,7 +152,7 @@ fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_whol
     let mut known: FxHashMap<u32, usize> = FxHashMap::default();
     let mut place = |samples: &mut Vec<Sample>, root: u32| {
         *known.entry(root).or_insert_with(|| {
-            samples.push(Sample { root, vertex: None, facet: None });
+            samples.push(Sample { root, triangle: None, facet: None });
             samples.len() - 1
         })
     };
@@ -138,11 +166,12 @@ fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_whol
         let first = operands.first_vertex(operand as u32);
         let whole = &is_whole[operands.first_triangle(operand as u32) as usize..];
         let mut last = u32::MAX;
-        for (triangle, _) in mesh.triangles.iter().zip(whole).filter(|(_, whole)| **whole) {
+        let numbers = operands.first_triangle(operand as u32)..;
+        for ((triangle, _), number) in mesh.triangles.iter().zip(whole).zip(numbers).filter(|((_, whole), _)| **whole) {
             let root = nodes.find(triangle[0] + first);
             if root != last {
                 let sample = place(&mut samples, root);
-                samples[sample].vertex.get_or_insert(triangle[0] + first);
+                samples[sample].triangle.get_or_insert(number);
                 last = root;
             }
         }
@@ -150,53 +179,55 @@ fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_whol
     samples
 }
 
-/// How often each operand goes along the part of a sample less how often against it; the sample's facet has no other
-/// sides.
-fn steps(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], sample: &Sample) -> Vec<i32> {
-    let mut steps = vec![0; operands.meshes().len()];
-    match (sample.vertex, sample.facet) {
-        (Some(vertex), _) => steps[operands.of_vertex(vertex) as usize] = 1,
-        (None, Some(facet)) => {
-            for covering in facets[facet as usize].cover() {
-                let operand = operands.of_triangle(arrangement.triangles[covering.face as usize]);
-                steps[operand as usize] += if covering.is_along { 1 } else { -1 };
-            }
-        }
-        (None, None) => {}
-    }
-    steps
-}
-
-/// Asks by rays which operands a part lies in; those that it is part of itself are left out.
-fn ask(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], sample: &Sample) -> (Vec<bool>, u64) {
-    let point = match (sample.vertex, sample.facet) {
-        (Some(vertex), _) => Point::new(Definition::Given(operands.vertex(vertex))),
-        (None, Some(facet)) => Point::middle(facets[facet as usize].corners.map(|p| &arrangement.points[p as usize])),
-        (None, None) => return (vec![false; operands.meshes().len()], 0),
-    };
-    let mut rays = 0;
-    let steps = steps(operands, arrangement, facets, sample);
-    let is_in = |(step, operand): (i32, u32)| step == 0 && winding(operands, operand, &point, &mut rays) > 0;
-    (steps.into_iter().zip(0..).map(is_in).collect(), rays)
-}
-
-/// What becomes of the part of a sample.
-fn fate(
+/// How often each operand winds around what is behind a part and what is in front of it, as its sample tells.
+///
+/// A ray is spared for operands that bound themselves simply and that the part is of.
+fn windings(
     operands: &Operands,
     arrangement: &Arrangement,
     facets: &[Facet],
     sample: &Sample,
-    inside: impl Fn(&[bool]) -> bool,
-) -> (Fate, u64) {
-    let (state, rays) = ask(operands, arrangement, facets, sample);
-    let steps = steps(operands, arrangement, facets, sample);
-    let side = |is_in: fn(i32) -> bool| -> Vec<bool> {
-        steps.iter().zip(&state).map(|(&step, &state)| if step == 0 { state } else { is_in(step) }).collect()
+    rays: &mut u64,
+) -> Vec<[i32; 2]> {
+    let mut steps = vec![0; operands.meshes().len()];
+    let (point, corners) = match (sample.triangle, sample.facet) {
+        (Some(triangle), _) => {
+            steps[operands.of_triangle(triangle) as usize] = 1;
+            let corners = operands.corners(triangle).1;
+            (Point::middle(corners.map(|corner| Point::new(Definition::Given(corner))).each_ref()), corners)
+        }
+        (None, Some(facet)) => {
+            let facet = &facets[facet as usize];
+            for covering in facet.cover() {
+                let operand = operands.of_triangle(arrangement.triangles[covering.face as usize]);
+                steps[operand as usize] += if covering.is_along { 1 } else { -1 };
+            }
+            let middle = Point::middle(facet.corners.map(|p| &arrangement.points[p as usize]));
+            (middle, arrangement.faces[facet.face as usize].corners)
+        }
+        (None, None) => return vec![[0; 2]; steps.len()],
     };
-    let fate = match (inside(&side(|step| step > 0)), inside(&side(|step| step < 0))) {
+    // The rays see what lies ahead of the surface: on which side of it that is, its first slope tells.
+    let [a, b, c] = corners.map(|corner| Point::new(Definition::Given(corner)));
+    let is_front_ahead = (0..3).map(|axis| turn(axis, &a, &b, &c)).find(|slope| *slope != 0.0) > Some(0.0);
+    let around = |(step, operand): (i32, u32)| match (operands.are_simple, step) {
+        (true, 1) => [1, 0],
+        (true, -1) => [0, 1],
+        _ => {
+            let ahead = winding(operands, operand, &point, rays);
+            if is_front_ahead { [ahead + step, ahead] } else { [ahead, ahead - step] }
+        }
+    };
+    steps.into_iter().zip(0..).map(around).collect()
+}
+
+/// What becomes of a part between windings behind it and in front of it.
+fn fate(windings: &[[i32; 2]], inside: impl Fn(&[bool]) -> bool) -> Fate {
+    let [behind, before] =
+        [0, 1].map(|side| inside(&windings.iter().map(|winding| winding[side] > 0).collect::<Vec<_>>()));
+    match (behind, before) {
         (true, false) => Fate::Kept,
         (false, true) => Fate::Turned,
         _ => Fate::Dropped,
-    };
-    (fate, rays)
+    }
 }

@@ -6,6 +6,7 @@ use super::facets::Facet;
 use super::merge::pieces;
 use super::operand::Operands;
 use super::parts::{Fate, Parts};
+use super::rounding;
 use crate::mesh::Mesh;
 use crate::numeric::implicit::projection;
 use glam::DVec3;
@@ -24,7 +25,7 @@ pub struct Outcome {
     pub counts: Counts,
 }
 
-/// Collects what is kept; points are rounded here.
+/// Collects what is kept; points are rounded here. Tells also whether that may have made the surface cross itself.
 pub fn assemble(
     operands: &Operands,
     arrangement: &Arrangement,
@@ -32,7 +33,7 @@ pub fn assemble(
     is_whole: &[bool],
     parts: &Parts,
     counts: Counts,
-) -> Outcome {
+) -> (Outcome, bool) {
     let tables = Tables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
@@ -83,13 +84,20 @@ pub fn assemble(
     let is_flat = |triangle: usize| projection(outcome.mesh.corners(triangle)).is_none();
     if (first_facet..outcome.mesh.triangles.len()).into_par_iter().any(is_flat) {
         outcome.clean();
+        return (outcome, true);
     }
-    outcome
+    let is_kept = |operand: u32, triangle: u32| {
+        let vertex = operands.meshes()[operand as usize].triangles[triangle as usize][0];
+        is_whole[(operands.first_triangle(operand) + triangle) as usize]
+            && parts.of_vertex(vertex + operands.first_vertex(operand)) != Fate::Dropped
+    };
+    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, is_kept);
+    (outcome, crosses)
 }
 
 impl Outcome {
     /// Dissolves triangles without an area; those that are left keep their sources.
-    fn clean(&mut self) {
+    pub fn clean(&mut self) {
         let numbers = (0..self.sources.len() as u32).collect();
         let surfaces = std::mem::replace(&mut self.mesh.surfaces, numbers);
         self.mesh = cleaned(std::mem::take(&mut self.mesh));
@@ -107,7 +115,7 @@ impl Outcome {
 }
 
 /// What the triangles of all operands have besides their corners.
-struct Tables {
+pub struct Tables {
     normals: bool,
     parameters: bool,
     /// Number of the first surface of each operand; none if an operand has no surfaces.
@@ -115,7 +123,8 @@ struct Tables {
 }
 
 impl Tables {
-    fn of(meshes: &[&Mesh]) -> Tables {
+    /// Tables that all of some meshes have.
+    pub fn of(meshes: &[&Mesh]) -> Tables {
         let all = |has: fn(&Mesh) -> bool| meshes.iter().all(|mesh| mesh.triangles.is_empty() || has(mesh));
         let mut surfaces = Vec::new();
         if all(|mesh| !mesh.surfaces.is_empty()) {
@@ -146,6 +155,11 @@ impl Tables {
         self.surface(result, mesh, operand, triangle);
     }
 
+    /// For a whole triangle of a single mesh.
+    pub fn take(&self, result: &mut Mesh, mesh: &Mesh, triangle: usize) {
+        self.copy(result, mesh, 0, triangle, Fate::Kept);
+    }
+
     fn surface(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize) {
         if let Some(first) = self.surfaces.get(operand as usize) {
             result.surfaces.push(first + mesh.surfaces[triangle]);
@@ -153,7 +167,7 @@ impl Tables {
     }
 
     /// For the part of a triangle that was pushed last.
-    fn interpolate(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize) {
+    pub fn interpolate(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize) {
         self.surface(result, mesh, operand, triangle);
         let Some(last) = result.triangles.len().checked_sub(1).filter(|_| self.normals || self.parameters) else {
             return;

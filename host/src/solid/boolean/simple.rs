@@ -1,0 +1,141 @@
+//! Surfaces that cross, cover or turn against themselves, and the simple surface of what they bound.
+//!
+//! A surface is simple if it winds once or not at all around every point off it. What any closed surface bounds are
+//! the points that it winds around more than not at all.
+
+use super::operand::Operands;
+use super::result::Outcome;
+use super::snapping::snapped;
+use super::union_find::UnionFind;
+use super::{Expression, Work, work};
+use crate::mesh::Mesh;
+use crate::solid::import::is_closed;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// What counts as near when a surface is drawn together, in units in the last place, one attempt after the other; with none,
+/// it is only divided and rounded again, which mostly suffices.
+const ROUNDINGS: [Option<f64>; 7] =
+    [None, Some(2.0), Some(16.0), Some(128.0), Some(1024.0), Some(8192.0), Some(65536.0)];
+/// Times that a surface is drawn together or divided in an attempt.
+const TURNS: usize = 15;
+
+/// What a closed surface bounds.
+pub struct Resolution {
+    /// The simple surface.
+    pub outcome: Outcome,
+    /// Whether it is the same surface, but for how it is divided.
+    pub is_same: bool,
+    /// Where the given one winds otherwise than once or not at all, and how often.
+    pub odd: Option<(i32, DVec3)>,
+}
+
+/// Number of pairs of triangles of a mesh that have more in common than corners and edges.
+pub fn overlaps(mesh: &Mesh) -> usize {
+    overlapping(mesh).len()
+}
+
+/// Makes a closed surface simple.
+pub fn resolve(mesh: &Mesh) -> Resolution {
+    let mesh = separated(mesh);
+    let Work { mut outcome, is_all_kept, odd, .. } = work(&Operands::new(vec![&mesh], false), &Expression::Operand(0));
+    outcome.clean();
+    Resolution { outcome: settled(outcome), is_same: is_all_kept, odd }
+}
+
+/// The outcome made simple where rounding made it cross itself; as it is where that does not succeed.
+///
+/// What lies within a few roundings becomes one, and what crosses nevertheless is divided there and rounded anew. Where that
+/// does not settle it soon, it begins again with more roundings.
+pub fn settled(mut outcome: Outcome) -> Outcome {
+    outcome.clean();
+    let pairs = overlapping(&outcome.mesh);
+    if pairs.is_empty() {
+        return outcome;
+    }
+    let attempts = ROUNDINGS.iter().flat_map(|roundings| [(*roundings, false), (*roundings, true)]);
+    for ((roundings, widely), number) in attempts.filter(|(roundings, widely)| roundings.is_some() || !widely).zip(1..)
+    {
+        if let Some(mut settled) = attempted(outcome.clone(), pairs.clone(), roundings, widely) {
+            settled.counts.settled = number;
+            return settled;
+        }
+    }
+    outcome.counts.crossing = pairs.len() as u64;
+    outcome
+}
+
+/// The outcome made simple by drawing together what is as near as some roundings, if that succeeds.
+///
+/// - `pairs`: the triangles that overlap.
+/// - `widely`: whether those around them are drawn together too. Surfaces that coincide along lines need it, in others it
+///   spreads the trouble.
+fn attempted(mut trial: Outcome, mut pairs: Vec<[u32; 2]>, roundings: Option<f64>, widely: bool) -> Option<Outcome> {
+    let first = pairs.len();
+    let mut least = first;
+    for turn in 0..TURNS {
+        trial = match roundings {
+            Some(roundings) if turn % 3 < 2 => snapped(trial, &pairs, roundings, widely),
+            _ => again(trial),
+        };
+        pairs = overlapping(&trial.mesh);
+        if pairs.is_empty() {
+            // What was turned inside out goes now.
+            let trial = again(trial);
+            return (overlapping(&trial.mesh).is_empty() && is_closed(&trial.mesh)).then_some(trial);
+        }
+        if pairs.len() > 4 * first + 100 || turn > 2 && pairs.len() > 4 * least + 20 {
+            return None;
+        }
+        least = least.min(pairs.len());
+    }
+    None
+}
+
+/// Divides a surface where it crosses itself, and rounds again.
+fn again(outcome: Outcome) -> Outcome {
+    let mesh = separated(&outcome.mesh);
+    let mut next = work(&Operands::new(vec![&mesh], false), &Expression::Operand(0)).outcome;
+    next.clean();
+    next.sources.iter_mut().for_each(|source| *source = outcome.sources[source[1] as usize]);
+    next.counts = outcome.counts;
+    next
+}
+
+fn overlapping(mesh: &Mesh) -> Vec<[u32; 2]> {
+    Operands::new(vec![mesh], false).overlaps(0)
+}
+
+/// The mesh with vertices of their own for all that is not joined by edges of two triangles.
+fn separated(mesh: &Mesh) -> Mesh {
+    let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
+    for (t, triangle) in mesh.triangles.iter().zip(0..) {
+        for k in 0..3 {
+            let (a, b) = (u64::from(t[k]), u64::from(t[(k + 1) % 3]));
+            sides.push((a.min(b) << 32 | a.max(b), 3 * triangle + k as u32));
+        }
+    }
+    sides.par_sort_unstable();
+    let next = |corner: u32| if corner % 3 == 2 { corner - 2 } else { corner + 1 };
+    let vertex = |corner: u32| mesh.triangles[corner as usize / 3][corner as usize % 3];
+    let mut corners = UnionFind::new(3 * mesh.triangles.len());
+    for group in sides.chunk_by(|a, b| a.0 == b.0) {
+        if let &[(_, one), (_, two)] = group
+            && vertex(one) != vertex(two)
+        {
+            corners.join(one, next(two));
+            corners.join(next(one), two);
+        }
+    }
+    let mut separated = Mesh { vertices: Vec::new(), ..mesh.clone() };
+    let mut number = vec![u32::MAX; 3 * mesh.triangles.len()];
+    for corner in 0..3 * mesh.triangles.len() as u32 {
+        let root = corners.find(corner) as usize;
+        if number[root] == u32::MAX {
+            number[root] = separated.vertices.len() as u32;
+            separated.vertices.push(mesh.vertices[vertex(corner) as usize]);
+        }
+        separated.triangles[corner as usize / 3][corner as usize % 3] = number[root];
+    }
+    separated
+}
