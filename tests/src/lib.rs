@@ -1,7 +1,8 @@
 //! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
-//! conformance suite.
+//! conformance suite; the corpus of Boolean operations.
 
 pub mod conformance;
+pub mod corpus;
 pub mod facets;
 
 use std::{

@@ -53,10 +53,15 @@ pub fn settled(mut outcome: Outcome) -> Outcome {
     if pairs.is_empty() {
         return outcome;
     }
+    // What rounding may make of the volume. Whoever moves points further has spoilt something.
+    let reach = outcome.mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+    let (volume, bound) = (outcome.mesh.signed_volume(), 8.0 * f64::EPSILON * reach * outcome.mesh.area());
     let attempts = ROUNDINGS.iter().flat_map(|roundings| [(*roundings, false), (*roundings, true)]);
     for ((roundings, widely), number) in attempts.filter(|(roundings, widely)| roundings.is_some() || !widely).zip(1..)
     {
-        if let Some(mut settled) = attempted(outcome.clone(), pairs.clone(), roundings, widely) {
+        if let Some(mut settled) = attempted(outcome.clone(), pairs.clone(), roundings, widely)
+            && (settled.mesh.signed_volume() - volume).abs() <= bound
+        {
             settled.counts.settled = number;
             return settled;
         }
