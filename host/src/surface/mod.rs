@@ -1,5 +1,6 @@
 //! Surfaces that are known exactly, and the meshes that approximate them to a tolerance.
 //!
+//! A [`Turned`] surface is what a [`Profile`] makes around an axis: cylinder, cone, disc, torus, paraboloid, hyperboloid.
 //! A [`SplineSurface`] is a mesh of control points over a [`crate::curve::Basis`] in each direction; its
 //! [`SplineSurface::patches`] are what is tessellated. [`tessellate`] makes grids, the better choice for even surfaces;
 //! [`tessellate_adaptively`] makes triangles that are small only where the surface bends, and [`tessellate_trimmed`] the
@@ -16,6 +17,7 @@ mod nearest;
 mod parallelogram;
 mod patches;
 mod placed;
+mod profile;
 mod revolution;
 mod sphere;
 mod spline;
@@ -23,6 +25,7 @@ mod teapot;
 mod tensor;
 mod tessellation;
 mod trim;
+mod turned;
 
 pub use accuracy::{Accuracy, chord_error};
 pub use bezier::BezierPatch;
@@ -33,6 +36,7 @@ pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};
 pub use patches::{PatchError, PatchProblem, PatchSet};
 pub use placed::Placed;
+pub use profile::Profile;
 pub use revolution::{rational_sphere, rational_torus, revolved};
 pub use sphere::Sphere;
 pub use spline::{Direction, SplineSurface};
@@ -40,6 +44,7 @@ pub use teapot::{teapot, teapot_parts};
 pub use tensor::TensorPatch;
 pub use tessellation::{TessellationError, Tolerance, tessellate};
 pub use trim::{TrimEdge, TrimError, TrimmedSurface, tessellate_adaptively, tessellate_trimmed};
+pub use turned::Turned;
 
 use glam::{DVec2, DVec3};
 

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::curvature::Curved;
 use super::{Surface, between};
 
 /// A flat four-sided piece with parallel opposite sides; parameters 0..=1.
@@ -45,6 +46,12 @@ impl Surface for Parallelogram {
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
         super::nearest_from(self, point, guess)
+    }
+}
+
+impl Curved for Parallelogram {
+    fn second_derivatives(&self, _: DVec2) -> [DVec3; 3] {
+        [DVec3::ZERO; 3]
     }
 }
 
