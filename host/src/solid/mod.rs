@@ -3,7 +3,10 @@
 pub mod boolean;
 mod import;
 mod mass;
+mod body;
+pub mod primitive;
 
+pub use body::{Body, Face, Measures};
 pub use boolean::{Counts, Expression, Outcome};
 pub use import::SolidError;
 pub use mass::Mass;
