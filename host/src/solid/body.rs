@@ -1,9 +1,11 @@
 //! Solids that know their exact surfaces, and what those say of them.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::Mass;
 use super::mass::Moments;
+use super::{ExactSolid, Mass, PrimitiveError};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::surface::{Parallelogram, Placed, Surface, TessellationError, Tolerance, tessellate};
@@ -42,11 +44,8 @@ impl Face {
 
     /// The rectangle in its plane that its corners fill.
     pub fn plane(&self) -> Parallelogram {
-        let far = |p: &&DVec3, q: &&DVec3| {
-            (**p - self.corners[0]).length_squared().total_cmp(&(**q - self.corners[0]).length_squared())
-        };
-        let along = self.corners.iter().max_by(far).map_or(DVec3::X, |end| *end - self.corners[0]);
-        let along = (along - self.normal * along.dot(self.normal)).normalize_or(DVec3::X);
+        let [from, to] = self.triangles.first().map_or([0, 0], |t| [t[0], t[1]]).map(|k| self.corners[k as usize]);
+        let along = (to - from - self.normal * (to - from).dot(self.normal)).normalize_or(DVec3::X);
         let across = self.normal.cross(along);
         let flat = |p: &DVec3| DVec2::new((*p - self.corners[0]).dot(along), (*p - self.corners[0]).dot(across));
         let (low, high) = self
@@ -123,6 +122,29 @@ impl Body {
             }
         }
         Ok(mesh.welded())
+    }
+
+    /// The solid of its tessellation, with its surfaces.
+    ///
+    /// # Errors
+    /// [`PrimitiveError`] if the tolerance is not positive or too fine, or triangles collapse.
+    pub fn solid(self, tolerance: Tolerance) -> Result<ExactSolid, PrimitiveError> {
+        let mesh = self.tessellate(tolerance)?;
+        let surfaces = self.into_surfaces().into_iter().map(|surface| Some(Arc::from(surface))).collect();
+        Ok(ExactSolid::new(mesh, surfaces)?)
+    }
+
+    /// The length of the diagonal of a box that holds it nearly, if it is curved; model units.
+    pub fn curved_extent(&self) -> Option<f64> {
+        const STEPS: usize = 8;
+        let points = |surface: &Box<dyn Surface>| {
+            let [low, high] = surface.domain();
+            let part = |k: usize| DVec2::new((k % (STEPS + 1)) as f64, (k / (STEPS + 1)) as f64) / STEPS as f64;
+            let all = (0..(STEPS + 1) * (STEPS + 1)).map(|k| surface.point(low + (high - low) * part(k)));
+            Bounds::of(all)
+        };
+        let whole = self.curved.iter().map(points).fold(Bounds::EMPTY, Bounds::union);
+        self.is_curved().then(|| whole.diagonal())
     }
 
     /// Area, volume, centroid and inertia of the exact surfaces, by Gauss and Legendre's rule on each.

@@ -19,6 +19,7 @@ fn members() -> Vec<(&'static str, Box<dyn Surface>)> {
         ),
     ];
     members.extend(turned());
+    members.extend(swept());
     for patch in teapot() {
         members.push(("patch of the teapot", Box::new(patch)));
     }
@@ -52,6 +53,19 @@ fn turned() -> Vec<(&'static str, Box<dyn Surface>)> {
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.5, 2.0));
     members.push(("stretched torus", Box::new(Placed::new(Turned::whole(torus), flat))));
     members
+}
+
+/// Surfaces of an edge along a curve in space: as it is, and turned and narrowed to a point.
+fn swept() -> Vec<(&'static str, Box<dyn Surface>)> {
+    let path = [[0.0, 0.0, 0.0], [0.0, 3.0, 1.0], [4.0, 4.0, 2.0], [6.0, 0.0, 5.0], [3.0, -2.0, 6.0]];
+    let path = SplineCurve::new(Basis::clamped(3, 5).unwrap(), &path.map(DVec3::from_array), &[]).unwrap();
+    let spine = Arc::new(Spine::new(path).unwrap());
+    let edge = [DVec2::new(-0.4, 0.1), DVec2::new(0.3, -0.2)];
+    let part = |widening: Widening| Box::new(Swept::new(Arc::clone(&spine), widening, edge, [0.0, 1.0]));
+    vec![
+        ("swept edge", part(Widening { turns: 0.0, scale: 1.0 }) as Box<dyn Surface>),
+        ("twisted and tapered edge", part(Widening { turns: 0.4, scale: 0.0 })),
+    ]
 }
 
 /// Tensor patches and spline surfaces of several kinds, with poles and weights among them.

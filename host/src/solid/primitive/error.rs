@@ -67,6 +67,19 @@ pub enum PrimitiveError {
         /// The other.
         second: usize,
     },
+    /// A curve that bends tighter than what it carries is wide.
+    #[error("the path bends with the radius {radius} at {at}, where the polygon reaches {reach} to the inside")]
+    Bend {
+        /// Where.
+        at: DVec3,
+        /// The radius of the bend.
+        radius: f64,
+        /// How far the polygon reaches towards the center of the bend.
+        reach: f64,
+    },
+    /// A curve that stands still.
+    #[error("the path has no direction somewhere: points coincide")]
+    NoDirection,
     /// A polygon that bounds nothing.
     #[error(transparent)]
     Polygon(#[from] PolygonError),

@@ -6,6 +6,7 @@ use super::PrimitiveError;
 use super::error::{count, length, length_or_zero, points};
 use crate::polygon::{Shape, triangulate};
 use crate::solid::{Body, Face};
+use crate::surface::{Parallelogram, Surface, box_faces};
 use glam::{DVec2, DVec3};
 
 /// Most corners of a base.
@@ -13,15 +14,23 @@ const MAX_CORNERS: usize = 1 << 20;
 
 /// A block around the origin.
 pub fn block(size: DVec3) -> Result<Body, PrimitiveError> {
-    wedge(size, size.x)
+    check_size(size)?;
+    let face = |face: &Parallelogram| {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|uv| face.point(uv));
+        Face::convex(corners.to_vec())
+    };
+    Ok(Body::new(Vec::new(), box_faces(size * -0.5, size * 0.5).iter().map(face).collect()))
+}
+
+fn check_size(size: DVec3) -> Result<(), PrimitiveError> {
+    let sides = [("length", size.x), ("height", size.y), ("depth", size.z)];
+    sides.into_iter().try_for_each(|(what, value)| length(what, value).map(|_| ()))
 }
 
 /// A block around the origin of which the top, at the greatest y, has the length `top` along x and lies over the side of
 /// least x; 0 makes an edge of it.
 pub fn wedge(size: DVec3, top: f64) -> Result<Body, PrimitiveError> {
-    for (what, value) in [("length", size.x), ("height", size.y), ("depth", size.z)] {
-        length(what, value)?;
-    }
+    check_size(size)?;
     length_or_zero("top", top)?;
     let [low, high] = [size * -0.5, size * 0.5];
     // The outline seen from the front, once around.

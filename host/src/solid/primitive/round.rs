@@ -3,7 +3,7 @@
 use super::PrimitiveError;
 use super::error::{above, length, length_or_zero};
 use crate::solid::Body;
-use crate::surface::{Profile, Surface, Turned};
+use crate::surface::{Profile, Sphere, Surface, Turned};
 use glam::{DAffine3, DVec2, DVec3};
 
 /// The solid that pieces of a closed profile make when they turn about the y axis. Pieces on the axis make nothing.
@@ -23,8 +23,7 @@ fn capped(side: Profile) -> Body {
 
 /// A sphere.
 pub fn sphere(radius: f64) -> Result<Body, PrimitiveError> {
-    let radius = length("radius", radius)?;
-    Ok(turned([Profile::Arc { center: DVec2::ZERO, radius, turns: [-0.25, 0.25] }]))
+    Ok(Body::new(vec![Box::new(Sphere::new(DVec3::ZERO, length("radius", radius)?))], Vec::new()))
 }
 
 /// An ellipsoid with its axes along x, y and z.

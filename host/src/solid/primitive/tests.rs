@@ -1,10 +1,11 @@
 //! Primitives against the formulas of the book.
 
 use super::*;
+use crate::curve::Curve;
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::solid::{Body, Expression, Measures, Solid};
-use crate::surface::{Surface, Tolerance, rational_sphere, teapot};
+use crate::surface::{Surface, Tolerance, Widening, rational_sphere, teapot};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -215,6 +216,67 @@ fn profiles_may_be_smooth_run_either_way_and_are_refused_with_the_place_if_they_
     assert!(error(&[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]]).contains("no area"));
     assert!(error(&[[1.0, 0.0, 0.0], [1.5, f64::NAN, 0.0], [3.0, 0.0, 0.0]]).starts_with("point 1 is"));
     assert!(turned_polygon(&[vase], 1.5).is_err());
+}
+
+fn square(size: f64) -> Vec<DVec2> {
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec2::new(x, y) * (size * 0.5)).to_vec()
+}
+
+#[test]
+fn sweeps_have_the_volume_of_pappus_whatever_the_curve_and_the_twist() {
+    let control = [[0.0, 0.0, 0.0], [0.0, 3.0, 1.0], [4.0, 4.0, 2.0], [6.0, 0.0, 5.0], [3.0, -2.0, 6.0]];
+    let control = control.map(DVec3::from_array);
+    let curve = path(&control, false).unwrap();
+    let length: f64 = (0..20_000)
+        .map(|k| curve.point(2.0 * f64::from(k) / 2e4).distance(curve.point(2.0 * f64::from(k + 1) / 2e4)))
+        .sum();
+    let contours = [square(0.5), square(0.3)];
+    for turns in [0.0, 0.25, -1.0] {
+        let body = sweep(&contours, curve.clone(), Widening { turns, scale: 1.0 }).unwrap();
+        let exact = body.measures().mass.volume;
+        assert!((exact / (0.16 * length) - 1.0).abs() < 1e-7, "{turns}: {exact} {}", 0.16 * length);
+        let mesh = solid(&body, 2e-3).mass().volume;
+        assert!((mesh / exact - 1.0).abs() < 0.02, "{turns}: {mesh} {exact}");
+    }
+    // Straight and to a point: a pyramid.
+    let body = sweep(
+        &[square(2.0)],
+        path(&[DVec3::ZERO, DVec3::Y * 3.0], false).unwrap(),
+        Widening { turns: 0.0, scale: 0.0 },
+    );
+    assert!((body.unwrap().measures().mass.volume - 4.0).abs() < 1e-13);
+}
+
+#[test]
+fn closed_sweeps_come_back_to_where_they_began() {
+    let control: Vec<DVec3> = (0..7)
+        .map(|k| {
+            let (sine, cosine) = (f64::from(k) / 7.0 * TAU).sin_cos();
+            DVec3::new(4.0 * cosine, 4.0 * sine, (2.0 * f64::from(k) / 7.0 * TAU).sin())
+        })
+        .collect();
+    for turns in [0.0, 2.0] {
+        let body = sweep(&[square(0.5)], path(&control, true).unwrap(), Widening { turns, scale: 1.0 }).unwrap();
+        let solid = solid(&body, 0.02);
+        assert_eq!(solid.mesh().edge_report().euler_characteristic(), 0);
+    }
+    let widening = Widening { turns: 0.3, scale: 1.0 };
+    assert!(sweep(&[square(0.5)], path(&control, true).unwrap(), widening).is_err());
+}
+
+#[test]
+fn sweeps_that_fold_are_refused_with_the_place() {
+    let bent = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 1.0, 0.0)];
+    let words = |size: f64, scale: f64| {
+        let widening = Widening { turns: 0.0, scale };
+        sweep(&[square(size)], path(&bent, false).unwrap(), widening).err().map(|error| error.to_string())
+    };
+    assert_eq!(words(0.5, 1.0), None);
+    assert!(words(2.0, 1.0).unwrap().starts_with("the path bends with the radius"), "{:?}", words(2.0, 1.0));
+    assert_eq!(words(0.5, -0.5).unwrap(), "taper -0.5 is not 0 to 1e6");
+    assert!(path(&[DVec3::ZERO], false).is_err());
+    let still = path(&[DVec3::ONE, DVec3::ONE], false).unwrap();
+    assert!(sweep(&[square(1.0)], still, Widening { turns: 0.0, scale: 1.0 }).is_err());
 }
 
 #[test]
