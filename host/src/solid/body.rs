@@ -137,13 +137,13 @@ impl Body {
     /// The length of the diagonal of a box that holds it nearly, if it is curved; model units.
     pub fn curved_extent(&self) -> Option<f64> {
         const STEPS: usize = 8;
-        let points = |surface: &Box<dyn Surface>| {
+        let points = |surface: &dyn Surface| {
             let [low, high] = surface.domain();
             let part = |k: usize| DVec2::new((k % (STEPS + 1)) as f64, (k / (STEPS + 1)) as f64) / STEPS as f64;
             let all = (0..(STEPS + 1) * (STEPS + 1)).map(|k| surface.point(low + (high - low) * part(k)));
             Bounds::of(all)
         };
-        let whole = self.curved.iter().map(points).fold(Bounds::EMPTY, Bounds::union);
+        let whole = self.curved.iter().map(|surface| points(surface)).fold(Bounds::EMPTY, Bounds::union);
         self.is_curved().then(|| whole.diagonal())
     }
 
@@ -156,11 +156,11 @@ impl Body {
         let corners = self.faces.iter().flat_map(|face| face.corners.iter().copied());
         let [low, middle, high] = [0.0, 0.5, 1.0];
         let grid = [[low, low], [high, low], [low, high], [high, high], [middle, middle]].map(DVec2::from_array);
-        let at = |surface: &Box<dyn Surface>| {
+        let at = |surface: &dyn Surface| {
             let [low, high] = surface.domain();
             grid.map(|part| surface.point(low + (high - low) * part))
         };
-        let bounds = Bounds::of(corners.chain(self.curved.iter().flat_map(at)));
+        let bounds = Bounds::of(corners.chain(self.curved.iter().flat_map(|surface| at(surface))));
         if bounds.is_empty() {
             return Measures { area: 0.0, mass: Mass::ZERO };
         }

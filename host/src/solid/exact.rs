@@ -59,7 +59,10 @@ impl ExactSolid {
     ///
     /// # Errors
     /// [`SolidError`] if rounding spoils it there.
-    pub fn placed(&self, placement: &DAffine3) -> Result<ExactSolid, SolidError> {
+    pub fn placed(self, placement: &DAffine3) -> Result<ExactSolid, SolidError> {
+        if *placement == DAffine3::IDENTITY {
+            return Ok(self);
+        }
         let mut mesh = self.solid.mesh().transformed(placement);
         if placement.matrix3.determinant() < 0.0 {
             // A mirrored surface is run through with u reversed.

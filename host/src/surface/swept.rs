@@ -91,6 +91,9 @@ impl Spine {
     fn bend_in_space(&self, t: f64) -> DVec3 {
         let [first, second] = self.curve.derivatives(t);
         let along = first.normalize_or_zero();
+        if along == DVec3::ZERO {
+            return DVec3::ZERO;
+        }
         (second - along * second.dot(along)) / first.length_squared()
     }
 
@@ -197,12 +200,12 @@ impl Surface for Swept {
         [x * along.x + y * along.y, by_t]
     }
 
-    /// Also where the section has shrunk to a point.
+    /// Also where the section has shrunk to a point, or the parameter of the curve stands still.
     fn normal(&self, uv: DVec2) -> DVec3 {
         let [x, y] = self.spine.axes(self.widening, uv.y);
         let along = (self.edge[1] - self.edge[0]).normalize_or_zero();
         let by_t = self.derivatives(uv)[1];
-        (x * along.x + y * along.y).cross(by_t.normalize_or_zero()).normalize_or_zero()
+        (x * along.x + y * along.y).cross(by_t.normalize_or(self.spine.frame(uv.y).along)).normalize_or_zero()
     }
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {

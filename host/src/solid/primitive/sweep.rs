@@ -41,7 +41,7 @@ pub fn sweep<C: AsRef<[DVec2]>>(
     let Widening { turns, scale } = widening;
     let is_closed = curve.basis().is_closed();
     let refused = |what, value, range| Err(PrimitiveError::Measure { what, value, range });
-    if !(scale >= 0.0 && scale <= 1e6) {
+    if !(0.0..=1e6).contains(&scale) {
         return refused("taper", scale, "0 to 1e6");
     }
     if is_closed && scale != 1.0 {
@@ -87,7 +87,7 @@ fn check_bend(spine: &Spine, corners: &[DVec2], widening: Widening, breaks: &[f6
             let bend = spine.bend(widening, t);
             let scale = 1.0 + (widening.scale - 1.0) * (t - low) / (high - low);
             let most = corners.iter().map(|corner| corner.dot(bend) * scale).fold(0.0, f64::max);
-            if !(most < 1.0) {
+            if most >= 1.0 {
                 let radius = 1.0 / bend.length();
                 let at = spine.place(DVec2::ZERO, widening, t);
                 return Err(PrimitiveError::Bend { at, radius, reach: most * radius });
