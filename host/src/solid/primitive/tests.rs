@@ -276,7 +276,7 @@ fn sweeps_that_fold_are_refused_with_the_place() {
     assert_eq!(words(0.5, -0.5).unwrap(), "taper -0.5 is not 0 to 1e6");
     assert!(path(&[DVec3::ZERO], false).is_err());
     // Control points that coincide at an end do no harm.
-    let slow = path(&[DVec3::ZERO, DVec3::ZERO, DVec3::Y, DVec3::new(0.5, 3.0, 0.0)], false).unwrap();
+    let slow = path(&[DVec3::ZERO, DVec3::ZERO, DVec3::Y, DVec3::Y * 3.0], false).unwrap();
     let body = sweep(&[square(0.2)], slow, Widening { turns: 0.1, scale: 1.0 }).unwrap();
     let slow = solid(&body, 1e-3);
     assert!(slow.mesh().corner_normals.as_flattened().iter().all(|normal| (normal.length() - 1.0).abs() < 1e-12));
