@@ -1,7 +1,6 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
 use super::{Exit, Failure, Row};
-use crate::illumination::Material;
 use crate::mesh::{self, Mesh};
 use crate::picture::Picture;
 use crate::scene::{Object, Prepared, Scene, Shape};
@@ -85,8 +84,8 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
         Some(scene) => scene,
         None => {
             let shape = Shape::Mesh { path: input.clone() };
-            let (name, material) = (input.display().to_string(), Material::default());
-            let object = Object { name, shape, transform: DMat4::IDENTITY, material, tolerance: None };
+            let name = input.display().to_string();
+            let object = Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance: None };
             Scene { objects: vec![object], ..Scene::default() }
         }
     };

@@ -1,7 +1,7 @@
 //! `peris functions`: what a scene script may call.
 
 use super::{Exit, Failure, Row};
-use crate::script::{self, FUNCTIONS};
+use crate::script::{self, functions};
 use clap::{Args, FromArgMatches};
 
 pub(super) const ROW: Row = Row {
@@ -24,13 +24,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.reference {
         say_on!("{}", script::reference());
     } else if let Some(name) = &arguments.name {
-        let function = FUNCTIONS.iter().find(|f| f.name == name);
+        let function = functions().find(|f| f.name == name);
         let function =
             function.ok_or_else(|| Failure::new(Exit::Usage, anyhow::anyhow!("there is no function {name}")))?;
         say!("{}", function.help());
     } else {
-        let width = FUNCTIONS.iter().map(|f| f.name.len()).max().unwrap_or(0);
-        for function in FUNCTIONS {
+        let width = functions().map(|f| f.name.len()).max().unwrap_or(0);
+        for function in functions() {
             say!("{:<width$}  {}", function.name, function.summary);
         }
     }

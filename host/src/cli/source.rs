@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Help for the argument SCRIPT.
 pub const SCRIPT_HELP: &str =
-    "A scene script (.rhai), or the name of a scene that ships with the program: teapot, primitives, flange";
+    "A scene script (.rhai), or the name of a scene that ships with the program: teapot, primitives, flange, chess";
 
 /// Runs the script that the command line names; what it prints goes to standard error.
 ///

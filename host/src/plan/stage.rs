@@ -43,7 +43,7 @@ impl<'a> Facts<'a> {
     }
 
     fn count(&self, test: impl Fn(&Material) -> bool) -> usize {
-        self.kept().filter(|o| test(&o.material)).count()
+        self.kept().filter(|o| o.materials.iter().any(&test)).count()
     }
 
     fn kept(&self) -> impl Iterator<Item = &crate::scene::PreparedObject> {

@@ -3,16 +3,23 @@
 use super::*;
 use crate::illumination::{Bands, Light, Material};
 use crate::scene::{Camera, Object, Scene, Shape};
+use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
 fn object(name: &str, shape: Shape, at: DVec3) -> Object {
     let material = Material { diffuse: Bands::splat(0.5), ..Material::default() };
-    Object { name: name.into(), shape, transform: DMat4::from_translation(at), material, tolerance: None }
+    Object {
+        name: name.into(),
+        shape,
+        transform: DMat4::from_translation(at),
+        material: Some(material),
+        tolerance: None,
+    }
 }
 
 /// A cube in view, a cube far to the right, and light from the right.
 fn scene() -> Scene {
-    let cube = Shape::Box { size: DVec3::ONE };
+    let cube = Shape::Solid(Primitive::Box { size: DVec3::ONE });
     let objects = vec![object("middle", cube.clone(), DVec3::ZERO), object("right", cube, DVec3::new(50.0, 0.0, 0.0))];
     let lights = vec![Light::Directional { direction: DVec3::new(-1.0, 0.0, 0.0), irradiance: Bands::ONE }];
     let camera = Camera {
@@ -26,6 +33,10 @@ fn scene() -> Scene {
     let mut scene = Scene { objects, lights, camera: Some(camera), ..Scene::default() };
     scene.settings.samples = 1;
     scene
+}
+
+fn material(scene: &mut Scene) -> &mut Material {
+    scene.objects[0].material.as_mut().expect("it was given one")
 }
 
 fn plan(scene: &Scene) -> Plan {
@@ -48,15 +59,15 @@ fn each_property_brings_its_stage() {
         change(&mut scene);
         plan(&scene)
     };
-    assert!(with(|s| s.objects[0].material.mirror = Bands::splat(0.1)).needs(Stage::Reflection));
-    assert!(with(|s| s.objects[0].material.specular = Bands::splat(0.1)).needs(Stage::Specular));
+    assert!(with(|s| material(s).mirror = Bands::splat(0.1)).needs(Stage::Reflection));
+    assert!(with(|s| material(s).specular = Bands::splat(0.1)).needs(Stage::Specular));
     assert!(with(|s| s.ambient = Bands::splat(0.1)).needs(Stage::Ambient));
     assert!(with(|s| s.settings.samples = 2).needs(Stage::AntiAliasing));
-    assert!(with(|s| s.objects[0].shape = Shape::Sphere { radius: 1.0 }).needs(Stage::Normals));
+    assert!(with(|s| s.objects[0].shape = Shape::Solid(Primitive::Sphere { radius: 1.0 })).needs(Stage::Normals));
     let dark = with(|s| s.lights.clear());
     assert!(!dark.needs(Stage::Shadows) && !dark.needs(Stage::Diffuse));
     let shallow = with(|s| {
-        s.objects[0].material.mirror = Bands::splat(0.1);
+        material(s).mirror = Bands::splat(0.1);
         s.settings.reflection_depth = 0;
     });
     assert!(!shallow.needs(Stage::Reflection));
@@ -72,7 +83,7 @@ fn an_object_out_of_view_is_kept_for_its_shadow_or_its_mirror_image_only() {
     let mut lamp = scene();
     lamp.lights = vec![Light::Point { at: DVec3::new(9.0, 9.0, 9.0), intensity: Bands::ONE }];
     assert!(!plan(&lamp).keeps_object(1), "beyond the lamp");
-    lamp.objects[0].material.mirror = Bands::splat(0.5);
+    material(&mut lamp).mirror = Bands::splat(0.5);
     assert!(plan(&lamp).keeps_object(1), "a mirror may show it");
 }
 

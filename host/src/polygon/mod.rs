@@ -16,6 +16,8 @@ mod sweep;
 pub use error::{PolygonEdge, PolygonError};
 pub use space::triangulate_in_space;
 
+use std::collections::HashSet;
+
 use glam::DVec2;
 
 use outline::Outline;
@@ -39,6 +41,16 @@ pub struct Triangulation {
     /// How many corners no triangle needs: repetitions of the corner before, and corners where the contour goes
     /// straight on.
     pub dropped: usize,
+}
+
+impl Triangulation {
+    /// The edges around the polygon, with its inside on their left; contours that touch an edge divide it.
+    pub fn border(&self) -> Vec<[u32; 2]> {
+        let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+        let all: HashSet<[u32; 2]> = self.triangles.iter().flat_map(sides).collect();
+        let edges = self.triangles.iter().flat_map(sides);
+        edges.filter(|[a, b]| !all.contains(&[*b, *a])).collect()
+    }
 }
 
 /// Divides a polygon into triangles.

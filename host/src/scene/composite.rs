@@ -1,9 +1,16 @@
 //! Solids made of other objects.
 
-use super::{Object, ShapeError};
-use crate::mesh::{Mesh, normal_matrix};
-use crate::solid::{Expression, Solid};
-use glam::{DMat3, DMat4, DVec3};
+use super::prepared::largest_stretch;
+use super::shape::Made;
+use super::{Object, Shape, ShapeError};
+use crate::illumination::Material;
+use crate::mesh::normal_matrix;
+use crate::numeric::bounds::Bounds;
+use crate::solid::primitive::half_space;
+use crate::solid::{ExactSolid, Expression, PrimitiveError, SolidError};
+use crate::surface::Tolerance;
+use glam::{DAffine3, DMat4, DVec3};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Deepest nesting of composites.
@@ -19,6 +26,8 @@ pub enum Operation {
     Intersection,
     /// What is in the first and in none of the others.
     Difference,
+    /// What is in an odd number of them.
+    SymmetricDifference,
 }
 
 impl Operation {
@@ -28,6 +37,7 @@ impl Operation {
             Operation::Union => "union",
             Operation::Intersection => "intersection",
             Operation::Difference => "difference",
+            Operation::SymmetricDifference => "symmetric_difference",
         }
     }
 }
@@ -37,92 +47,168 @@ impl Operation {
 pub struct Composite {
     /// How they are combined.
     pub operation: Operation,
-    /// The objects; each must bound a solid. Their materials do not count.
+    /// The objects; each must bound a solid. A face keeps the material of its operand; see [`Object::material`].
     pub operands: Vec<Object>,
     /// How deep composites are nested in it: 1 if no operand is one.
     pub nesting: u32,
 }
 
+/// An operand that is no composite itself.
+struct Leaf<'a> {
+    object: &'a Object,
+    to_whole: DMat4,
+    material: Option<Material>,
+    /// Distance between its surface and its triangles in the coordinates of the whole.
+    chord: f64,
+}
+
 impl Composite {
-    /// Triangles within `chord` of the exact surfaces. All operations of nested composites are done at once.
+    /// Triangles within `chord` of the exact surfaces, with normals and parameters of these. All operations of nested
+    /// composites are done at once.
     ///
     /// # Errors
-    /// [`ShapeError`] if an operand has no triangles, or bounds no solid.
-    pub fn mesh(&self, chord: f64) -> Result<Mesh, ShapeError> {
-        let mut solids = Vec::new();
-        let expression = self.collect(&DMat4::IDENTITY, chord, &mut solids)?;
-        let operands: Vec<&Solid> = solids.iter().collect();
-        Ok(Solid::evaluate(&operands, &expression).0.into_mesh())
+    /// [`ShapeError`] if an operand has no triangles, or bounds no solid, or if the result has no end.
+    pub fn made(&self, chord: f64) -> Result<Made, ShapeError> {
+        let mut leaves = Vec::new();
+        let expression = self.collect(&DMat4::IDENTITY, None, chord, &mut leaves);
+        let finite = |leaf: &Leaf| if leaf.is_half_space() { Ok(None) } else { leaf.solid().map(Some) };
+        let finite: Vec<Option<ExactSolid>> = leaves.par_iter().map(finite).collect::<Result<_, _>>()?;
+        let vertices = finite.iter().flatten().flat_map(|solid| &solid.solid().mesh().vertices);
+        let bounds = Bounds::of(vertices.copied());
+        let filled = finite.into_iter().zip(&leaves).map(|(solid, leaf)| match solid {
+            Some(solid) => Ok(solid),
+            None => leaf.half_space(&bounds),
+        });
+        let solids: Vec<ExactSolid> = filled.collect::<Result<_, _>>()?;
+        let (result, outcome) = ExactSolid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
+        let (mesh, surfaces) = result.into_parts();
+        // A half-space reaches far beyond all others: what keeps its end has none itself.
+        let reach = bounds.diagonal();
+        let is_beyond = |p: &DVec3| (*p - p.clamp(bounds.min, bounds.max)).length() > reach;
+        if leaves.iter().any(Leaf::is_half_space) && (bounds.is_empty() || mesh.vertices.iter().any(is_beyond)) {
+            return Err(PrimitiveError::Endless.into());
+        }
+        let operand_of = outcome.sources.iter().map(|[operand, _]| *operand).collect();
+        Ok(Made { mesh, surfaces, operand_of })
     }
 
-    fn collect(&self, to_whole: &DMat4, chord: f64, solids: &mut Vec<Solid>) -> Result<Expression, ShapeError> {
-        let mut parts = Vec::new();
-        for operand in &self.operands {
-            let to_whole = *to_whole * operand.transform;
-            parts.push(match &operand.shape {
-                super::Shape::Composite(inner) => inner.collect(&to_whole, chord, solids)?,
+    /// The materials of the operands that are no composites, in the order in which triangles name them.
+    ///
+    /// - `whole`: that of the object that the composite is the shape of, if it has one.
+    pub(super) fn materials(&self, whole: Option<Material>) -> Vec<Material> {
+        let mut leaves = Vec::new();
+        self.collect(&DMat4::IDENTITY, whole, 1.0, &mut leaves);
+        leaves.iter().map(|leaf| leaf.material.unwrap_or_default()).collect()
+    }
+
+    /// That of its first operand that has one, as far as it goes.
+    pub(super) fn first_material(&self) -> Option<Material> {
+        self.operands.first()?.own_material()
+    }
+
+    /// The greatest of its operands.
+    pub(super) fn extent(&self) -> Option<f64> {
+        let extent = |o: &Object| Some(o.shape.extent()? * largest_stretch(&o.transform));
+        self.operands.iter().filter_map(extent).reduce(f64::max)
+    }
+
+    fn collect<'a>(
+        &'a self,
+        to_whole: &DMat4,
+        whole: Option<Material>,
+        chord: f64,
+        leaves: &mut Vec<Leaf<'a>>,
+    ) -> Expression {
+        let whole = whole.or_else(|| self.first_material());
+        let part = |operand: &'a Object| {
+            let (to_whole, material) = (*to_whole * operand.transform, operand.material.or(whole));
+            match &operand.shape {
+                Shape::Composite(inner) => inner.collect(&to_whole, material, chord, leaves),
                 _ => {
-                    let mesh = operand.own_mesh(operand.tolerance.unwrap_or(chord), &to_whole)?;
-                    let failed = |source| ShapeError::Solid { object: operand.name.clone(), source };
-                    solids.push(Solid::new(placed(mesh, &to_whole)).map_err(failed)?);
-                    Expression::Operand(solids.len() - 1)
+                    let chord = operand.tolerance.unwrap_or(chord);
+                    leaves.push(Leaf { object: operand, to_whole, material, chord });
+                    Expression::Operand(leaves.len() - 1)
                 }
-            });
-        }
-        Ok(match self.operation {
+            }
+        };
+        let mut parts: Vec<Expression> = self.operands.iter().map(part).collect();
+        match self.operation {
             Operation::Union => Expression::Union(parts),
             Operation::Intersection => Expression::Intersection(parts),
+            Operation::SymmetricDifference => Expression::SymmetricDifference(parts),
             Operation::Difference => {
                 let others = parts.split_off(1.min(parts.len()));
                 let first = parts.pop().unwrap_or(Expression::Union(Vec::new()));
                 Expression::difference(first, Expression::Union(others))
             }
-        })
+        }
     }
 }
 
-/// A mesh in another place, with normals at all corners.
-fn placed(mut mesh: Mesh, to_whole: &DMat4) -> Mesh {
-    if mesh.corner_normals.is_empty() {
-        let flat = |triangle| [mesh.face_normal(triangle).unwrap_or(DVec3::ZERO); 3];
-        mesh.corner_normals = (0..mesh.triangles.len()).map(flat).collect();
+impl Leaf<'_> {
+    fn is_half_space(&self) -> bool {
+        matches!(self.object.shape, Shape::HalfSpace { .. })
     }
-    let normals = normal_matrix(DMat3::from_mat4(*to_whole));
-    mesh.vertices.iter_mut().for_each(|vertex| *vertex = to_whole.transform_point3(*vertex));
-    for corner in mesh.corner_normals.as_flattened_mut() {
-        *corner = (normals * *corner).normalize_or_zero();
+
+    fn placement(&self) -> DAffine3 {
+        DAffine3::from_mat4(self.to_whole)
     }
-    if to_whole.determinant() < 0.0 {
-        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-        mesh.corner_normals.iter_mut().for_each(|normals| normals.swap(1, 2));
-        mesh.corner_parameters.iter_mut().for_each(|parameters| parameters.swap(1, 2));
+
+    fn failed(&self, source: SolidError) -> ShapeError {
+        ShapeError::Solid { object: self.object.name.clone(), source }
     }
-    mesh
+
+    fn solid(&self) -> Result<ExactSolid, ShapeError> {
+        let Made { mesh, surfaces, .. } = self.object.shape.made(self.chord / largest_stretch(&self.to_whole))?;
+        let solid = ExactSolid::new(mesh, surfaces).and_then(|solid| solid.placed(&self.placement()));
+        solid.map_err(|source| self.failed(source))
+    }
+
+    /// As much of a half-space as covers `bounds`, which are in the coordinates of the whole.
+    fn half_space(&self, bounds: &Bounds) -> Result<ExactSolid, ShapeError> {
+        let Shape::HalfSpace { normal, at } = self.object.shape else { return self.solid() };
+        let normal = normal_matrix(self.placement().matrix3) * normal;
+        let body = half_space(normal, self.to_whole.transform_point3(at), bounds)?;
+        Ok(body.solid(Tolerance::new(1.0, 90.0))?)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::Shape;
+    use super::super::Prepared;
     use super::*;
-    use crate::illumination::Material;
+    use crate::scene::Scene;
+    use crate::solid::Primitive;
+    use glam::DVec3;
+    use std::f64::consts::PI;
 
     fn object(shape: Shape, transform: DMat4) -> Object {
-        Object { name: shape.word().into(), shape, transform, material: Material::default(), tolerance: None }
+        Object { name: shape.word().into(), shape, transform, material: None, tolerance: None }
+    }
+
+    fn solid(primitive: Primitive) -> Object {
+        object(Shape::Solid(primitive), DMat4::IDENTITY)
+    }
+
+    fn cube(x: f64) -> Object {
+        object(Shape::Solid(Primitive::Box { size: DVec3::ONE }), DMat4::from_translation(DVec3::X * x))
+    }
+
+    fn composite(operation: Operation, operands: Vec<Object>) -> Composite {
+        Composite { operation, operands, nesting: 1 }
     }
 
     #[test]
     fn nested_and_mirrored_composites_have_the_volume_of_the_set() {
-        let cube = |x: f64| object(Shape::Box { size: DVec3::ONE }, DMat4::from_translation(DVec3::X * x));
-        let inner = Composite { operation: Operation::Union, operands: vec![cube(0.0), cube(0.5)], nesting: 1 };
+        let inner = composite(Operation::Union, vec![cube(0.0), cube(0.5)]);
         let mirrored = DMat4::from_scale(DVec3::new(-2.0, 1.0, 1.0));
         let inner = object(Shape::Composite(Box::new(inner)), mirrored);
-        let ball = object(Shape::Sphere { radius: 0.25 }, DMat4::IDENTITY);
-        let operands = vec![inner, cube(-2.0), ball];
-        let mesh = Composite { operation: Operation::Difference, operands, nesting: 2 }.mesh(1e-3).unwrap();
+        let operands = vec![inner, cube(-2.0), solid(Primitive::Sphere { radius: 0.25 })];
+        let mesh = Composite { operation: Operation::Difference, operands, nesting: 2 }.made(1e-3).unwrap().mesh;
         // The bar reaches from -2 to 1, the cube takes all below -1.5, the ball its inscribed triangles.
         let rest = 2.5 - mesh.signed_volume();
-        let ball = 4.0 / 3.0 * std::f64::consts::PI / 64.0;
-        assert!(rest < ball && rest > ball - std::f64::consts::PI / 4.0 * 1e-3, "{rest} {ball}");
+        let ball = 4.0 / 3.0 * PI / 64.0;
+        assert!(rest < ball && rest > ball - PI / 4.0 * 1e-3, "{rest} {ball}");
         assert_eq!(mesh.corner_normals.len(), mesh.triangles.len());
         for triangle in 0..mesh.triangles.len() {
             let face = mesh.face_normal(triangle).unwrap();
@@ -133,7 +219,71 @@ mod tests {
     #[test]
     fn an_open_shape_is_named() {
         let operands = vec![object(Shape::Teapot, DMat4::IDENTITY), object(Shape::Bunny, DMat4::IDENTITY)];
-        let error = Composite { operation: Operation::Union, operands, nesting: 1 }.mesh(0.01).unwrap_err();
+        let error = composite(Operation::Union, operands).made(0.01).err().unwrap();
         assert!(error.to_string().starts_with("teapot bounds no solid"), "{error}");
+    }
+
+    #[test]
+    fn triangles_know_the_placed_surfaces_of_their_operands() {
+        let drill = Object {
+            transform: DMat4::from_rotation_z(0.3) * DMat4::from_scale(DVec3::new(1.0, 1.0, 2.0)),
+            ..solid(Primitive::Cylinder { radius: 0.4, height: 4.0 })
+        };
+        let made = composite(Operation::Difference, vec![solid(Primitive::Sphere { radius: 1.0 }), drill]);
+        let Made { mesh, surfaces, operand_of } = made.made(1e-3).unwrap();
+        assert_eq!((surfaces.len(), operand_of.len()), (4, mesh.triangles.len()));
+        for triangle in 0..mesh.triangles.len() {
+            let surface = surfaces[mesh.surfaces[triangle] as usize].as_ref().unwrap();
+            assert_eq!(operand_of[triangle], u32::from(mesh.surfaces[triangle] > 0));
+            for (corner, point) in mesh.corners(triangle).into_iter().enumerate() {
+                let (uv, normal) = (mesh.corner_parameters[triangle][corner], mesh.corner_normals[triangle][corner]);
+                assert!(surface.point(uv).distance(point) < 2e-3);
+                let side = if operand_of[triangle] == 0 { 1.0 } else { -1.0 };
+                assert!((surface.normal(uv) * side - normal).length() < 1e-12);
+                // The way to the surface is along its normal.
+                let off = point - surface.point(uv);
+                assert!(off.cross(normal).length() < 1e-12, "{triangle}: {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn half_spaces_cut_and_do_not_make_endless_solids() {
+        let half = || object(Shape::HalfSpace { normal: DVec3::Y, at: DVec3::Y * 0.25 }, DMat4::IDENTITY);
+        let ball = || solid(Primitive::Sphere { radius: 1.0 });
+        let cap = |operation| Ok::<_, ShapeError>(composite(operation, vec![ball(), half()]).made(1e-4)?.mesh);
+        let (below, above) = (cap(Operation::Intersection).unwrap(), cap(Operation::Difference).unwrap());
+        assert!((above.signed_volume() - PI * 0.75_f64.powi(2) * 2.25 / 3.0).abs() < 1e-3);
+        assert!((below.signed_volume() + above.signed_volume() - 4.0 / 3.0 * PI).abs() < 1e-3);
+        assert!(below.bounds().unwrap().max.y == 0.25 && above.bounds().unwrap().min.y == 0.25);
+        assert!(cap(Operation::Union).unwrap_err().to_string().starts_with("a half-space has no end"));
+        assert!(half().shape.made(1.0).is_err());
+        assert!(composite(Operation::Union, vec![half(), half()]).made(1.0).is_err());
+    }
+
+    #[test]
+    fn faces_keep_the_material_that_their_operand_was_given() {
+        let red = Material { diffuse: DVec3::new(0.9, 0.1, 0.1), ..Material::default() };
+        let blue = Material { diffuse: DVec3::new(0.1, 0.1, 0.9), ..Material::default() };
+        let all = |one: Option<Material>, two: Option<Material>, whole: Option<Material>| {
+            let operands =
+                vec![Object { material: one, ..cube(0.0) }, Object { material: two, ..cube(0.5) }, cube(0.75)];
+            let shape = Shape::Composite(Box::new(composite(Operation::Union, operands)));
+            let scene = Scene {
+                objects: vec![Object { material: whole, ..object(shape, DMat4::IDENTITY) }],
+                ..Scene::default()
+            };
+            let prepared = Prepared::new(&scene).unwrap();
+            let at = |x: f64| {
+                let is_there = |t: &u32| prepared.corners(*t).iter().all(|corner| corner.x == x);
+                *prepared.material((0..prepared.triangles.len() as u32).find(is_there).unwrap())
+            };
+            // The end of the first cube, and that of the third.
+            [at(-0.5), at(1.25)]
+        };
+        assert_eq!(all(Some(red), Some(blue), None), [red, red]);
+        assert_eq!(all(None, Some(red), Some(blue)), [blue, blue]);
+        assert_eq!(all(Some(red), None, Some(blue)), [red, blue]);
+        assert_eq!(all(None, None, None), [Material::default(); 2]);
     }
 }

@@ -11,7 +11,7 @@ mod view;
 pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
 pub use prepared::{Prepared, PreparedObject};
-pub use shape::{Shape, ShapeError};
+pub use shape::{Made, Shape, ShapeError};
 pub use view::{Camera, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};
@@ -54,8 +54,9 @@ pub struct Object {
     pub shape: Shape,
     /// Own coordinates to scene coordinates (column vectors: `p' = M p`); affine, not singular.
     pub transform: DMat4,
-    /// How its surface reflects.
-    pub material: Material,
+    /// How its surface reflects. Without one, an operand of a composite has that of the whole that it is part of, a
+    /// composite that of its first operand, and others have the default.
+    pub material: Option<Material>,
     /// Largest distance between surface and triangles in scene units; without one, that of the [`Settings`].
     pub tolerance: Option<f64>,
 }
@@ -127,6 +128,18 @@ impl Scene {
 }
 
 impl Object {
+    /// How its surface reflects in the main.
+    pub fn main_material(&self) -> Material {
+        self.own_material().unwrap_or_default()
+    }
+
+    fn own_material(&self) -> Option<Material> {
+        match &self.shape {
+            Shape::Composite(composite) => self.material.or_else(|| composite.first_material()),
+            _ => self.material,
+        }
+    }
+
     fn check(&self) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: self.name.clone(), problem };
         self.shape.check().map_err(failed)?;
@@ -143,7 +156,7 @@ impl Object {
         if let Some(tolerance) = self.tolerance {
             check_tolerance(tolerance).map_err(failed)?;
         }
-        let m = &self.material;
+        let Some(m) = &self.material else { return Ok(()) };
         for (what, k) in [("diffuse", m.diffuse), ("specular", m.specular), ("mirror", m.mirror)] {
             if !k.is_finite() || k.min_element() < 0.0 || k.max_element() > 1.0 {
                 return Err(failed(format!("{what} reflectance {k} is not within 0 to 1")));

@@ -1,6 +1,6 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
-use super::{Camera, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
+use super::{Camera, Made, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
@@ -10,8 +10,6 @@ use glam::{DMat3, DMat4, DVec3, Vec3};
 pub const MAX_TRIANGLES: u64 = 1 << 30;
 /// Tolerance of an object for which none is given, as a fraction of the diagonal of its bounds.
 const RELATIVE_TOLERANCE: f64 = 1.0 / 2000.0;
-/// Diagonal of the box around the teapot: 6.525 long, 3.15 high, 4 wide.
-const TEAPOT_DIAGONAL: f64 = 8.28;
 /// Normals of a file or surface that are this close to the plane's count as flat (sine of the angle).
 const FLAT_SINE: f64 = 1e-6;
 
@@ -26,6 +24,8 @@ pub struct Prepared {
     pub object_of: Vec<u32>,
     /// Unit normals at the corners, for the triangles of curved objects only; see [`Prepared::corner_normals`].
     normals: Vec<[Vec3; 3]>,
+    /// For the triangles of objects of several materials, which of them.
+    material_of: Vec<u32>,
     /// The objects, in the order of the scene.
     pub objects: Vec<PreparedObject>,
     /// The lights.
@@ -49,8 +49,8 @@ pub struct PreparedObject {
     pub name: String,
     /// The word for its shape.
     pub shape: &'static str,
-    /// How it reflects.
-    pub material: Material,
+    /// How it reflects: one material, or several for the faces of a composite.
+    pub materials: Vec<Material>,
     /// Its first triangle.
     pub first: u32,
     /// How many triangles it has.
@@ -61,6 +61,8 @@ pub struct PreparedObject {
     pub tolerance: f64,
     /// Where its corner normals begin; none for an object with flat faces.
     normals_from: Option<u32>,
+    /// Where its numbers of materials begin; none for an object of one material.
+    materials_from: Option<u32>,
 }
 
 impl PreparedObject {
@@ -82,6 +84,7 @@ impl Prepared {
             triangles: Vec::new(),
             object_of: Vec::new(),
             normals: Vec::new(),
+            material_of: Vec::new(),
             objects: Vec::new(),
             lights: scene.lights.clone(),
             ambient: scene.ambient,
@@ -99,7 +102,7 @@ impl Prepared {
 
     fn add(&mut self, object: &Object, scene_tolerance: Option<f64>) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let (mesh, tolerance) = object.mesh(scene_tolerance)?;
+        let (Made { mesh, operand_of, .. }, tolerance) = object.made(scene_tolerance)?;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
         }
@@ -121,16 +124,18 @@ impl Prepared {
         }));
         self.object_of.resize(self.triangles.len(), self.objects.len() as u32);
         let normals_from = self.add_normals(&mesh, &object.transform, mirrored);
+        let (materials, materials_from) = self.add_materials(object, &operand_of);
         self.bounds = self.bounds.union(bounds);
         self.objects.push(PreparedObject {
             name: object.name.clone(),
             shape: object.shape.word(),
-            material: object.material,
+            materials,
             first,
             count: mesh.triangles.len() as u32,
             bounds,
             tolerance,
             normals_from,
+            materials_from,
         });
         Ok(())
     }
@@ -152,6 +157,33 @@ impl Prepared {
             if mirrored { [a, c, b] } else { [a, b, c] }
         }));
         Some(from)
+    }
+
+    /// The materials of an object, each once; which of them its triangles have is stored if there are several.
+    fn add_materials(&mut self, object: &Object, operand_of: &[u32]) -> (Vec<Material>, Option<u32>) {
+        let Shape::Composite(composite) = &object.shape else { return (vec![object.main_material()], None) };
+        let mut materials: Vec<Material> = Vec::new();
+        let mut number = |material: Material| {
+            materials.iter().position(|known| *known == material).unwrap_or_else(|| {
+                materials.push(material);
+                materials.len() - 1
+            }) as u32
+        };
+        let of_operand: Vec<u32> = composite.materials(object.material).into_iter().map(&mut number).collect();
+        if materials.len() < 2 {
+            return (vec![materials.pop().unwrap_or_default()], None);
+        }
+        let from = self.material_of.len() as u32;
+        self.material_of.extend(operand_of.iter().map(|operand| of_operand[*operand as usize]));
+        (materials, Some(from))
+    }
+
+    /// How a triangle reflects.
+    pub fn material(&self, triangle: u32) -> &Material {
+        let object = self.object(triangle);
+        let number =
+            object.materials_from.map_or(0, |from| self.material_of[(from + triangle - object.first) as usize]);
+        &object.materials[number as usize]
     }
 
     /// The corners of a triangle, in scene coordinates.
@@ -188,6 +220,7 @@ impl Prepared {
             + size_of_val(&self.triangles[..])
             + size_of_val(&self.object_of[..])
             + size_of_val(&self.normals[..])
+            + size_of_val(&self.material_of[..])
     }
 }
 
@@ -201,7 +234,7 @@ fn cofactors(m: &DMat3) -> DMat3 {
 
 /// An upper bound of how much a transformation lengthens: the root of the sum of its squared columns, but never more
 /// than the longest column when they are orthogonal.
-fn largest_stretch(m: &DMat4) -> f64 {
+pub(super) fn largest_stretch(m: &DMat4) -> f64 {
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.truncate());
     let longest = x.length().max(y.length()).max(z.length());
     let skew = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
@@ -214,51 +247,36 @@ fn largest_stretch(m: &DMat4) -> f64 {
 
 impl Object {
     /// The triangles in own coordinates, and the tolerance in scene units that they were made for (0 for flat shapes).
-    fn mesh(&self, scene_tolerance: Option<f64>) -> Result<(Mesh, f64), SceneError> {
+    fn made(&self, scene_tolerance: Option<f64>) -> Result<(Made, f64), SceneError> {
         let stretch = largest_stretch(&self.transform);
-        let given = self.tolerance.or(scene_tolerance);
-        let own = self.shape.extent().map(|extent| given.map_or(extent * RELATIVE_TOLERANCE, |t| t / stretch));
+        let own = self.own_chord(scene_tolerance);
         // A flat shape fits any tolerance.
-        let mesh = self.shape.mesh(own.unwrap_or(f64::MAX)).map_err(|source| self.failed(source))?;
-        Ok((mesh, own.unwrap_or(0.0) * stretch))
+        let made = self.shape.made(own.unwrap_or(f64::MAX)).map_err(|source| self.failed(source))?;
+        Ok((made, own.unwrap_or(0.0) * stretch))
     }
 
-    /// Triangles within `chord` of the surface after a transformation, in own coordinates.
-    pub(super) fn own_mesh(&self, chord: f64, transform: &DMat4) -> Result<Mesh, ShapeError> {
-        self.shape.mesh(chord / largest_stretch(transform))
+    /// The tolerance in own coordinates; none for flat shapes.
+    fn own_chord(&self, scene_tolerance: Option<f64>) -> Option<f64> {
+        let (extent, given) = (self.shape.extent()?, self.tolerance.or(scene_tolerance));
+        Some(given.map_or(extent * RELATIVE_TOLERANCE, |given| given / largest_stretch(&self.transform)))
     }
 
     /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
     pub(super) fn chord_error(&self, scene_tolerance: Option<f64>) -> Result<f64, SceneError> {
         let stretch = largest_stretch(&self.transform);
         if let Shape::Composite(composite) = &self.shape {
-            let given = self.tolerance.or(scene_tolerance);
-            let own = self.shape.extent().map(|extent| given.map_or(extent * RELATIVE_TOLERANCE, |t| t / stretch));
-            let errors = composite.operands.iter().map(|operand| operand.chord_error(own));
+            let own = self.own_chord(scene_tolerance);
+            let curved = composite.operands.iter().filter(|operand| operand.shape.is_exact_and_curved());
+            let errors = curved.map(|operand| operand.chord_error(own));
             let largest = errors.reduce(|a, b| Ok(a?.max(b?))).unwrap_or(Ok(0.0))?;
             return Ok(largest * stretch);
         }
-        let (mesh, _) = self.mesh(scene_tolerance)?;
-        let error = self.shape.chord_error(&mesh).map_err(|source| self.failed(source))?;
+        let (made, _) = self.made(scene_tolerance)?;
+        let error = made.chord_error().map_err(|source| self.failed(source.into()))?;
         Ok(error * stretch)
     }
 
     fn failed(&self, source: ShapeError) -> SceneError {
         SceneError::Shape { object: self.name.clone(), source }
-    }
-}
-
-impl Shape {
-    /// Length of the diagonal in own coordinates, for curved shapes of known size.
-    pub fn extent(&self) -> Option<f64> {
-        match self {
-            Shape::Sphere { radius } => Some(2.0 * radius * 3f64.sqrt()),
-            Shape::Teapot => Some(TEAPOT_DIAGONAL),
-            Shape::Composite(composite) => {
-                let extent = |o: &Object| Some(o.shape.extent()? * largest_stretch(&o.transform));
-                composite.operands.iter().filter_map(extent).reduce(f64::max)
-            }
-            Shape::Box { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => None,
-        }
     }
 }

@@ -2,17 +2,20 @@
 
 use super::composite::{Composite, MAX_NESTING};
 use crate::mesh::{self, Mesh, MeshError};
-use crate::solid::SolidError;
-use crate::surface::{self, Sphere, TessellationError, Tolerance, box_faces, chord_error, ground, tessellate};
+use crate::solid::{Primitive, PrimitiveError, SolidError};
+use crate::surface::{self, Surface, TessellationError, Tolerance, chord_error, ground, tessellate};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Largest turn of the normal from vertex to vertex, degrees: beyond it, interpolated normals are no longer those of the
 /// surface, however loose the tolerance.
 const LARGEST_TURN_DEGREES: f64 = 45.0;
 /// Steps along the sides of a triangle at which its distance to the exact surface is measured.
 const MEASURED_STEPS: usize = 6;
+/// Diagonal of the box around the teapot: 6.525 long, 3.15 high, 4 wide.
+const TEAPOT_DIAGONAL: f64 = 8.28;
 
 /// Why a shape has no triangles.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +26,9 @@ pub enum ShapeError {
     /// The surface cannot be approximated to the tolerance.
     #[error(transparent)]
     Tessellation(#[from] TessellationError),
+    /// There is no such solid.
+    #[error(transparent)]
+    Primitive(#[from] PrimitiveError),
     /// The surface encloses nothing.
     #[error("{object} bounds no solid: {source}")]
     Solid {
@@ -41,15 +47,14 @@ pub enum Shape {
     Teapot,
     /// The Stanford bunny, about 2 high.
     Bunny,
-    /// A sphere around the origin.
-    Sphere {
-        /// Its radius.
-        radius: f64,
-    },
-    /// A box around the origin.
-    Box {
-        /// Its sides along x, y and z.
-        size: DVec3,
+    /// A solid of a few measures.
+    Solid(Primitive),
+    /// All that is behind a plane; it must be combined with other solids.
+    HalfSpace {
+        /// Towards the empty side, any length above 0.
+        normal: DVec3,
+        /// A point of the plane.
+        at: DVec3,
     },
     /// A square in the plane y = 0 around the origin, seen from above.
     Ground {
@@ -65,14 +70,26 @@ pub enum Shape {
     Composite(Box<Composite>),
 }
 
+/// Triangles of a shape, and what they belong to.
+#[derive(Clone, Default)]
+pub struct Made {
+    /// The triangles, in own coordinates.
+    pub mesh: Mesh,
+    /// The exact surfaces that the triangles name; none where only triangles are known.
+    pub surfaces: Vec<Option<Arc<dyn Surface>>>,
+    /// For each triangle of a composite its innermost operand, counted through in the order of the script; empty for
+    /// other shapes.
+    pub operand_of: Vec<u32>,
+}
+
 impl Shape {
     /// The word for the kind.
     pub fn word(&self) -> &'static str {
         match self {
             Shape::Teapot => "teapot",
             Shape::Bunny => "bunny",
-            Shape::Sphere { .. } => "sphere",
-            Shape::Box { .. } => "box",
+            Shape::Solid(primitive) => primitive.word(),
+            Shape::HalfSpace { .. } => "half_space",
             Shape::Ground { .. } => "ground",
             Shape::Mesh { .. } => "mesh",
             Shape::Composite(composite) => composite.operation.word(),
@@ -81,14 +98,12 @@ impl Shape {
 
     /// Checks the measures; the problem in words.
     pub(super) fn check(&self) -> Result<(), String> {
-        let positive = |x: f64| x.is_finite() && x > 0.0;
         match self {
             Shape::Teapot | Shape::Bunny | Shape::Mesh { .. } => Ok(()),
-            Shape::Sphere { radius } if positive(*radius) => Ok(()),
-            Shape::Sphere { radius } => Err(format!("radius {radius} is not a length above 0")),
-            Shape::Box { size } if positive(size.x) && positive(size.y) && positive(size.z) => Ok(()),
-            Shape::Box { size } => Err(format!("size {size} has a side that is not a length above 0")),
-            Shape::Ground { size } if positive(*size) => Ok(()),
+            Shape::Solid(primitive) => primitive.body().map(|_| ()).map_err(|error| error.to_string()),
+            Shape::HalfSpace { normal, .. } if normal.try_normalize().is_some() => Ok(()),
+            Shape::HalfSpace { normal, .. } => Err(format!("normal {normal} has no length")),
+            Shape::Ground { size } if size.is_finite() && *size > 0.0 => Ok(()),
             Shape::Ground { size } => Err(format!("size {size} is not a length above 0")),
             Shape::Composite(composite) if composite.nesting > MAX_NESTING => {
                 Err(format!("solids are nested more than {MAX_NESTING} deep"))
@@ -103,39 +118,63 @@ impl Shape {
     pub fn is_exact_and_curved(&self) -> bool {
         match self {
             Shape::Composite(composite) => composite.operands.iter().any(|o| o.shape.is_exact_and_curved()),
-            _ => matches!(self, Shape::Teapot | Shape::Sphere { .. }),
+            _ => self.extent().is_some(),
         }
     }
 
-    /// Triangles within `chord` of the shape, in own coordinates.
+    /// Length of the diagonal in own coordinates, for curved shapes of known size.
+    pub fn extent(&self) -> Option<f64> {
+        match self {
+            Shape::Teapot => Some(TEAPOT_DIAGONAL),
+            Shape::Solid(primitive) => primitive.body().ok()?.curved_extent(),
+            Shape::Composite(composite) => composite.extent(),
+            Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => None,
+        }
+    }
+
+    /// Triangles within `chord` of the shape and the exact surfaces that they stand for, in own coordinates.
     ///
     /// # Errors
-    /// [`ShapeError`] if the file cannot be read, or the tolerance asks for too many triangles.
-    pub fn mesh(&self, chord: f64) -> Result<Mesh, ShapeError> {
+    /// [`ShapeError`] if the file cannot be read, the tolerance asks for too many triangles, or there is no such solid.
+    pub fn made(&self, chord: f64) -> Result<Made, ShapeError> {
         let tolerance = Tolerance::new(chord, LARGEST_TURN_DEGREES);
+        let known = |mesh: Mesh, surfaces: Vec<Box<dyn Surface>>| {
+            let surfaces = surfaces.into_iter().map(|surface| Some(Arc::from(surface))).collect();
+            Made { mesh, surfaces, operand_of: Vec::new() }
+        };
         match self {
-            Shape::Composite(composite) => composite.mesh(chord),
-            Shape::Bunny => Ok(mesh::bunny()),
-            Shape::Mesh { path } => Ok(mesh::read(path)?),
-            Shape::Teapot => Ok(tessellate(&surface::teapot(), tolerance)?),
-            Shape::Sphere { radius } => Ok(tessellate(&[Sphere::new(DVec3::ZERO, *radius)], tolerance)?),
-            Shape::Box { size } => Ok(tessellate(&box_faces(*size * -0.5, *size * 0.5), tolerance)?),
-            Shape::Ground { size } => Ok(tessellate(&[ground(DVec3::ZERO, *size)], tolerance)?),
+            Shape::Composite(composite) => composite.made(chord),
+            Shape::Bunny => Ok(Made { mesh: mesh::bunny(), ..Made::default() }),
+            Shape::Mesh { path } => Ok(Made { mesh: mesh::read(path)?, ..Made::default() }),
+            Shape::HalfSpace { .. } => Err(PrimitiveError::Endless.into()),
+            Shape::Solid(primitive) => {
+                let body = primitive.body()?;
+                Ok(known(body.tessellate(tolerance)?, body.into_surfaces()))
+            }
+            Shape::Teapot => {
+                let patches = surface::teapot().into_iter().map(|patch| Box::new(patch) as Box<dyn Surface>);
+                let patches: Vec<_> = patches.collect();
+                Ok(known(tessellate(&patches, tolerance)?, patches))
+            }
+            Shape::Ground { size } => {
+                let square: Vec<Box<dyn Surface>> = vec![Box::new(ground(DVec3::ZERO, *size))];
+                Ok(known(tessellate(&square, tolerance)?, square))
+            }
         }
     }
+}
 
-    /// Largest measured distance between `mesh`, made by [`Shape::mesh`], and the exact surface, in own coordinates.
+impl Made {
+    /// Largest measured distance between the triangles and the exact surfaces, in own coordinates; 0 where those are not
+    /// known.
     ///
-    /// 0 for shapes that have no exact surface or are flat.
-    pub(super) fn chord_error(&self, mesh: &Mesh) -> Result<f64, ShapeError> {
-        let accuracy = match self {
-            Shape::Teapot => chord_error(mesh, &surface::teapot(), MEASURED_STEPS)?,
-            Shape::Sphere { radius } => chord_error(mesh, &[Sphere::new(DVec3::ZERO, *radius)], MEASURED_STEPS)?,
-            // Composites ask their operands.
-            Shape::Box { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } | Shape::Composite(_) => {
-                return Ok(0.0);
-            }
-        };
-        Ok(accuracy.maximum)
+    /// # Errors
+    /// [`TessellationError`] if the mesh does not know its surfaces.
+    pub(super) fn chord_error(&self) -> Result<f64, TessellationError> {
+        let known: Option<Vec<Arc<dyn Surface>>> = self.surfaces.iter().cloned().collect();
+        match known {
+            Some(surfaces) if !surfaces.is_empty() => Ok(chord_error(&self.mesh, &surfaces, MEASURED_STEPS)?.maximum),
+            _ => Ok(0.0),
+        }
     }
 }

@@ -13,6 +13,8 @@ enum Argument {
     Integer(i64),
     Vector(DVec3),
     Text(String),
+    Flag(bool),
+    Contours(Vec<Vec<DVec3>>),
 }
 
 /// The checked values of a call, by parameter.
@@ -103,6 +105,21 @@ impl Bound {
         }
     }
 
+    pub(super) fn flag(&self, name: &str) -> Option<bool> {
+        match self.get(name)? {
+            Argument::Flag(flag) => Some(*flag),
+            _ => None,
+        }
+    }
+
+    /// Lists of points; a third coordinate that was not given is 0.
+    pub(super) fn contours(&self, name: &str) -> Vec<Vec<DVec3>> {
+        match self.get(name) {
+            Some(Argument::Contours(contours)) => contours.clone(),
+            _ => Vec::new(),
+        }
+    }
+
     pub(super) fn text(&self, name: &str) -> Option<&str> {
         match self.get(name)? {
             Argument::Text(text) => Some(text),
@@ -121,6 +138,23 @@ fn vector(value: &Dynamic) -> Option<DVec3> {
         [x, y, z] => Some(DVec3::new(number(x)?, number(y)?, number(z)?)),
         _ => None,
     }
+}
+
+/// Points with two or three coordinates.
+fn points(value: &Dynamic) -> Option<Vec<DVec3>> {
+    let point = |value: &Dynamic| {
+        let array = value.read_lock::<Array>()?;
+        match array.as_slice() {
+            [x, y] => Some(DVec3::new(number(x)?, number(y)?, 0.0)),
+            _ => vector(value),
+        }
+    };
+    value.read_lock::<Array>()?.iter().map(point).collect()
+}
+
+/// One list of points or several.
+fn contours(value: &Dynamic) -> Option<Vec<Vec<DVec3>>> {
+    points(value).map(|one| vec![one]).or_else(|| value.read_lock::<Array>()?.iter().map(points).collect())
 }
 
 /// A vector, or one number for all three components.
@@ -152,6 +186,9 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
             };
             named.or_else(|| vector(value)?.try_normalize()).map(Argument::Vector)
         }
+        Kind::Flag => value.as_bool().ok().map(Argument::Flag),
+        Kind::Points => points(value).map(|points| Argument::Contours(vec![points])),
+        Kind::Contours => contours(value).map(Argument::Contours),
         Kind::Text => value.read_lock::<rhai::ImmutableString>().map(|s| Argument::Text(s.to_string())),
     }
 }

@@ -1,8 +1,7 @@
 //! The scene while a script builds it.
 
-use crate::illumination::Material;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Object, Operation, Scene, Shape};
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use std::path::PathBuf;
 
 /// What a script holds of an object.
@@ -40,8 +39,7 @@ impl Builder {
             0 => shape.word().to_owned(),
             n => format!("{} {}", shape.word(), n + 1),
         };
-        let (transform, material) = (DMat4::IDENTITY, Material::default());
-        self.objects.push(Some(Object { name, shape, transform, material, tolerance }));
+        self.objects.push(Some(Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance }));
         Ok(Handle(index))
     }
 
@@ -60,7 +58,7 @@ impl Builder {
         Ok(copy)
     }
 
-    /// Makes one solid of two objects, which are no objects of their own any more; it has the material of the first.
+    /// Makes one solid of two objects, which are no objects of their own any more.
     pub(super) fn combine(
         &mut self,
         operation: Operation,
@@ -73,31 +71,56 @@ impl Builder {
         self.object(two)?;
         let first = self.object(one)?.clone();
         let second = self.object(two)?.clone();
-        let nesting = |object: &Object| if let Shape::Composite(c) = &object.shape { c.nesting } else { 0 };
         let material = first.material;
         let composite = match first {
             // A chain of the same operation is one.
             Object { shape: Shape::Composite(mut chain), transform, .. }
                 if chain.operation == operation && transform == DMat4::IDENTITY =>
             {
-                chain.nesting = chain.nesting.max(nesting(&second) + 1);
+                chain.nesting = chain.nesting.max(nesting_of(&second) + 1);
                 chain.operands.push(second);
                 chain
             }
             first => {
-                let nesting = nesting(&first).max(nesting(&second)) + 1;
+                let nesting = nesting_of(&first).max(nesting_of(&second)) + 1;
                 Box::new(Composite { operation, operands: vec![first, second], nesting })
             }
         };
-        if composite.nesting > MAX_NESTING {
-            return Err(format!("solids are nested more than {MAX_NESTING} deep"));
-        }
+        check_nesting(composite.nesting)?;
         for handle in [one, two].into_iter().flatten() {
             self.objects[handle.0] = None;
         }
         let whole = self.add(Shape::Composite(composite), None)?;
         self.object(Some(whole))?.material = material;
         Ok(Some(whole))
+    }
+
+    /// Divides a solid by the plane through `at`: what is behind stays, what is in front, where `normal` points, becomes
+    /// another object.
+    pub(super) fn split(&mut self, handle: Option<Handle>, normal: DVec3, at: DVec3) -> Result<Option<Handle>, String> {
+        let whole = self.object(handle)?.clone();
+        let half = Object {
+            name: "plane".into(),
+            shape: Shape::HalfSpace { normal, at },
+            transform: DMat4::IDENTITY,
+            material: None,
+            tolerance: None,
+        };
+        let nesting = nesting_of(&whole) + 1;
+        check_nesting(nesting)?;
+        let part = |operation: Operation| {
+            Shape::Composite(Box::new(Composite { operation, operands: vec![whole.clone(), half.clone()], nesting }))
+        };
+        let front = self.add(part(Operation::Difference), None)?;
+        let behind = part(Operation::Intersection);
+        *self.object(handle)? = Object {
+            name: whole.name.clone(),
+            shape: behind,
+            transform: DMat4::IDENTITY,
+            material: None,
+            tolerance: None,
+        };
+        Ok(Some(front))
     }
 
     /// Moves an object by a further transformation, after those before.
@@ -110,4 +133,13 @@ impl Builder {
         object.transform = placed;
         Ok(handle)
     }
+}
+
+/// How deep composites are nested in an object.
+fn nesting_of(object: &Object) -> u32 {
+    if let Shape::Composite(composite) = &object.shape { composite.nesting } else { 0 }
+}
+
+fn check_nesting(nesting: u32) -> Result<(), String> {
+    if nesting > MAX_NESTING { Err(format!("solids are nested more than {MAX_NESTING} deep")) } else { Ok(()) }
 }

@@ -4,7 +4,7 @@ use super::argument::Bound;
 use super::builder::{Builder, Handle};
 use super::error::{self, ScriptError};
 use super::function::Function;
-use super::{Evaluated, FUNCTIONS};
+use super::{Evaluated, functions};
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, NativeCallContext};
 use std::cell::RefCell;
@@ -30,7 +30,8 @@ const MAX_PRINTED: usize = 10_000;
 const FORBIDDEN: [&str; 2] = ["eval", "import"];
 
 /// Operators between objects, and the functions that they stand for.
-const OPERATORS: [(&str, &str); 3] = [("+", "union"), ("*", "intersection"), ("-", "difference")];
+const OPERATORS: [(&str, &str); 4] =
+    [("+", "union"), ("*", "intersection"), ("-", "difference"), ("^", "symmetric_difference")];
 
 type State = Rc<RefCell<Builder>>;
 
@@ -60,7 +61,7 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluate
     });
     engine.on_debug(|_, _, _| {});
     engine.register_type_with_name::<Handle>("object");
-    for function in FUNCTIONS {
+    for function in functions() {
         bind(&mut engine, function, &state);
         if let Some((symbol, _)) = OPERATORS.iter().find(|(_, name)| *name == function.name) {
             let state = Rc::clone(&state);

@@ -1,6 +1,6 @@
 //! What can be wrong with a script, and where.
 
-use super::FUNCTIONS;
+use super::functions;
 use crate::scene::SceneError;
 use rhai::{EvalAltResult, ParseErrorType, Position};
 use std::fmt;
@@ -117,10 +117,10 @@ fn parsing(kind: &ParseErrorType) -> String {
 /// A call that fits no row: either the name or the number of values is wrong.
 fn unknown_function(signature: &str) -> String {
     let name = signature.split([' ', '(']).next().unwrap_or(signature);
-    if let Some(function) = FUNCTIONS.iter().find(|f| f.name == name) {
+    if let Some(function) = functions().find(|f| f.name == name) {
         return format!("{name}: these values do not fit; use {}", function.usage());
     }
-    let nearest = FUNCTIONS.iter().map(|f| (distance(name, f.name), f.name)).min();
+    let nearest = functions().map(|f| (distance(name, f.name), f.name)).min();
     match nearest {
         Some((d, known)) if d <= 1 + name.len() / 4 => {
             format!("unknown function {signature}; did you mean {known}?")

@@ -64,6 +64,29 @@ pub enum Kind {
     Axis,
     /// A string.
     Text,
+    /// true or false.
+    Flag,
+    /// A list of points [x, y] or [x, y, z].
+    Points,
+    /// A list of points, or of several such lists.
+    Contours,
+}
+
+/// How closely the triangles of a curved object follow it.
+pub(super) const TOLERANCE: Parameter = Parameter {
+    name: "tolerance",
+    kind: Kind::Length,
+    default: Default::Is("that of the scene"),
+    help: "largest distance between surface and triangles, scene units",
+};
+
+/// The object before the dot.
+pub(super) const OBJECT: Parameter =
+    Parameter { name: "object", kind: Kind::Object, default: Default::Required, help: "the object" };
+
+/// A row of the parameters of a function.
+pub(super) const fn parameter(name: &'static str, kind: Kind, default: Default, help: &'static str) -> Parameter {
+    Parameter { name, kind, default, help }
 }
 
 impl Kind {
@@ -83,6 +106,9 @@ impl Kind {
             Kind::Powers => "a number not below 0, or three [red, green, blue]".into(),
             Kind::Axis => "\"x\", \"y\", \"z\" or a vector [x, y, z]".into(),
             Kind::Text => "a string".into(),
+            Kind::Flag => "true or false".into(),
+            Kind::Points => "a list of points [[x, y], ...], with a third number where it is used".into(),
+            Kind::Contours => "a list of points [[x, y], ...] or a list of such lists".into(),
         }
     }
 }

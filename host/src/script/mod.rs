@@ -8,6 +8,7 @@ mod builder;
 mod engine;
 mod error;
 mod function;
+mod solids;
 mod table;
 
 #[cfg(test)]
@@ -16,10 +17,14 @@ mod tests;
 pub use engine::{MAX_OPERATIONS, MAX_SCRIPT_BYTES};
 pub use error::ScriptError;
 pub use function::{Function, Kind, Parameter};
-pub use table::FUNCTIONS;
 
 use crate::scene::Scene;
 use std::path::Path;
+
+/// Every function that a script may call: those that make and combine objects, then the others.
+pub fn functions() -> impl Iterator<Item = &'static Function> {
+    solids::FUNCTIONS.iter().chain(table::FUNCTIONS)
+}
 
 /// A scene that ships with the program.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +38,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 3] = [
+pub const EMBEDDED: [Embedded; 4] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -48,6 +53,11 @@ pub const EMBEDDED: [Embedded; 3] = [
         name: "flange",
         summary: "a machine part of solids that are united, intersected and subtracted",
         text: include_str!("../../scenes/flange.rhai"),
+    },
+    Embedded {
+        name: "chess",
+        summary: "a game of chess: revolved profiles, swept polygons, and what is cut out of them",
+        text: include_str!("../../scenes/chess.rhai"),
     },
 ];
 
@@ -97,7 +107,7 @@ pub fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluated, Scri
 /// The reference of all functions, as Markdown.
 pub fn reference() -> String {
     let mut text = String::from("# Functions of a scene script\n");
-    for function in FUNCTIONS {
+    for function in functions() {
         text.push_str(&format!("\n## {}\n\n```\n{}\n```\n", function.name, function.help()));
     }
     text

@@ -1,34 +1,21 @@
-//! Every function of the scene language, one row each.
+//! Functions of the scene language, one row each: objects from data, placing, materials, lights, camera, settings.
 
 use super::argument::Bound;
 use super::builder::{Builder, Handle};
 use super::function::Default::{Is, Required};
-use super::function::{Function, Kind, Parameter};
+use super::function::{Function, Kind, OBJECT, TOLERANCE, parameter};
 use crate::illumination::{Light, Material};
 use crate::picture::MAX_PIXELS;
-use crate::scene::{Camera, MAX_LIGHTS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Operation, Shape};
-use glam::{DMat4, DVec3};
+use crate::scene::{Camera, MAX_LIGHTS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Shape};
+use glam::{DMat3, DMat4, DVec3};
 use std::f64::consts::PI;
 
 type Done = Result<Option<Handle>, String>;
 
-const TOLERANCE: Parameter = Parameter {
-    name: "tolerance",
-    kind: Kind::Length,
-    default: Is("that of the scene"),
-    help: "largest distance between surface and triangles, scene units",
-};
-const OBJECT: Parameter = Parameter { name: "object", kind: Kind::Object, default: Required, help: "the object" };
-const OTHER: Parameter =
-    Parameter { name: "other", kind: Kind::Object, default: Required, help: "the other object; both must be closed" };
 const ANY: Kind = Kind::Number(f64::NEG_INFINITY, f64::INFINITY);
 
-const fn parameter(name: &'static str, kind: Kind, default: super::function::Default, help: &'static str) -> Parameter {
-    Parameter { name, kind, default, help }
-}
-
-/// Every function that a script may call.
-pub const FUNCTIONS: &[Function] = &[
+/// The functions that place, colour, light and show objects, and make those that are no solids of a few measures.
+pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         name: "teapot",
         summary: "Adds the Utah teapot, standing on y = 0, its spout towards +x; 6.525 long and 3.15 high.",
@@ -42,30 +29,6 @@ pub const FUNCTIONS: &[Function] = &[
         parameters: &[],
         example: "bunny().translate(0, 1, 0);",
         action: |builder, _| builder.add(Shape::Bunny, None).map(Some),
-    },
-    Function {
-        name: "sphere",
-        summary: "Adds a sphere around the origin.",
-        parameters: &[parameter("radius", Kind::Length, Is("1"), "its radius"), TOLERANCE],
-        example: "let ball = sphere(0.5);",
-        action: |builder, bound| {
-            let radius = bound.number("radius").unwrap_or(1.0);
-            builder.add(Shape::Sphere { radius }, bound.number("tolerance")).map(Some)
-        },
-    },
-    Function {
-        name: "box",
-        summary: "Adds a box around the origin, its sides along the axes.",
-        parameters: &[parameter("size", Kind::Lengths, Is("1"), "its sides along x, y and z")],
-        example: "let brick = box(4, 1, 2);",
-        action: add_box,
-    },
-    Function {
-        name: "cube",
-        summary: "Adds a cube around the origin; a box with equal sides.",
-        parameters: &[parameter("size", Kind::Lengths, Is("1"), "its side")],
-        example: "let die = cube(2);",
-        action: add_box,
     },
     Function {
         name: "ground",
@@ -89,29 +52,6 @@ pub const FUNCTIONS: &[Function] = &[
         action: add_mesh,
     },
     Function {
-        name: "union",
-        summary: "Makes one solid of two objects, that what is in either; also a + b.",
-        parameters: &[OBJECT, OTHER],
-        example: "let dumbbell = sphere(1).translate(-2, 0, 0) + sphere(1).translate(2, 0, 0) + box(4, 0.5, 0.5);",
-        action: |builder, bound| builder.combine(Operation::Union, bound.object("object"), bound.object("other")),
-    },
-    Function {
-        name: "intersection",
-        summary: "Makes one solid of two objects, that what is in both; also a * b.",
-        parameters: &[OBJECT, OTHER],
-        example: "let lens = sphere(2).translate(0, 0, -1.5) * sphere(2).translate(0, 0, 1.5);",
-        action: |builder, bound| {
-            builder.combine(Operation::Intersection, bound.object("object"), bound.object("other"))
-        },
-    },
-    Function {
-        name: "difference",
-        summary: "Makes one solid of two objects, what is in the first and not in the second; also a - b.",
-        parameters: &[OBJECT, OTHER],
-        example: "let bowl = sphere(1) - sphere(0.9) - box(3, 1, 3).translate(0, 0.5, 0);",
-        action: |builder, bound| builder.combine(Operation::Difference, bound.object("object"), bound.object("other")),
-    },
-    Function {
         name: "copy",
         summary: "Adds a copy of an object, as combined objects are used up.",
         parameters: &[OBJECT],
@@ -120,7 +60,7 @@ pub const FUNCTIONS: &[Function] = &[
     },
     Function {
         name: "material",
-        summary: "Says how the surface of an object reflects; what is not given becomes the default.",
+        summary: "Says how the surface of an object reflects; what is not given becomes the default. Faces of a combined object keep what their operand was given.",
         parameters: &[
             OBJECT,
             parameter("diffuse", Kind::Fractions, Is("0.7"), "diffusely reflected fraction"),
@@ -154,6 +94,23 @@ pub const FUNCTIONS: &[Function] = &[
             let axis = bound.vector("axis").unwrap_or(DVec3::Y);
             let angle = bound.number("angle").unwrap_or_default().to_radians();
             builder.transform(bound.object("object"), DMat4::from_axis_angle(axis, angle))
+        },
+    },
+    Function {
+        name: "reflect",
+        summary: "Mirrors an object in a plane, after all that was done to it before.",
+        parameters: &[
+            OBJECT,
+            parameter("normal", Kind::Axis, Required, "what the plane is square to"),
+            parameter("at", Kind::Vector, Is("[0, 0, 0]"), "a point of the plane"),
+        ],
+        example: "pot.copy().reflect(\"x\", [4, 0, 0]);",
+        action: |builder, bound| {
+            let (normal, at) = (bound.vector("normal").unwrap_or(DVec3::X), bound.vector("at").unwrap_or_default());
+            let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis - normal * (2.0 * normal.dot(axis)));
+            let mirror = DMat4::from_mat3(DMat3::from_cols(columns[0], columns[1], columns[2]));
+            let there = DMat4::from_translation(normal * (2.0 * normal.dot(at)));
+            builder.transform(bound.object("object"), there * mirror)
         },
     },
     Function {
@@ -305,10 +262,6 @@ pub const FUNCTIONS: &[Function] = &[
     },
 ];
 
-fn add_box(builder: &mut Builder, bound: &Bound) -> Done {
-    builder.add(Shape::Box { size: bound.vector("size").unwrap_or(DVec3::ONE) }, None).map(Some)
-}
-
 fn add_mesh(builder: &mut Builder, bound: &Bound) -> Done {
     let path = builder.folder.join(bound.text("file").unwrap_or_default());
     if !path.is_file() {
@@ -325,7 +278,7 @@ fn set_material(builder: &mut Builder, bound: &Bound) -> Done {
         exponent: bound.number("exponent").unwrap_or(exponent),
         mirror: bound.vector("mirror").unwrap_or(mirror),
     };
-    builder.object(bound.object("object"))?.material = material;
+    builder.object(bound.object("object"))?.material = Some(material);
     Ok(bound.object("object"))
 }
 

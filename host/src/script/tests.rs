@@ -3,6 +3,7 @@
 use super::*;
 use crate::illumination::Light;
 use crate::scene::Shape;
+use crate::solid::Primitive;
 use glam::DVec3;
 
 fn run(text: &str) -> Evaluated {
@@ -31,10 +32,10 @@ fn a_script_builds_what_it_says() {
     let scene = &made.scene;
     assert_eq!(scene.objects.len(), 2);
     assert_eq!(scene.objects[0].name, "ball");
-    assert_eq!(scene.objects[0].shape, Shape::Sphere { radius: 2.0 });
+    assert_eq!(scene.objects[0].shape, Shape::Solid(Primitive::Sphere { radius: 2.0 }));
     assert_eq!(scene.objects[0].transform.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
-    assert_eq!(scene.objects[0].material.mirror, DVec3::splat(0.25));
-    assert_eq!(scene.objects[1].shape, Shape::Box { size: DVec3::new(4.0, 1.0, 2.0) });
+    assert_eq!(scene.objects[0].material.unwrap().mirror, DVec3::splat(0.25));
+    assert_eq!(scene.objects[1].shape, Shape::Solid(Primitive::Box { size: DVec3::new(4.0, 1.0, 2.0) }));
     assert_eq!(scene.lights[0], Light::Point { at: DVec3::new(0.0, 5.0, 0.0), intensity: DVec3::ONE });
     assert_eq!(scene.settings.width, 32);
     assert_eq!((scene.settings.samples, scene.settings.seed, scene.settings.reflection_depth), (4, 9, 2));
@@ -50,15 +51,15 @@ fn transformations_apply_in_the_order_of_their_calls() {
 
 #[test]
 fn every_example_in_the_table_runs() {
-    for function in FUNCTIONS.iter().filter(|f| f.name != "mesh") {
-        run(&format!("let pot = teapot(); {}", function.example));
+    for function in functions().filter(|f| f.name != "mesh") {
+        run(&format!("let pot = teapot(); let ball = sphere(1); {}", function.example));
     }
 }
 
 #[test]
 fn the_reference_names_every_function_and_parameter() {
     let text = reference();
-    for function in FUNCTIONS {
+    for function in functions() {
         assert!(text.contains(&format!("## {}\n", function.name)));
         assert!(function.parameters.iter().all(|p| text.contains(p.name)));
     }
@@ -85,6 +86,29 @@ fn a_bad_value_has_its_place_and_names_the_parameter() {
     assert!(problem("image(3.5, 2);").2.contains("width must be a whole number"));
     assert!(problem("cube(1).rotate(\"w\", 3);").2.contains("axis must be"));
     assert!(problem("mesh(\"nowhere.ply\");").2.contains("there is no file nowhere.ply"));
+}
+
+#[test]
+fn a_solid_that_does_not_exist_is_refused_where_it_is_written() {
+    assert_eq!(problem("cube(1);\n  torus(1, 2);"), (2, 3, "torus: ring 1 is not greater than the tube 2".into()));
+    assert!(problem("prism([[0, 0], [1, 1], [1, 0], [0, 1]]);").2.contains("crosses"));
+    assert!(problem("prism(3);").2.contains("contours must be a list of points"));
+    assert!(problem("revolution([[0, 0], [1, 0], [-1, 1]]);").2.contains("goes through the axis"));
+    let bent = "sweep(#{ contours: [[-2, -2], [2, -2], [0, 2]], path: [[0, 0, 0], [1, 0, 0], [1, 1, 0]] });";
+    assert!(problem(bent).2.contains("the path bends with the radius"));
+}
+
+#[test]
+fn solids_are_split_mirrored_and_combined_by_operators() {
+    let made = run("
+        let ball = sphere(1).name(\"ball\");
+        let cap = ball.split(\"y\", [0, 0.5, 0]);
+        let bars = (cube(1) ^ cube(1).translate(0.5, 0, 0)).reflect(\"x\", [2, 0, 0]);
+    ");
+    let prepared = crate::scene::Prepared::new(&made.scene).expect("solids");
+    let [ball, cap, bars] = &prepared.objects[..] else { panic!("three objects") };
+    assert_eq!((ball.name.as_str(), ball.bounds.max.y, cap.bounds.min.y), ("ball", 0.5, 0.5));
+    assert_eq!((bars.bounds.min.x, bars.bounds.max.x), (3.0, 4.5));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::Solid;
 use glam::{DMat3, DVec3};
 
 /// What a solid of density 1 has.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mass {
     /// Cubic units.
     pub volume: f64,
@@ -14,37 +14,76 @@ pub struct Mass {
     pub inertia: DMat3,
 }
 
+impl Mass {
+    /// That of an empty solid.
+    pub const ZERO: Mass = Mass { volume: 0.0, centroid: DVec3::ZERO, inertia: DMat3::ZERO };
+}
+
+/// Sums over pieces of a closed surface, about the origin.
+///
+/// By the theorem of Gauss each piece counts for the cone from the origin over it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moments {
+    volume: f64,
+    first: DVec3,
+    second: DMat3,
+}
+
+fn outer(p: DVec3) -> DMat3 {
+    DMat3::from_cols(p * p.x, p * p.y, p * p.z)
+}
+
+impl Moments {
+    /// Those of nothing.
+    pub const ZERO: Moments = Moments { volume: 0.0, first: DVec3::ZERO, second: DMat3::ZERO };
+
+    /// Adds a triangle, counter-clockwise from outside.
+    ///
+    /// # Source
+    /// Tonon 2004 for the second moments of a tetrahedron.
+    pub fn add_triangle(&mut self, [a, b, c]: [DVec3; 3]) {
+        let sixfold = a.dot(b.cross(c));
+        let sum = a + b + c;
+        self.volume += sixfold / 6.0;
+        self.first += sum * (sixfold / 24.0);
+        self.second += (outer(a) + outer(b) + outer(c) + outer(sum)) * (sixfold / 120.0);
+    }
+
+    /// Adds an element of a surface at `point`; `area` is along its outward normal and as long as its area.
+    pub fn add_element(&mut self, point: DVec3, area: DVec3) {
+        let threefold = point.dot(area);
+        self.volume += threefold / 3.0;
+        self.first += point * (threefold / 4.0);
+        self.second += outer(point) * (threefold / 5.0);
+    }
+
+    /// What the whole surface bounds, where the origin stands for `origin`.
+    pub fn mass(self, origin: DVec3) -> Mass {
+        let Moments { volume, first, second } = self;
+        if volume == 0.0 {
+            return Mass::ZERO;
+        }
+        let offset = first / volume;
+        let second = second - outer(offset) * volume;
+        let trace = second.x_axis.x + second.y_axis.y + second.z_axis.z;
+        Mass { volume, centroid: origin + offset, inertia: DMat3::IDENTITY * trace - second }
+    }
+}
+
 impl Solid {
     /// Volume, centre of mass and inertia, for the density 1.
     ///
     /// Sums tetrahedra from the middle of the bounds to each triangle, so that a solid far from the origin loses no
     /// digits. Exact for the triangles, but for rounding; surfaces that they approximate are not asked.
-    ///
-    /// # Source
-    /// Tonon 2004 for the second moments of a tetrahedron.
     pub fn mass(&self) -> Mass {
         let mesh = self.mesh();
-        let Some(bounds) = mesh.bounds() else { return Mass::default() };
+        let Some(bounds) = mesh.bounds() else { return Mass::ZERO };
         let middle = bounds.center();
-        let (mut volume, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+        let mut moments = Moments::ZERO;
         for triangle in 0..mesh.triangles.len() {
-            let [a, b, c] = mesh.corners(triangle).map(|corner| corner - middle);
-            let sixfold = a.dot(b.cross(c));
-            let sum = a + b + c;
-            volume += sixfold;
-            first += sum * sixfold;
-            let outer = |p: DVec3| DMat3::from_cols(p * p.x, p * p.y, p * p.z);
-            second += (outer(a) + outer(b) + outer(c) + outer(sum)) * sixfold;
+            moments.add_triangle(mesh.corners(triangle).map(|corner| corner - middle));
         }
-        if volume == 0.0 {
-            return Mass::default();
-        }
-        let offset = first / (4.0 * volume);
-        let volume = volume / 6.0;
-        let outer = DMat3::from_cols(offset * offset.x, offset * offset.y, offset * offset.z);
-        let second = second * (1.0 / 120.0) - outer * volume;
-        let trace = second.x_axis.x + second.y_axis.y + second.z_axis.z;
-        Mass { volume, centroid: middle + offset, inertia: DMat3::IDENTITY * trace - second }
+        moments.mass(middle)
     }
 }
 

@@ -4,11 +4,19 @@ pub mod boolean;
 mod import;
 mod mass;
 mod repair;
+mod exact;
+mod glue;
+mod body;
+pub mod primitive;
 
+pub use body::{Body, Face, Measures};
 pub use boolean::{Counts, Expression, Outcome};
+pub use exact::ExactSolid;
+pub use glue::GlueError;
 pub use import::SolidError;
 pub use mass::Mass;
 pub use repair::Repair;
+pub use primitive::{Primitive, PrimitiveError};
 
 use crate::mesh::Mesh;
 

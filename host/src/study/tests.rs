@@ -3,19 +3,21 @@
 use super::*;
 use crate::illumination::{Light, Material};
 use crate::scene::{Object, Settings, Shape};
+use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
 /// One white object under parallel light.
 fn scene(shape: Shape) -> Scene {
     let light = Light::Directional { direction: DVec3::new(0.0, -1.0, -1.0), irradiance: DVec3::splat(3.0) };
     let material = Material { diffuse: DVec3::ONE, ..Material::default() };
-    let object = Object { name: "it".into(), shape, transform: DMat4::IDENTITY, material, tolerance: None };
+    let object =
+        Object { name: "it".into(), shape, transform: DMat4::IDENTITY, material: Some(material), tolerance: None };
     let settings = Settings { width: 40, height: 40, ..Settings::default() };
     Scene { objects: vec![object], lights: vec![light], settings, ..Scene::default() }
 }
 
 fn sphere() -> Scene {
-    scene(Shape::Sphere { radius: 1.0 })
+    scene(Shape::Solid(Primitive::Sphere { radius: 1.0 }))
 }
 
 fn row(name: &str) -> &'static KnobRow {
@@ -52,7 +54,8 @@ fn a_finer_tolerance_follows_the_sphere_more_closely() {
 #[test]
 fn a_scene_without_curved_surfaces_has_no_tolerance_to_study() {
     let options = row("tessellation").options;
-    let result = (row("tessellation").run)(&scene(Shape::Box { size: DVec3::ONE }), &options, &Watch::NOBODY);
+    let result =
+        (row("tessellation").run)(&scene(Shape::Solid(Primitive::Box { size: DVec3::ONE })), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
 }
 

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
+use super::curvature::Curved;
 use super::{Surface, between, nearest_from};
 
 /// Below this part of the size squared, a cross product of derivatives is rounding.
@@ -107,6 +108,13 @@ impl Surface for BezierPatch {
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
         nearest_from(self, point, guess)
+    }
+}
+
+impl Curved for BezierPatch {
+    fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let taylor = self.taylor(uv);
+        [taylor[2][0] * 2.0, taylor[1][1], taylor[0][2] * 2.0]
     }
 }
 

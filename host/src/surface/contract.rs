@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::*;
-use crate::curve::Basis;
+use crate::curve::{Basis, SplineCurve};
 
 fn members() -> Vec<(&'static str, Box<dyn Surface>)> {
     let sphere = Sphere::new(DVec3::new(1.0, -2.0, 0.5), 3.0);
@@ -18,11 +18,54 @@ fn members() -> Vec<(&'static str, Box<dyn Surface>)> {
             Box::new(Parallelogram::new(DVec3::ONE, DVec3::new(2.0, 0.1, 0.0), DVec3::new(0.3, 1.0, 0.4))),
         ),
     ];
+    members.extend(turned());
+    members.extend(swept());
     for patch in teapot() {
         members.push(("patch of the teapot", Box::new(patch)));
     }
     members.extend(splines());
     members
+}
+
+/// Surfaces of revolution over each kind of profile, whole and in part, placed and not.
+fn turned() -> Vec<(&'static str, Box<dyn Surface>)> {
+    let curve = [[0.0, 0.0], [2.0, 0.5], [0.5, 1.0], [1.0, 2.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+    let curve = SplineCurve::new(Basis::clamped(3, 4).unwrap(), &curve, &[]).unwrap();
+    let torus = Profile::Arc { center: DVec2::X * 2.0, radius: 0.7, turns: [0.0, 1.0] };
+    let turn = DAffine3::from_rotation_x(0.7) * DAffine3::from_scale(DVec3::new(-3.0, 3.0, 3.0));
+    let profiles = [
+        ("cylinder", Profile::line(DVec2::new(1.5, -1.0), DVec2::new(1.5, 2.0))),
+        ("cone", Profile::line(DVec2::new(1.5, -1.0), DVec2::Y * 2.0)),
+        ("disc", Profile::line(DVec2::Y, DVec2::new(1.5, 1.0))),
+        ("dome", Profile::Arc { center: DVec2::Y, radius: 2.0, turns: [0.1, 0.25] }),
+        ("torus of revolution", torus.clone()),
+        ("paraboloid", Profile::Parabola { apex: 1.0, rise: 0.4, reach: [0.0, 1.5] }),
+        ("hyperboloid of one sheet", Profile::Waist { across: 0.8, along: 1.2, reach: [-1.0, 1.0] }),
+        ("hyperboloid of two sheets", Profile::Bowl { across: 0.8, along: 1.2, reach: [0.0, 1.0] }),
+        ("vase", Profile::Spline(curve)),
+    ];
+    let mut members: Vec<(&'static str, Box<dyn Surface>)> = Vec::new();
+    for (name, profile) in profiles {
+        members.push((name, Box::new(Turned::whole(profile.clone()))));
+        members.push((name, Box::new(Turned::part(profile.reversed(), [-0.3, 0.35]))));
+    }
+    members.push(("mirrored torus", Box::new(Placed::new(Turned::whole(torus.clone()), turn))));
+    let flat = DAffine3::from_scale(DVec3::new(1.0, 0.5, 2.0));
+    members.push(("stretched torus", Box::new(Placed::new(Turned::whole(torus), flat))));
+    members
+}
+
+/// Surfaces of an edge along a curve in space: as it is, and turned and narrowed to a point.
+fn swept() -> Vec<(&'static str, Box<dyn Surface>)> {
+    let path = [[0.0, 0.0, 0.0], [0.0, 3.0, 1.0], [4.0, 4.0, 2.0], [6.0, 0.0, 5.0], [3.0, -2.0, 6.0]];
+    let path = SplineCurve::new(Basis::clamped(3, 5).unwrap(), &path.map(DVec3::from_array), &[]).unwrap();
+    let spine = Arc::new(Spine::new(path).unwrap());
+    let edge = [DVec2::new(-0.4, 0.1), DVec2::new(0.3, -0.2)];
+    let part = |widening: Widening| Box::new(Swept::new(Arc::clone(&spine), widening, edge, [0.0, 1.0]));
+    vec![
+        ("swept edge", part(Widening { turns: 0.0, scale: 1.0 }) as Box<dyn Surface>),
+        ("twisted and tapered edge", part(Widening { turns: 0.4, scale: 0.0 })),
+    ]
 }
 
 /// Tensor patches and spline surfaces of several kinds, with poles and weights among them.
@@ -115,6 +158,36 @@ fn the_nearest_point_of_a_point_just_off_the_surface_is_where_it_came_from() {
                 assert!(found.cmpge(low).all() && found.cmple(high).all(), "{name}: {found}");
                 let distance = surface.point(found).distance(point);
                 assert!(distance <= height.abs() + 1e-9, "{name} at {uv}: {distance} for {height}");
+            }
+        }
+    }
+}
+
+#[test]
+fn second_derivatives_agree_with_differences_of_first_ones() {
+    let arc = Profile::Arc { center: DVec2::new(2.0, 0.5), radius: 0.7, turns: [0.1, 0.4] };
+    let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 2.0));
+    let members: Vec<Box<dyn Curved>> = vec![
+        Box::new(Sphere::new(DVec3::ONE, 2.0)),
+        Box::new(Placed::new(Sphere::new(DVec3::ONE, 2.0), mirror)),
+        Box::new(Turned::whole(arc)),
+        Box::new(Turned::whole(Profile::Waist { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
+        Box::new(Turned::whole(Profile::Bowl { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
+        Box::new(Turned::whole(Profile::Parabola { apex: 1.0, rise: 0.4, reach: [0.0, 1.5] })),
+        Box::new(Parallelogram::new(DVec3::ONE, DVec3::X, DVec3::Y)),
+        Box::new(teapot()[7].clone()),
+    ];
+    for (member, surface) in members.iter().enumerate() {
+        let [low, high] = surface.domain();
+        for k in 0..25 {
+            let uv = low + (high - low) * DVec2::new(f64::from(k % 5 + 1), f64::from(k / 5 + 1)) / 6.0;
+            let h = 1e-5;
+            let slope = |axis: DVec2, k: usize| {
+                (surface.derivatives(uv + axis * h)[k] - surface.derivatives(uv - axis * h)[k]) / (2.0 * h)
+            };
+            let expected = [slope(DVec2::X, 0), slope(DVec2::Y, 0), slope(DVec2::Y, 1)];
+            for (found, expected) in surface.second_derivatives(uv).into_iter().zip(expected) {
+                assert!((found - expected).length() < 1e-6 * (1.0 + expected.length()), "{member} {found} {expected}");
             }
         }
     }

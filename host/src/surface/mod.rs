@@ -1,5 +1,7 @@
 //! Surfaces that are known exactly, and the meshes that approximate them to a tolerance.
 //!
+//! A [`Turned`] surface is what a [`Profile`] makes around an axis: cylinder, cone, disc, torus, paraboloid, hyperboloid.
+//! A [`Swept`] surface is what a straight edge makes that a curve carries along.
 //! A [`SplineSurface`] is a mesh of control points over a [`crate::curve::Basis`] in each direction; its
 //! [`SplineSurface::patches`] are what is tessellated. [`tessellate`] makes grids, the better choice for even surfaces;
 //! [`tessellate_adaptively`] makes triangles that are small only where the surface bends, and [`tessellate_trimmed`] the
@@ -16,13 +18,16 @@ mod nearest;
 mod parallelogram;
 mod patches;
 mod placed;
+mod profile;
 mod revolution;
 mod sphere;
 mod spline;
+mod swept;
 mod teapot;
 mod tensor;
 mod tessellation;
 mod trim;
+mod turned;
 
 pub use accuracy::{Accuracy, chord_error};
 pub use bezier::BezierPatch;
@@ -33,13 +38,18 @@ pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};
 pub use patches::{PatchError, PatchProblem, PatchSet};
 pub use placed::Placed;
+pub use profile::Profile;
 pub use revolution::{rational_sphere, rational_torus, revolved};
 pub use sphere::Sphere;
 pub use spline::{Direction, SplineSurface};
+pub use swept::{Spine, Swept, Widening};
 pub use teapot::{teapot, teapot_parts};
 pub use tensor::TensorPatch;
 pub use tessellation::{TessellationError, Tolerance, tessellate};
 pub use trim::{TrimEdge, TrimError, TrimmedSurface, tessellate_adaptively, tessellate_trimmed};
+pub use turned::Turned;
+
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
@@ -47,7 +57,7 @@ use glam::{DVec2, DVec3};
 ///
 /// Pieces that meet must agree bit by bit on the points of the common side at 0, 1/4, 1/2, 3/4 and 1 of its length in
 /// parameters: that is how [`tessellate`] knows that they meet.
-pub trait Surface: Sync {
+pub trait Surface: Send + Sync {
     /// The lowest and the highest parameters, `[(u0, v0), (u1, v1)]`.
     fn domain(&self) -> [DVec2; 2];
 
@@ -64,49 +74,34 @@ pub trait Surface: Sync {
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2;
 }
 
-impl<S: Surface + ?Sized> Surface for &S {
-    fn domain(&self) -> [DVec2; 2] {
-        (**self).domain()
-    }
+/// Makes pointers to surfaces surfaces.
+macro_rules! pointers {
+    ($($pointer:ty),*) => {$(
+        impl<S: Surface + ?Sized> Surface for $pointer {
+            fn domain(&self) -> [DVec2; 2] {
+                (**self).domain()
+            }
 
-    fn point(&self, uv: DVec2) -> DVec3 {
-        (**self).point(uv)
-    }
+            fn point(&self, uv: DVec2) -> DVec3 {
+                (**self).point(uv)
+            }
 
-    fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
-        (**self).derivatives(uv)
-    }
+            fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
+                (**self).derivatives(uv)
+            }
 
-    fn normal(&self, uv: DVec2) -> DVec3 {
-        (**self).normal(uv)
-    }
+            fn normal(&self, uv: DVec2) -> DVec3 {
+                (**self).normal(uv)
+            }
 
-    fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
-        (**self).nearest(point, guess)
-    }
+            fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
+                (**self).nearest(point, guess)
+            }
+        }
+    )*};
 }
 
-impl<S: Surface + ?Sized> Surface for Box<S> {
-    fn domain(&self) -> [DVec2; 2] {
-        (**self).domain()
-    }
-
-    fn point(&self, uv: DVec2) -> DVec3 {
-        (**self).point(uv)
-    }
-
-    fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
-        (**self).derivatives(uv)
-    }
-
-    fn normal(&self, uv: DVec2) -> DVec3 {
-        (**self).normal(uv)
-    }
-
-    fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
-        (**self).nearest(point, guess)
-    }
-}
+pointers!(&S, Box<S>, Arc<S>);
 
 /// The parameter at `fraction` of the way from `low` to `high`; exact at both ends, and the same from either end.
 fn between(low: f64, high: f64, fraction: f64) -> f64 {

@@ -6,40 +6,37 @@ use super::Surface;
 
 /// Steps at most; near a surface three or four are enough.
 const MAX_STEPS: usize = 32;
-/// A step this small, as a part of the domain, is the last: what remains after it is of the order of its square.
-const SMALL_STEP: f64 = 1e-7;
-/// Halvings of a step that does not come nearer.
-const MAX_HALVINGS: usize = 6;
+/// Steps this small, as a part of the domain, need not come nearer, where distances do not differ by their digits any
+/// more: they need only become shorter.
+const SMALL_STEP: f64 = 1e-6;
+/// Parts of a step that are tried in turn until one comes nearer.
+const SCALES: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
 /// The damping, as a part of the trace of the normal equations, where a derivative vanishes.
 const DAMPING: f64 = 1e-9;
 
 /// The parameters of the point of `surface` that is nearest to `point`, by damped Gauss-Newton steps from `guess`.
 ///
-/// A local minimum of the distance; converges quadratically for points on the surface and fast for points that are
-/// near in comparison with its radii of curvature.
+/// A local minimum of the distance; converges quadratically for points on the surface, and by as many digits a step as
+/// the point is nearer than the radii of curvature for others.
 pub fn nearest_from<S: Surface + ?Sized>(surface: &S, point: DVec3, guess: DVec2) -> DVec2 {
     let [low, high] = surface.domain();
     let mut uv = guess.clamp(low, high);
     let mut offset = point - surface.point(uv);
+    let mut shortest = f64::INFINITY;
     for _ in 0..MAX_STEPS {
         let step = gauss_newton_step(surface.derivatives(uv), offset, uv, [low, high]);
-        let is_last = (step / (high - low)).abs().max_element() <= SMALL_STEP;
-        let mut scale = 1.0;
-        let mut better = None;
-        for _ in 0..if is_last { 1 } else { MAX_HALVINGS } {
-            let trial = (uv + step * scale).clamp(low, high);
-            let trial_offset = point - surface.point(trial);
-            if trial_offset.length_squared() < offset.length_squared() {
-                better = Some((trial, trial_offset));
-                break;
-            }
-            scale *= 0.5;
-        }
-        let Some((trial, trial_offset)) = better else { break };
-        (uv, offset) = (trial, trial_offset);
-        if is_last {
+        let length = (step / (high - low)).abs().max_element();
+        let mut trial = (uv + step).clamp(low, high);
+        if length > SMALL_STEP {
+            let nearer = |trial: DVec2| (point - surface.point(trial)).length_squared() < offset.length_squared();
+            let Some(scale) = SCALES.iter().find(|scale| nearer((uv + step * **scale).clamp(low, high))) else { break };
+            trial = (uv + step * *scale).clamp(low, high);
+        } else if length >= 0.5 * shortest || length == 0.0 {
             break;
+        } else {
+            shortest = length;
         }
+        (uv, offset) = (trial, point - surface.point(trial));
     }
     uv
 }

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::curvature::Curved;
 use super::{Surface, between};
 
 /// A flat four-sided piece with parallel opposite sides; parameters 0..=1.
@@ -44,7 +45,19 @@ impl Surface for Parallelogram {
     }
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
-        super::nearest_from(self, point, guess)
+        let ([u, v], offset) = (self.sides(), point - self.corners[0]);
+        let (uu, vv, shared) = (u.dot(u), v.dot(v), u.dot(v));
+        let determinant = uu * vv - shared * shared;
+        let foot = DVec2::new(vv * u.dot(offset) - shared * v.dot(offset), uu * v.dot(offset) - shared * u.dot(offset));
+        let foot = foot / determinant;
+        let is_inside = foot.cmpge(DVec2::ZERO).all() && foot.cmple(DVec2::ONE).all();
+        if is_inside { foot } else { super::nearest_from(self, point, guess) }
+    }
+}
+
+impl Curved for Parallelogram {
+    fn second_derivatives(&self, _: DVec2) -> [DVec3; 3] {
+        [DVec3::ZERO; 3]
     }
 }
 

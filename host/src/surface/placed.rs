@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
+use super::curvature::Curved;
 use super::{Surface, nearest_from};
 use crate::mesh::normal_matrix;
 
@@ -12,13 +13,23 @@ pub struct Placed<S> {
     placement: DAffine3,
     normals: DMat3,
     is_mirrored: bool,
+    /// The way back, if the map keeps angles: then what is nearest stays nearest.
+    back: Option<DAffine3>,
 }
+
+/// Columns of equal length and at right angles to this part of their length make a map that keeps angles.
+const ALIKE: f64 = 1e-14;
 
 impl<S: Surface> Placed<S> {
     /// `surface` moved by `placement`. A mirrored surface is run through with u reversed, so that outside stays outside.
     pub fn new(surface: S, placement: DAffine3) -> Placed<S> {
         let is_mirrored = placement.matrix3.determinant() < 0.0;
-        Placed { surface, placement, normals: normal_matrix(placement.matrix3), is_mirrored }
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
+        let squared = x.length_squared();
+        let gaps = [y.length_squared() - squared, z.length_squared() - squared, x.dot(y), y.dot(z), z.dot(x)];
+        let keeps_angles = squared > 0.0 && gaps.iter().all(|gap| gap.abs() <= ALIKE * squared);
+        let back = keeps_angles.then(|| placement.inverse());
+        Placed { surface, placement, normals: normal_matrix(placement.matrix3), is_mirrored, back }
     }
 
     /// The parameters of the inner surface for `uv`, or the other way round.
@@ -47,6 +58,17 @@ impl<S: Surface> Surface for Placed<S> {
     }
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
-        nearest_from(self, point, guess)
+        match &self.back {
+            Some(back) => self.inner(self.surface.nearest(back.transform_point3(point), self.inner(guess))),
+            None => nearest_from(self, point, guess),
+        }
+    }
+}
+
+impl<S: Curved> Curved for Placed<S> {
+    fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let [uu, both, vv] = self.surface.second_derivatives(self.inner(uv));
+        let both = if self.is_mirrored { -both } else { both };
+        [uu, both, vv].map(|d| self.placement.transform_vector3(d))
     }
 }

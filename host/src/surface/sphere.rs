@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::Surface;
+use super::curvature::Curved;
 
 /// A sphere; u is the longitude from the z axis towards the x axis, 0..=1 turn, v the latitude above the x-z plane,
 /// -1/4..=1/4 turn.
@@ -58,8 +59,16 @@ impl Surface for Sphere {
     }
 }
 
+impl Curved for Sphere {
+    fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let ([su, cu], [sv, cv]) = (sine_and_cosine(uv.x), sine_and_cosine(uv.y));
+        let scale = TAU * TAU * self.radius;
+        [DVec3::new(-su * cv, 0.0, -cu * cv), DVec3::new(-cu * sv, 0.0, su * sv), -self.normal(uv)].map(|d| d * scale)
+    }
+}
+
 /// Sine and cosine of an angle in turns; exact at whole quarters, and the same bits for the same angle.
-fn sine_and_cosine(turns: f64) -> [f64; 2] {
+pub(super) fn sine_and_cosine(turns: f64) -> [f64; 2] {
     let quarters = (turns * 4.0).round();
     let (sine, cosine) = ((turns - quarters * 0.25) * TAU).sin_cos();
     match quarters.rem_euclid(4.0) as u8 {

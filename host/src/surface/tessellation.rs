@@ -153,7 +153,10 @@ impl Grids {
         let mut grids = Grids { strips: borders.strips(), segments: vec![1; borders.first.len()] };
         for (surface, looks) in looks.iter().enumerate() {
             for (axis, look) in looks.iter().enumerate() {
-                grids.raise(borders, surface, axis, look.segments(tolerance).ceil().max(1.0))?;
+                // Where the sides across are one curve, the direction goes around: less than a triangle would be flat.
+                let [from, to] = [2 - 2 * axis, 3 - 2 * axis].map(|side| borders.sides[surface][side].curve);
+                let least = if from == to { 3.0 } else { 1.0 };
+                grids.raise(borders, surface, axis, look.segments(tolerance).ceil().max(least))?;
             }
         }
         grids.raise_until_measured(surfaces, borders, &looks, tolerance.chord)?;
@@ -509,6 +512,12 @@ mod tests {
             let face = mesh.face_normal(triangle).unwrap();
             assert!(mesh.corner_normals[triangle].iter().all(|normal| normal.dot(face) > 0.5), "{triangle}");
         }
+    }
+
+    #[test]
+    fn even_the_coarsest_mesh_of_what_goes_around_bounds_a_solid() {
+        let mesh = ball(1e9);
+        assert!(mesh.is_closed() && mesh.signed_volume() > 0.0, "{} triangles", mesh.triangles.len());
     }
 
     #[test]

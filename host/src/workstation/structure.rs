@@ -112,7 +112,8 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
     for (number, (object, data)) in (1..).zip(scene.objects.iter().zip(objects?)) {
         begin(&mut shown.commands, &format!("O{number}"));
         // The colour of vectors has no value: brightness comes from the intensity.
-        let [hue, saturation] = facets::hue_saturation(object.material.diffuse + object.material.mirror);
+        let material = object.main_material();
+        let [hue, saturation] = facets::hue_saturation(material.diffuse + material.mirror);
         operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
         shown.commands.push(Command::Define { name: Some(name("D")), object: data });
         shown.commands.push(Command::EndStructure);
@@ -187,9 +188,9 @@ fn data(
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
     let coarse = object
         .shape
-        .mesh(drawing.tolerance * object.shape.extent().unwrap_or(1.0))
+        .made(drawing.tolerance * object.shape.extent().unwrap_or(1.0))
         .map_err(|e| failed(e.to_string()))?;
-    let mesh = coarse.transformed(&DAffine3::from_mat4(object.transform));
+    let mesh = coarse.mesh.transformed(&DAffine3::from_mat4(object.transform));
     let selection = match drawing.lines {
         Lines::Grid => Selection::grid(drawing.crease_degrees),
         // The machine finds the outline of polygons itself, from wherever they are seen.
@@ -202,7 +203,7 @@ fn data(
     }
     let surface = format!("{ROOT}_A{number}");
     let polygons = facets::polygons(&mesh, &selection, &surface).map_err(failed)?;
-    let attributes = Node::Attributes(facets::attributes(&object.material));
+    let attributes = Node::Attributes(facets::attributes(&object.main_material()));
     shown.commands.push(Command::Define { name: Some(name(&surface)), object: attributes });
     shown.points += 3 * polygons.len();
     shown.lines += 3 * polygons.len();

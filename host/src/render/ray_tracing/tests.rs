@@ -4,13 +4,14 @@ use super::*;
 use crate::illumination::{Bands, Light, Material};
 use crate::picture::difference;
 use crate::scene::{Camera, Object, Projection, Scene, Settings, Shape};
+use crate::solid::Primitive;
 use glam::{DMat4, DVec4};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
 
 fn object(shape: Shape, transform: DMat4, material: Material) -> Object {
-    Object { name: shape.word().into(), shape, transform, material, tolerance: None }
+    Object { name: shape.word().into(), shape, transform, material: Some(material), tolerance: None }
 }
 
 fn diffuse(k: f64) -> Material {
@@ -56,13 +57,21 @@ fn still_life() -> Scene {
     let shiny = Material { specular: Bands::splat(0.1), mirror: Bands::splat(0.4), ..diffuse(0.3) };
     let objects = vec![
         object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.6)),
-        object(Shape::Sphere { radius: 1.0 }, DMat4::from_translation(DVec3::new(-1.0, 1.0, 0.0)), shiny),
         object(
-            Shape::Box { size: DVec3::new(1.0, 2.0, 1.0) },
+            Shape::Solid(Primitive::Sphere { radius: 1.0 }),
+            DMat4::from_translation(DVec3::new(-1.0, 1.0, 0.0)),
+            shiny,
+        ),
+        object(
+            Shape::Solid(Primitive::Box { size: DVec3::new(1.0, 2.0, 1.0) }),
             DMat4::from_translation(DVec3::new(1.4, 1.0, -0.5)) * DMat4::from_rotation_y(0.4),
             diffuse(0.5),
         ),
-        object(Shape::Sphere { radius: 0.5 }, DMat4::from_translation(DVec3::new(0.0, 0.5, 30.0)), diffuse(0.9)),
+        object(
+            Shape::Solid(Primitive::Sphere { radius: 0.5 }),
+            DMat4::from_translation(DVec3::new(0.0, 0.5, 30.0)),
+            diffuse(0.9),
+        ),
     ];
     let lights = vec![
         Light::Point { at: DVec3::new(3.0, 5.0, 4.0), intensity: Bands::new(30.0, 25.0, 20.0) },
@@ -87,7 +96,11 @@ fn still_life() -> Scene {
 fn a_diffuse_sphere_under_parallel_light_follows_lambert() {
     let towards = DVec3::new(0.3, 0.5, 0.81).normalize();
     let light = Light::Directional { direction: -towards, irradiance: Bands::splat(2.0) };
-    let mut scene = scene(vec![object(Shape::Sphere { radius: 1.0 }, DMat4::IDENTITY, diffuse(0.8))], vec![light], 40);
+    let mut scene = scene(
+        vec![object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(0.8))],
+        vec![light],
+        40,
+    );
     scene.settings.tolerance = Some(2e-4);
     let to_clip = DMat4::from_scale(DVec3::new(1.0, 1.0, -0.1));
     let rendering = trace(&scene, Some(View::Projection(Projection { to_clip, depth_clipping: false })), false, 2);
@@ -123,7 +136,7 @@ fn a_point_light_over_a_plane_falls_with_the_cube_of_the_slant_distance() {
 fn a_mirror_shows_the_luminance_of_what_it_reflects() {
     // A mirror on the floor, seen at 45 degrees, shows a wall of ambient luminance, and above it the background.
     let wall = object(
-        Shape::Box { size: DVec3::new(100.0, 4.0, 1.0) },
+        Shape::Solid(Primitive::Box { size: DVec3::new(100.0, 4.0, 1.0) }),
         DMat4::from_translation(DVec3::new(0.0, 2.0, -10.5)),
         diffuse(0.5),
     );
@@ -180,7 +193,7 @@ fn no_surface_shadows_itself_at_any_scale_or_place() {
     for (size, shift) in [(1e-6, 0.0), (1.0, 0.0), (1e6, 0.0), (1.0, 1e7), (1e3, 1e7)] {
         let center = DVec3::new(shift, -0.5 * shift, shift);
         let place = DMat4::from_translation(center) * DMat4::from_scale(DVec3::splat(size));
-        let ball = object(Shape::Sphere { radius: 1.0 }, place, diffuse(1.0));
+        let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), place, diffuse(1.0));
         // The light stands behind the eye: whatever is seen is lit.
         let towards = DVec3::new(0.2, 0.3, 1.0).normalize();
         let lights = vec![Light::Directional { direction: -towards, irradiance: Bands::splat(PI) }];
@@ -227,7 +240,11 @@ fn grazing_light_on_a_plane_is_not_shadowed_by_the_plane() {
 #[test]
 fn a_coarse_sphere_has_no_jagged_terminator() {
     let light = Light::Directional { direction: DVec3::NEG_X, irradiance: Bands::splat(PI) };
-    let mut scene = scene(vec![object(Shape::Sphere { radius: 1.0 }, DMat4::IDENTITY, diffuse(1.0))], vec![light], 48);
+    let mut scene = scene(
+        vec![object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(1.0))],
+        vec![light],
+        48,
+    );
     scene.settings.tolerance = Some(0.01);
     let to_clip = DMat4::from_scale(DVec3::new(1.0, 1.0, -0.1));
     let rendering = trace(&scene, Some(View::Projection(Projection { to_clip, depth_clipping: false })), false, 2);
@@ -269,14 +286,14 @@ fn another_seed_gives_another_picture_of_the_same_scene() {
 fn forcing_everything_gives_the_same_picture() {
     let full = still_life();
     let mut dull = full.clone();
-    dull.objects.iter_mut().for_each(|o| o.material = diffuse(0.5));
+    dull.objects.iter_mut().for_each(|o| o.material = Some(diffuse(0.5)));
     let mut dark = full.clone();
     dark.lights.clear();
     let mut flat = full.clone();
-    flat.objects.retain(|o| matches!(o.shape, Shape::Box { .. } | Shape::Ground { .. }));
+    flat.objects.retain(|o| matches!(o.shape, Shape::Solid(Primitive::Box { .. }) | Shape::Ground { .. }));
     let mut black = full.clone();
     black.ambient = Bands::ZERO;
-    black.objects.iter_mut().for_each(|o| o.material = mirror(0.0));
+    black.objects.iter_mut().for_each(|o| o.material = Some(mirror(0.0)));
     let mut plain = full.clone();
     (plain.settings.samples, plain.settings.reflection_depth) = (1, 0);
     let mut empty = full.clone();
@@ -317,8 +334,11 @@ fn a_camera_and_the_matrix_of_the_workstation_show_the_same_silhouette() {
 #[test]
 fn stratified_samples_converge_faster_than_random_ones() {
     // An edge across the picture: its coverage is known exactly.
-    let mut scene =
-        scene(vec![object(Shape::Box { size: DVec3::ONE }, DMat4::from_rotation_z(0.3), diffuse(0.5))], vec![], 12);
+    let mut scene = scene(
+        vec![object(Shape::Solid(Primitive::Box { size: DVec3::ONE }), DMat4::from_rotation_z(0.3), diffuse(0.5))],
+        vec![],
+        12,
+    );
     scene.ambient = Bands::ONE;
     let to_clip = DMat4::from_scale(DVec3::new(1.2, 1.2, -0.1));
     let view = View::Projection(Projection { to_clip, depth_clipping: false });

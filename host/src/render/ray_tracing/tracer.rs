@@ -79,7 +79,7 @@ impl<'a> Tracer<'a> {
         let hit = self.octree?.closest(&sight.ray, sight.t_min, sight.t_max)?;
         let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
         let element = Element::new(self.prepared, triangle, &sight.ray, &hit, self.curved)?;
-        Some((element, self.prepared.object(triangle).material))
+        Some((element, *self.prepared.material(triangle)))
     }
 
     /// Radiance that an element sends back along a ray by the direct terms.
