@@ -130,6 +130,8 @@ fn place<const N: usize>(rounded: [Rounded; 3], twofold: [Twofold; 3], on: [&[DV
     let value = |axis: usize| known[axis].unwrap_or(twofold[axis].value());
     let error = |axis: usize| match known[axis] {
         Some(_) => 0.0,
+        // No number where the divisor vanishes among the roundings.
+        None if !rounded[axis].error.is_finite() => f64::INFINITY,
         None => rounded[axis].error * f64::exp2(-40.0) + twofold[axis].value().abs() * (0.5 * f64::EPSILON),
     };
     (DVec3::from([0, 1, 2].map(value)), DVec3::from([0, 1, 2].map(error)))
@@ -333,6 +335,17 @@ mod tests {
         };
         assert_eq!(point.near(), DVec3::new(exact, 0.0, 0.0));
         assert!(point.errors.max_element() < 1e-15);
+    }
+
+    #[test]
+    fn a_line_that_grazes_a_plane_of_hardly_any_area_meets_it_somewhere() {
+        let line = [DVec3::new(0.0, 0.0, 0.1), DVec3::new(0.0, 0.1, 0.0)];
+        let plane =
+            [DVec3::new(0.0, -0.4, 0.1), DVec3::new(0.30000000000000004, 0.2, 0.1), DVec3::new(0.1, -0.2, 0.1)];
+        let point = Point::new(Definition::LineAndPlane(line, plane));
+        assert_eq!(point.near(), line[0]);
+        assert!(point.errors.is_finite());
+        assert!(coincide(&point, &Point::new(Definition::Given(line[0]))));
     }
 
     proptest! {
