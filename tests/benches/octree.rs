@@ -1,8 +1,7 @@
 //! The octree as a modeller uses it: building, putting in, taking out, reading again, the inside test.
 //!
 //! First proves that an edited octree has the codes of one that is built; then takes the times of the wall clock on all
-//! threads, the least of five. `leading` is the octree without an index, which rays walk by binary search; `index` the one
-//! with it.
+//! threads, the least of five. The index, for rays that start at the top, is made on request.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -32,20 +31,17 @@ fn edits(large: &Mesh) {
     let small = Mesh { vertices: small, triangles, ..Mesh::default() };
     let frame = bounds.union(small.bounds().expect("vertices"));
     println!("{} triangles, and {} more", large.triangles.len(), small.triangles.len());
-    for walk in [Walk::LeadingDirection, Walk::Index] {
-        let settings = Settings { walk, ..Settings::default() };
-        let build = |meshes: &[&Mesh]| built(frame, meshes, &settings);
-        let mut octree = build(&[large, &small]);
-        let codes = octree.codes().to_vec();
-        let (mut putting, mut taking) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..TRIALS {
-            taking = taking.min(milliseconds(|| octree.remove(1)));
-            putting = putting.min(milliseconds(|| octree.insert(&small.vertices, &small.triangles)));
-        }
-        assert_eq!(octree.codes(), codes, "an edited octree is the one that is built");
-        let building = least(|| build(&[large, &small]));
-        println!("  {walk:?}: building both {building:.2}, putting in {putting:.2}, taking out {taking:.2}");
+    let build = || built(frame, &[large, &small]);
+    let mut octree = build();
+    let codes = octree.codes().to_vec();
+    let (mut putting, mut taking) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..TRIALS {
+        taking = taking.min(milliseconds(|| octree.remove(1)));
+        putting = putting.min(milliseconds(|| octree.insert(&small.vertices, &small.triangles)));
     }
+    assert_eq!(octree.codes(), codes, "an edited octree is the one that is built");
+    let (building, indexing) = (least(build), least(|| octree.clone().with_walk(Walk::Index)));
+    println!("  dividing both {building:.2}, putting in {putting:.2}, taking out {taking:.2}; an index {indexing:.2}");
 }
 
 /// Building, sorting, writing, reading, and the inside test of one mesh.
@@ -82,8 +78,8 @@ fn whole(mesh: &Mesh) {
     );
 }
 
-fn built(frame: Bounds, meshes: &[&Mesh], settings: &Settings) -> Octree {
-    let mut octree = Octree::around(frame, settings).expect("a sound box");
+fn built(frame: Bounds, meshes: &[&Mesh]) -> Octree {
+    let mut octree = Octree::around(frame, &Settings::default()).expect("a sound box");
     for mesh in meshes {
         octree.insert(&mesh.vertices, &mesh.triangles).expect("a sound mesh");
     }

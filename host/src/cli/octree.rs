@@ -125,3 +125,28 @@ fn details(s: &Statistics) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run_words(words: &[&str]) -> Result<(), Failure> {
+        let command = Arguments::augment_args(clap::Command::new("octree"));
+        let matches = command.try_get_matches_from([&["octree"], words].concat()).expect("a sound command line");
+        run(&Arguments::from_arg_matches(&matches).expect("all arguments"))
+    }
+
+    #[test]
+    fn an_octree_that_is_kept_is_read_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("pot.octree");
+        let file = path.to_str().expect("a plain name");
+        assert!(run_words(&["teapot", "--leaf", "4", "--leaf-side", "0.1", "--output", file]).is_ok());
+        assert!(run_words(&[file, "--stats"]).is_ok() && run_words(&[file, "--json"]).is_ok());
+        assert_eq!(run_words(&[file, "--depth", "3"]).map_err(|failure| failure.exit), Err(Exit::Usage));
+        let mut bytes = std::fs::read(&path).expect("written");
+        bytes[99] ^= 1;
+        std::fs::write(&path, bytes).expect("written again");
+        assert_eq!(run_words(&[file]).map_err(|failure| failure.exit), Err(Exit::Failed));
+    }
+}

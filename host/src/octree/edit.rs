@@ -8,7 +8,8 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::build::{Division, Leaves, Reference, eighths, within};
-use super::{LocationalCode, MAX_TRIANGLES, Object, Octree, OctreeError, check};
+use super::index::Index;
+use super::{LocationalCode, MAX_TRIANGLES, Object, Octree, OctreeError, Walk, check};
 
 impl Octree {
     /// Puts an object in, as the last one.
@@ -16,8 +17,8 @@ impl Octree {
     /// - `vertices`, `triangles`: as for [`Octree::build`]; the indices count from 0 in the object.
     /// - Returns the number of the object.
     ///
-    /// Cost: dividing the nodes that the object touches, and copying the codes of the others. The index, if rays go down
-    /// one, is made anew.
+    /// Cost: dividing the nodes that the object touches, and copying the codes of the others. The index is dropped: rays
+    /// go from cell to cell until [`Octree::with_walk`] makes another.
     ///
     /// # Errors
     /// Those of [`Octree::build`], and a vertex of a triangle outside the modelling cube. Then nothing is changed.
@@ -43,7 +44,7 @@ impl Octree {
         let edit = Edit { division, old: &self.leaves, removed: 0..0, emptied: Vec::new() };
         edit.cell(LocationalCode::ROOT, 0..self.leaves.codes.len(), &homes, references, &mut leaves);
         (self.homes, self.leaves) = (homes, leaves);
-        self.renew_index();
+        self.drop_index();
         Ok(self.objects.len() - 1)
     }
 
@@ -69,12 +70,12 @@ impl Octree {
         self.vertices.drain(first_vertex..first_vertex + vertices);
         self.triangles[first..].iter_mut().flatten().for_each(|corner| *corner -= vertices as u32);
         self.objects.remove(object);
-        self.renew_index();
+        self.drop_index();
         true
     }
 
-    fn renew_index(&mut self) {
-        self.index = self.make_index(self.walk);
+    fn drop_index(&mut self) {
+        (self.walk, self.index) = (Walk::LeadingDirection, Index::default());
     }
 }
 

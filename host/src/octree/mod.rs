@@ -2,8 +2,8 @@
 //!
 //! Two structures stand on the same codes. [`Octree`] stores terminal nodes, each with every triangle that touches it, for
 //! whoever asks for a place: rays, neighbours, the inside test. [`Sorted`] files each triangle once, by its middle, for
-//! whoever asks each triangle once: the pairs of a Boolean operation. Sorting takes a tenth of the time of dividing, which
-//! an operation does not win back; so neither is built from the other.
+//! whoever asks each triangle once: the pairs of a Boolean operation. Sorting takes less than a tenth of the time of
+//! dividing, which an operation does not win back; so neither is built from the other.
 
 pub mod brute_force;
 mod build;
@@ -192,6 +192,8 @@ impl Octree {
 
     /// An octree without objects, with a modelling cube around a box that all objects must lie in.
     ///
+    /// Rays go from cell to cell until [`Octree::with_walk`] makes an index.
+    ///
     /// # Errors
     /// A corner of the box, as vertex 0 or 1, that is not finite or too far out.
     pub fn around(bounds: Bounds, settings: &Settings) -> Result<Self, OctreeError> {
@@ -209,7 +211,7 @@ impl Octree {
             cube,
             depth: depth.count() as u32,
             leaf_triangles: settings.leaf_triangles,
-            walk: settings.walk,
+            walk: Walk::LeadingDirection,
             vertices: Vec::new(),
             triangles: Vec::new(),
             objects: Vec::new(),
@@ -231,17 +233,14 @@ impl Octree {
 
     /// The same octree, walked another way. Makes the index if the walk needs it, and else drops it.
     pub fn with_walk(self, walk: Walk) -> Self {
-        Self { walk, index: self.make_index(walk), ..self }
-    }
-
-    fn make_index(&self, walk: Walk) -> Index {
-        match walk {
+        let index = match walk {
             Walk::Index => {
                 let division = self.division();
                 Index::new(items::items(&self.leaves, &division), |triangle| division.corners(triangle))
             }
             Walk::LeadingDirection => Index::default(),
-        }
+        };
+        Self { walk, index, ..self }
     }
 
     /// Finds the nearest hit with `t_min < t < t_max`, both exclusive.

@@ -9,6 +9,7 @@
 mod accuracy;
 mod bezier;
 mod border;
+mod car_body;
 mod continuity;
 mod curvature;
 mod hole;
@@ -27,6 +28,7 @@ mod trim;
 
 pub use accuracy::{Accuracy, chord_error};
 pub use bezier::BezierPatch;
+pub use car_body::car_body;
 pub use continuity::{Joint, SurfaceSide, continuity, joint};
 pub use curvature::{Curved, normal_curvature};
 pub use hole::{FourSidedPatch, HoleError, HoleSide, MAX_SIDES, NSidedPatch, n_sided_patch, patches_around_vertex};

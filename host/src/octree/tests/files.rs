@@ -7,7 +7,7 @@ fn octree() -> Octree {
     let mut octree = torus(8).octree();
     let small = ball(2).moved(|p| p * 0.2);
     octree.insert(&small.vertices, &small.triangles).expect("inside");
-    octree
+    octree.with_walk(Walk::Index)
 }
 
 /// The bytes with another checksum, which is that of what follows it.
