@@ -76,7 +76,7 @@ impl Knob for Residual {
     }
 
     fn error_names(&self) -> Vec<&'static str> {
-        vec!["greatest normal angle (degrees)", "RMS residual (model units)", "greatest residual (model units)"]
+        vec!["RMS normal angle (degrees)", "RMS residual (model units)", "greatest residual (model units)"]
     }
 
     fn errors(&self, trial: &Trial<Vec<Mesh>>, _: &Trial<Vec<Mesh>>) -> Result<Vec<f64>, StudyError> {
@@ -91,12 +91,18 @@ impl Knob for Residual {
     }
 }
 
-/// The greatest angle between the plane of a triangle and the surface at its middle, degrees.
+/// The root of the mean square of the angle between the planes of triangles and the surface at their middles, degrees,
+/// weighted by area: a sliver may lean far and mean little.
 fn angle(mesh: &Mesh, patches: &Patches) -> f64 {
-    let of_triangle = |triangle: usize| {
+    let (mut sum, mut area) = (0.0, 0.0);
+    for triangle in 0..mesh.triangles.len() {
         let uv = mesh.corner_parameters[triangle].iter().sum::<DVec2>() / 3.0;
-        let normal = patches[mesh.surfaces[triangle] as usize].normal(uv);
-        mesh.area_vector(triangle).angle_between(normal).to_degrees()
-    };
-    (0..mesh.triangles.len()).map(of_triangle).filter(|angle| angle.is_finite()).fold(0.0, f64::max)
+        let (plane, normal) = (mesh.area_vector(triangle), patches[mesh.surfaces[triangle] as usize].normal(uv));
+        let angle = plane.angle_between(normal).to_degrees();
+        if angle.is_finite() {
+            sum += plane.length() * angle * angle;
+            area += plane.length();
+        }
+    }
+    if area > 0.0 { (sum / area).sqrt() } else { 0.0 }
 }

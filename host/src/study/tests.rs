@@ -93,8 +93,8 @@ fn adaptive_triangles_keep_their_tolerance() {
     let options = Options { settings: 3, ..row("surface").options };
     let study = (row("surface").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
     assert!(study.rows.iter().all(|row| row.errors[2] <= row.setting * 1.01), "{study:?}");
-    let angles: Vec<f64> = study.rows.iter().map(|row| row.errors[0]).collect();
-    assert!(angles.is_sorted_by(|a, b| a > b), "{angles:?}");
+    let [first, last] = [0, 2].map(|k| &study.rows[k]);
+    assert!((0..3).all(|error| last.errors[error] < first.errors[error]), "{study:?}");
     let result = (row("surface").run)(&scene(Shape::Bunny), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
 }
