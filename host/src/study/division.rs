@@ -64,19 +64,22 @@ impl Knob for Steps {
     }
 
     fn error_names(&self) -> Vec<&'static str> {
-        vec!["greatest normal angle (degrees)", "greatest distance (scene units)"]
+        vec!["RMS normal angle (degrees)", "greatest distance (scene units)", "RMS distance (scene units)"]
     }
 
     fn errors(&self, trial: &Trial<Vec<Mesh>>, reference: &Trial<Vec<Mesh>>) -> Result<Vec<f64>, StudyError> {
-        let pairs = trial.answer.iter().zip(&reference.answer).map(|(mesh, fine)| differences(mesh, fine));
-        let [angle, distance] = pairs.fold([0.0, 0.0], |[a, d]: [f64; 2], [x, y]| [a.max(x), d.max(y)]);
-        Ok(vec![angle, distance])
+        let pairs = trial.answer.iter().zip(&reference.answer);
+        let found: Vec<[f64; 2]> = pairs.flat_map(|(mesh, fine)| differences(mesh, fine)).collect();
+        let root = |which: usize| {
+            let squares: f64 = found.iter().map(|pair| pair[which] * pair[which]).sum();
+            (squares / found.len().max(1) as f64).sqrt()
+        };
+        Ok(vec![root(0), found.iter().map(|pair| pair[1]).fold(0.0, f64::max), root(1)])
     }
 }
 
-/// The greatest angle, degrees, and the greatest distance between the corners of `fine`, with their normals, and `mesh`,
-/// with its planes.
-fn differences(mesh: &Mesh, fine: &Mesh) -> [f64; 2] {
+/// The angles, degrees, and the distances between corners of `fine`, with their normals, and `mesh`, with its planes.
+fn differences(mesh: &Mesh, fine: &Mesh) -> Vec<[f64; 2]> {
     let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
     let corners = |triangle: u32| mesh.corners(triangle as usize);
     let step = (fine.triangles.len() / MOST_SAMPLES).max(1);
@@ -90,6 +93,5 @@ fn differences(mesh: &Mesh, fine: &Mesh) -> [f64; 2] {
         Some([angle, nearest.distance])
     };
     let samples: Vec<usize> = (0..fine.triangles.len()).step_by(step).collect();
-    let found: Vec<[f64; 2]> = samples.into_par_iter().filter_map(of_triangle).collect();
-    found.into_iter().fold([0.0, 0.0], |[a, d], [x, y]| [a.max(x), d.max(y)])
+    samples.into_par_iter().filter_map(of_triangle).collect()
 }
