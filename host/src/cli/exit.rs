@@ -89,6 +89,7 @@ failures! {
     std::io::Error => Failed,
     serde_json::Error => Failed,
     crate::octree::OctreeError => Failed,
+    crate::octree::FileError => Failed,
     PlotError => Failed,
     RenderError => Failed,
     SceneError => Scene,
@@ -125,7 +126,7 @@ impl From<StudyError> for Failure {
         let exit = match error {
             StudyError::Interrupted => Exit::Interrupted,
             StudyError::Scene(_) | StudyError::Nothing(_) => Exit::Scene,
-            StudyError::Render(_) | StudyError::Picture(_) => Exit::Failed,
+            _ => Exit::Failed,
         };
         Failure::new(exit, error)
     }

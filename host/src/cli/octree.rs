@@ -1,10 +1,14 @@
-//! `peris octree`: the linear octree of a scene.
+//! `peris octree`: the linear octree of a scene, or one from a file.
 
-use super::{Failure, Row, SCRIPT_HELP, load};
+use super::{Exit, Failure, Row, load};
 use crate::octree::{MAX_DEPTH, Octree, Settings, Statistics};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// How the name of an octree file ends.
+const ENDING: &str = "octree";
 
 pub(super) const ROW: Row = Row {
     name: "octree",
@@ -15,65 +19,134 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
-    script: String,
+    /// A scene script (.rhai), the name of a scene that ships with the program, or an octree that was kept (.octree)
+    #[arg(default_value = "teapot", value_name = "SCENE")]
+    scene: String,
+    /// Keeps the octree in a file
+    #[arg(short, long, value_name = "FILE.octree")]
+    output: Option<PathBuf>,
     /// Shows all figures, and the terminal nodes level by level
     #[arg(long)]
     stats: bool,
     /// Resolution N: the modelling cube has 2^N voxels a side
     #[arg(long, value_name = "LEVELS", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)))]
     depth: Option<u32>,
-    /// Triangles in a cell that is not divided further
+    /// Small triangles in a cell that is not divided further
     #[arg(long, value_name = "COUNT")]
     leaf: Option<usize>,
+    /// Least side of a cell, scene units
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    leaf_side: Option<f64>,
     /// As JSON
     #[arg(long)]
     json: bool,
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let prepared = Prepared::new(&load(&arguments.script)?.scene)?;
-    let defaults = Settings::default();
-    let settings = Settings {
-        depth: arguments.depth.unwrap_or(defaults.depth),
-        leaf_triangles: arguments.leaf.unwrap_or(defaults.leaf_triangles),
-        ..defaults
-    };
-    let start = Instant::now();
-    let octree = Octree::build(&prepared.vertices, &prepared.triangles, &settings)?;
-    let seconds = start.elapsed().as_secs_f64();
+    let path = Path::new(&arguments.scene);
+    let kept = path.extension().is_some_and(|ending| ending == ENDING);
+    let (octree, seconds) = if kept { read(path, arguments)? } else { build(arguments)? };
+    if let Some(path) = &arguments.output {
+        std::fs::write(path, octree.to_bytes()?).map_err(|error| failed(path, &error))?;
+    }
     let statistics = octree.statistics();
     if arguments.json {
         let mut json = serde_json::to_value(&statistics)?;
         json["build_seconds"] = seconds.into();
-        json["depth"] = settings.depth.into();
         say!("{}", serde_json::to_string_pretty(&json)?);
     } else {
         say!(
-            "{} triangles in {} terminal nodes, built in {seconds:.3} s, {:.1} bytes a triangle",
+            "{} triangles in {} terminal nodes, {} in {seconds:.3} s, {:.1} bytes a triangle",
             statistics.triangles,
             statistics.leaves,
+            if kept { "read" } else { "built" },
             statistics.bytes_per_triangle
         );
         if arguments.stats {
-            say_on!("{}", details(&statistics, settings.depth));
+            say_on!("{}", details(&statistics));
         }
     }
     Ok(())
 }
 
-fn details(s: &Statistics, depth: u32) -> String {
+/// Builds the octree of a scene; also says how long it took, seconds.
+fn build(arguments: &Arguments) -> Result<(Octree, f64), Failure> {
+    let prepared = Prepared::new(&load(&arguments.scene)?.scene)?;
+    let defaults = Settings::default();
+    let settings = Settings {
+        depth: arguments.depth.unwrap_or(defaults.depth),
+        leaf_triangles: arguments.leaf.unwrap_or(defaults.leaf_triangles),
+        leaf_side: arguments.leaf_side.unwrap_or(defaults.leaf_side),
+        ..defaults
+    };
+    let start = Instant::now();
+    let octree = Octree::build(&prepared.vertices, &prepared.triangles, &settings)?;
+    Ok((octree, start.elapsed().as_secs_f64()))
+}
+
+/// Reads an octree; also says how long it took, seconds.
+fn read(path: &Path, arguments: &Arguments) -> Result<(Octree, f64), Failure> {
+    if arguments.depth.is_some() || arguments.leaf.is_some() || arguments.leaf_side.is_some() {
+        let why = "--depth, --leaf and --leaf-side are for an octree that is built, not for one that is read";
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
+    }
+    let start = Instant::now();
+    let bytes = std::fs::read(path).map_err(|error| failed(path, &error))?;
+    let octree = Octree::from_bytes(&bytes).map_err(|error| failed(path, &error))?;
+    Ok((octree, start.elapsed().as_secs_f64()))
+}
+
+fn failed(path: &Path, error: &dyn std::error::Error) -> Failure {
+    Failure::new(Exit::Failed, anyhow::anyhow!("{}: {error}", path.display()))
+}
+
+/// Reads a length.
+fn length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| *length >= 0.0 && *length < f64::INFINITY);
+    length.ok_or_else(|| "give a length, 0 or more".to_string())
+}
+
+fn details(s: &Statistics) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| text.push_str(&format!("{name:<34} {value}\n"));
-    line("resolution N", depth.to_string());
-    line("side of the modelling cube", format!("{:.6}", s.side));
+    line("objects", s.objects.to_string());
+    line("resolution N", s.depth.to_string());
+    line("side of the modelling cube", s.side.to_string());
+    line("part of it in terminal nodes", format!("{:.4} %", s.filled * 100.0));
     line("partial nodes", s.partial_nodes.to_string());
     line("voxel nodes", s.voxel_nodes.to_string());
     line("triangles named by all nodes", s.references.to_string());
     line("triangles named by a node, mean", format!("{:.2}", s.references as f64 / s.leaves.max(1) as f64));
+    line("triangles named by a node, most", s.most_references.to_string());
     line("bytes", s.bytes.to_string());
+    line("bytes without the index", s.linear_bytes.to_string());
     for (level, count) in s.depth_histogram.iter().enumerate().filter(|(_, n)| **n > 0) {
         line(&format!("terminal nodes of level {level}"), count.to_string());
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run_words(words: &[&str]) -> Result<(), Failure> {
+        let command = Arguments::augment_args(clap::Command::new("octree"));
+        let matches = command.try_get_matches_from([&["octree"], words].concat()).expect("a sound command line");
+        run(&Arguments::from_arg_matches(&matches).expect("all arguments"))
+    }
+
+    #[test]
+    fn an_octree_that_is_kept_is_read_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("pot.octree");
+        let file = path.to_str().expect("a plain name");
+        assert!(run_words(&["teapot", "--leaf", "4", "--leaf-side", "0.1", "--output", file]).is_ok());
+        assert!(run_words(&[file, "--stats"]).is_ok() && run_words(&[file, "--json"]).is_ok());
+        assert_eq!(run_words(&[file, "--depth", "3"]).map_err(|failure| failure.exit), Err(Exit::Usage));
+        let mut bytes = std::fs::read(&path).expect("written");
+        bytes[99] ^= 1;
+        std::fs::write(&path, bytes).expect("written again");
+        assert_eq!(run_words(&[file]).map_err(|failure| failure.exit), Err(Exit::Failed));
+    }
 }

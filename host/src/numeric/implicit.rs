@@ -340,8 +340,7 @@ mod tests {
     #[test]
     fn a_line_that_grazes_a_plane_of_hardly_any_area_meets_it_somewhere() {
         let line = [DVec3::new(0.0, 0.0, 0.1), DVec3::new(0.0, 0.1, 0.0)];
-        let plane =
-            [DVec3::new(0.0, -0.4, 0.1), DVec3::new(0.30000000000000004, 0.2, 0.1), DVec3::new(0.1, -0.2, 0.1)];
+        let plane = [DVec3::new(0.0, -0.4, 0.1), DVec3::new(0.30000000000000004, 0.2, 0.1), DVec3::new(0.1, -0.2, 0.1)];
         let point = Point::new(Definition::LineAndPlane(line, plane));
         assert_eq!(point.near(), line[0]);
         assert!(point.errors.is_finite());

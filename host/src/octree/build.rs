@@ -1,156 +1,210 @@
-//! From triangles to terminal nodes: cells are divided as long as that saves work.
+//! From triangles to terminal nodes: cells are divided where small triangles are many.
+
+use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::clip::{Bounds, FAT, clipped_bounds};
 use super::code::{LocationalCode, MAX_DEPTH};
+use super::cube::Cube;
 
 /// A cell with more references than this shares the work on its eighths among threads.
 const PARALLEL_REFERENCES: usize = 4096;
 
-/// A cell is not divided if it and the cells around it have together multiplied their references by more than this.
+/// A cell is not divided if so many times more triangles touch it than have their home in it.
 ///
-/// Bounds the size of the octree where triangles coincide, so that no division parts them.
-const MOST_GROWTH: f32 = 10.0;
-
-/// How often in a row a cell may be divided without saving work, in the hope that its eighths do.
-const PATIENCE: u32 = 2;
-
-/// Price of a visit to a divided cell, in packets of four triangles.
-const VISIT_PRICE: f32 = 2.0;
+/// Bounds the size of the octree where many large triangles pass through a crowd of small ones.
+const CROWD: usize = 32;
 
 /// A triangle in a cell, with the bounds of its part there.
 #[derive(Clone, Copy)]
-struct Reference {
-    triangle: u32,
+pub struct Reference {
+    /// Index of the triangle.
+    pub triangle: u32,
     bounds: Bounds,
 }
 
-/// What the divisions so far have come to.
-#[derive(Clone, Copy)]
-struct Outlook {
-    /// How many more divisions may save nothing.
-    patience: u32,
-    /// References per reference of the modelling cube.
-    growth: f32,
-}
-
 /// Terminal nodes in the order of their codes.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Leaves {
-    /// Their codes, sorted.
+    /// Their codes, sorted; none contains another.
     pub codes: Vec<LocationalCode>,
     /// Where the triangles of each end in `triangles`; the next one begins there.
     pub ends: Vec<usize>,
     /// Triangles, leaf by leaf, ascending in each.
     pub triangles: Vec<u32>,
-    /// Bounds of the part of each of these triangles in its leaf.
-    pub bounds: Vec<Bounds>,
 }
 
 impl Leaves {
-    fn push(&mut self, code: LocationalCode, references: &[Reference]) {
+    /// Adds a terminal node behind all others.
+    pub fn push(&mut self, code: LocationalCode, triangles: impl Iterator<Item = u32>) {
         self.codes.push(code);
-        self.triangles.extend(references.iter().map(|r| r.triangle));
-        self.bounds.extend(references.iter().map(|r| r.bounds));
+        self.triangles.extend(triangles);
         self.ends.push(self.triangles.len());
     }
 
-    fn append(&mut self, other: Self) {
+    /// Adds some terminal nodes of another sequence behind all others.
+    pub fn append(&mut self, other: &Self, nodes: Range<usize>) {
+        let first = other.range(nodes.clone()).start;
         let offset = self.triangles.len();
-        self.codes.extend(other.codes);
-        self.bounds.extend(other.bounds);
-        self.ends.extend(other.ends.into_iter().map(|end| end + offset));
-        self.triangles.extend(other.triangles);
+        self.codes.extend(&other.codes[nodes.clone()]);
+        self.triangles.extend(&other.triangles[other.range(nodes.clone())]);
+        self.ends.extend(other.ends[nodes].iter().map(|end| end - first + offset));
     }
 
-    /// Where the triangles of one leaf lie in `triangles`.
-    pub fn range(&self, leaf: usize) -> std::ops::Range<usize> {
-        let start = if leaf == 0 { 0 } else { self.ends[leaf - 1] };
-        start..self.ends[leaf]
+    /// Where the triangles of some successive nodes lie in `triangles`.
+    pub fn range(&self, nodes: Range<usize>) -> Range<usize> {
+        let end = |node: usize| if node == 0 { 0 } else { self.ends[node - 1] };
+        end(nodes.start)..end(nodes.end)
+    }
+
+    /// The triangles of one node.
+    pub fn of(&self, node: usize) -> &[u32] {
+        &self.triangles[self.range(node..node + 1)]
+    }
+
+    /// The nodes that name one of some successive triangles, in order.
+    pub fn naming(&self, triangles: &Range<usize>) -> Vec<usize> {
+        let names = |&node: &usize| self.of(node).iter().any(|&triangle| triangles.contains(&(triangle as usize)));
+        (0..self.codes.len()).filter(names).collect()
+    }
+
+    /// The nodes in a cube, among some successive ones.
+    pub fn within(&self, cube: LocationalCode, nodes: Range<usize>) -> Range<usize> {
+        let part = &self.codes[nodes.clone()];
+        let first = part.partition_point(|&code| code < cube);
+        let count = part[first..].partition_point(|&code| code.begins_before_end_of(cube));
+        nodes.start + first..nodes.start + first + count
     }
 }
 
 /// What every cell needs to know.
+#[derive(Clone, Copy)]
 pub struct Division<'a> {
-    /// Vertices in local coordinates.
+    /// The modelling cube.
+    pub cube: Cube,
+    /// Vertices, world units.
     pub vertices: &'a [DVec3],
     /// Corners of the triangles.
     pub triangles: &'a [[u32; 3]],
     /// No cell is divided at this level.
     pub depth: u32,
-    /// No cell with so few triangles is divided.
+    /// No cell that is home to so few triangles is divided.
     pub leaf_triangles: usize,
 }
 
 impl Division<'_> {
-    /// Divides the modelling cube; the result does not depend on the number of threads.
-    pub fn leaves(&self) -> Leaves {
-        let references: Vec<Reference> = (0..self.triangles.len())
-            .into_par_iter()
-            .with_min_len(PARALLEL_REFERENCES)
-            .filter_map(|index| {
-                let [a, b, c] = self.corners(index as u32);
-                // A triangle with two corners in one point is never hit.
-                (a != b && b != c && c != a).then(|| Reference {
-                    triangle: index as u32,
-                    bounds: Bounds::of(&[a.to_array(), b.to_array(), c.to_array()]),
-                })
-            })
-            .collect();
-        let mut leaves = Leaves::default();
-        if !references.is_empty() {
-            self.divide(LocationalCode::ROOT, references, Outlook { patience: PATIENCE, growth: 1.0 }, &mut leaves);
+    /// Some triangles in the modelling cube, in order.
+    pub fn references(&self, triangles: Range<usize>) -> Vec<Reference> {
+        triangles.into_par_iter().with_min_len(PARALLEL_REFERENCES).filter_map(|t| self.reference(t as u32)).collect()
+    }
+
+    fn reference(&self, triangle: u32) -> Option<Reference> {
+        let bounds = || Bounds::of(&self.corners(triangle).map(|corner| corner.to_array()));
+        self.is_extended(triangle as usize).then(|| Reference { triangle, bounds: bounds() })
+    }
+
+    /// Some triangles, ascending, in a cell; those that do not touch it are left out.
+    pub fn references_in(&self, cell: LocationalCode, triangles: &[u32]) -> Vec<Reference> {
+        let mut references: Vec<Reference> = triangles.iter().filter_map(|&t| self.reference(t)).collect();
+        for level in 0..cell.level() {
+            let eighths = self.distribute(cell.ancestor(level), &references);
+            references =
+                cell.digit(level + 1).and_then(|digit| eighths.into_iter().nth(digit.into())).unwrap_or_default();
         }
+        references
+    }
+
+    /// The homes of some triangles, sorted.
+    ///
+    /// The home of a triangle is the smallest cube that holds the middle of its box and is as large as the box. Unlike
+    /// the cells that it touches it is one, whatever else there is; it depends on nothing but the triangle.
+    pub fn homes(&self, triangles: Range<usize>) -> Vec<LocationalCode> {
+        let home = |index: usize| {
+            let [a, b, c] = self.corners(index as u32);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            let voxels = f64::from(1_u32 << MAX_DEPTH);
+            let size = ((high - low).max_element() * voxels).ceil().max(1.0) as u32;
+            let last = DVec3::splat(voxels - 1.0);
+            let middle = ((low + high) * (0.5 * voxels)).clamp(DVec3::ZERO, last).to_array().map(|x| x as u32);
+            let above = size.next_power_of_two().trailing_zeros();
+            self.is_extended(index).then(|| LocationalCode::containing(middle, MAX_DEPTH.saturating_sub(above)))
+        };
+        let mut homes: Vec<_> = triangles.into_par_iter().with_min_len(4096).filter_map(home).collect();
+        homes.par_sort_unstable();
+        homes
+    }
+
+    /// Divides the modelling cube; the result does not depend on the number of threads.
+    ///
+    /// - `homes`: those of all triangles, sorted.
+    pub fn leaves(&self, homes: &[LocationalCode]) -> Leaves {
+        let mut leaves = Leaves::default();
+        self.divide(LocationalCode::ROOT, self.references(0..self.triangles.len()), homes, &mut leaves);
         leaves
     }
 
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|i| self.vertices[i as usize])
+    /// A triangle with two corners in one point is never hit.
+    fn is_extended(&self, triangle: usize) -> bool {
+        let [a, b, c] = self.triangles[triangle].map(|i| self.vertices[i as usize]);
+        a != b && b != c && c != a
     }
 
-    fn divide(&self, cell: LocationalCode, references: Vec<Reference>, outlook: Outlook, leaves: &mut Leaves) {
+    /// Local coordinates of the corners of a triangle.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].map(|i| self.cube.local(self.vertices[i as usize]))
+    }
+
+    /// Says whether a cell is divided, by nothing but what is in it: so a change elsewhere does not matter.
+    ///
+    /// - `homes`: number of triangles that have their home in it.
+    /// - `references`: number of triangles that touch it.
+    pub fn is_divided(&self, cell: LocationalCode, homes: usize, references: usize) -> bool {
+        cell.level() < self.depth && homes > self.leaf_triangles && references <= homes.saturating_mul(CROWD)
+    }
+
+    /// Adds the terminal nodes of a cell.
+    ///
+    /// - `homes`: those in the cell, sorted.
+    pub fn divide(
+        &self,
+        cell: LocationalCode,
+        references: Vec<Reference>,
+        homes: &[LocationalCode],
+        leaves: &mut Leaves,
+    ) {
         let count = references.len();
-        if cell.level() >= self.depth || count <= self.leaf_triangles {
-            leaves.push(cell, &references);
+        if count == 0 {
             return;
         }
-        let eighths = self.distribute(cell, &references);
-        let total: usize = eighths.iter().map(Vec::len).sum();
-        let growth = outlook.growth * total as f32 / count as f32;
-        let saves = saving(&references, &eighths) > 0.0;
-        if growth > MOST_GROWTH || !(saves || outlook.patience > 0) {
-            leaves.push(cell, &references);
+        if !self.is_divided(cell, homes.len(), count) {
+            leaves.push(cell, references.iter().map(|r| r.triangle));
             return;
         }
-        let outlook = Outlook { patience: if saves { PATIENCE } else { outlook.patience - 1 }, growth };
+        let eighths = eighths(cell).zip(self.distribute(cell, &references));
         drop(references);
-        let children = eighths.into_iter().enumerate().filter(|(_, eighth)| !eighth.is_empty());
-        let children = children.filter_map(|(digit, eighth)| Some((cell.child(digit as u8)?, eighth)));
         if count > PARALLEL_REFERENCES {
-            let parts: Vec<Leaves> = children
+            let parts: Vec<Leaves> = eighths
                 .collect::<Vec<_>>()
                 .into_par_iter()
-                .map(|(child, eighth)| {
+                .map(|(eighth, references)| {
                     let mut part = Leaves::default();
-                    self.divide(child, eighth, outlook, &mut part);
+                    self.divide(eighth, references, within(homes, eighth), &mut part);
                     part
                 })
                 .collect();
-            parts.into_iter().for_each(|part| leaves.append(part));
+            parts.iter().for_each(|part| leaves.append(part, 0..part.codes.len()));
         } else {
-            children.for_each(|(child, eighth)| self.divide(child, eighth, outlook, leaves));
+            eighths.for_each(|(eighth, references)| self.divide(eighth, references, within(homes, eighth), leaves));
         }
     }
 
     /// Gives the triangles of a cell to its eighths, each to all that it touches.
-    fn distribute(&self, cell: LocationalCode, references: &[Reference]) -> [Vec<Reference>; 8] {
-        const VOXEL: f64 = 1.0 / (1_u32 << MAX_DEPTH) as f64;
-        let low = cell.corner().map(|c| f64::from(c) * VOXEL);
-        let half = f64::from(cell.side()) * VOXEL * 0.5;
-        let middle = low.map(|x| x + half);
+    pub fn distribute(&self, cell: LocationalCode, references: &[Reference]) -> [Vec<Reference>; 8] {
         let mut eighths: [Vec<Reference>; 8] = Default::default();
+        let (low, half) = place(cell);
+        let middle = low.map(|x| x + half);
         for reference in references {
             // Bit `axis` is set where the part reaches below, or above, the middle plane.
             let (mut below, mut above) = (0, 0);
@@ -163,33 +217,41 @@ impl Division<'_> {
                 eighths[above].push(*reference);
                 continue;
             }
+            let corners = self.corners(reference.triangle);
             for (digit, eighth) in eighths.iter_mut().enumerate() {
                 if (digit & !above) | (!digit & 7 & !below) != 0 {
                     continue;
                 }
                 let corner = [0, 1, 2].map(|axis| if digit >> axis & 1 == 1 { middle[axis] } else { low[axis] });
-                let opposite = corner.map(|x| x + half);
-                if let Some(bounds) = clipped_bounds(self.corners(reference.triangle), corner, opposite) {
+                if let Some(bounds) = clipped_bounds(corners, corner, corner.map(|x| x + half)) {
                     eighth.push(Reference { triangle: reference.triangle, bounds });
                 }
             }
         }
         eighths
     }
+
+    /// Bounds of the part of a triangle in a cell; `None` if it does not touch the cell.
+    pub fn part(&self, triangle: u32, cell: LocationalCode) -> Option<Bounds> {
+        let (low, half) = place(cell);
+        clipped_bounds(self.corners(triangle), low, low.map(|x| x + 2.0 * half))
+    }
 }
 
-/// Work that a division saves a ray through the cell, in packets tested.
-///
-/// # Source
-/// Surface-area heuristic: Goldsmith and Salmon 1987.
-fn saving(references: &[Reference], eighths: &[Vec<Reference>; 8]) -> f32 {
-    let packets = |references: &[Reference]| references.len().div_ceil(4) as f32;
-    let area =
-        |references: &[Reference]| references.iter().fold(Bounds::EMPTY, |all, r| all.union(&r.bounds)).half_area();
-    let whole = area(references);
-    if whole <= 0.0 {
-        return 0.0;
-    }
-    let divided: f32 = eighths.iter().filter(|e| !e.is_empty()).map(|e| area(e) / whole * packets(e)).sum();
-    packets(references) - VISIT_PRICE - divided
+/// Lowest corner of a cell and half its side, local coordinates.
+fn place(cell: LocationalCode) -> ([f64; 3], f64) {
+    const VOXEL: f64 = 1.0 / (1_u32 << MAX_DEPTH) as f64;
+    (cell.corner().map(|c| f64::from(c) * VOXEL), f64::from(cell.side()) * VOXEL * 0.5)
+}
+
+/// The eighths of a cell in order.
+pub fn eighths(cell: LocationalCode) -> impl Iterator<Item = LocationalCode> {
+    (0..8).filter_map(move |digit| cell.child(digit))
+}
+
+/// The codes in a cube, among sorted ones.
+pub fn within(codes: &[LocationalCode], cube: LocationalCode) -> &[LocationalCode] {
+    let first = codes.partition_point(|&code| code < cube);
+    let count = codes[first..].partition_point(|&code| code.begins_before_end_of(cube));
+    &codes[first..first + count]
 }

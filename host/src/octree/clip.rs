@@ -6,7 +6,7 @@ use glam::DVec3;
 ///
 /// Two roundings can put a ray into a cell while its triangle is in the next one: that of the corners of a clipped
 /// polygon, below 2^-49 of the cube after six cuts, and that of a point on the ray, below 2^-50 (1 + |origin|) in
-/// cubes. The bound covers both for rays that start within 2^12 cubes, and is 2^-17 of the smallest voxel.
+/// cubes. The bound covers both for rays that start within 2^12 cubes, and is 2^-15 of the smallest voxel.
 pub const FAT: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// Three corners, and one more for each of the six cuts.

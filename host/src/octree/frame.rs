@@ -2,6 +2,8 @@
 
 use wide::f32x4;
 
+use super::clip::FAT;
+use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 use crate::numeric::ray::Ray;
 use crate::numeric::triangle::Shear;
@@ -79,8 +81,7 @@ impl Frame {
         let tolerance = SINGLE_TOLERANCE + double_tolerance;
 
         let rate = length_z.abs() * cube.side.recip();
-        let inverse =
-            slopes.map(|slope| if slope.abs() < LEAST_SLOPE { 1e20_f64.copysign(slope) } else { slope.recip() });
+        let inverse = slopes.map(inverse);
         let margin = 4.0 * tolerance;
         let (mut enter, mut exit) = (t_min * rate, t_max * rate);
         for axis in 0..3 {
@@ -119,6 +120,22 @@ impl Frame {
         })
     }
 
+    /// Whether the ray may meet a cube of the octree, in double precision; in doubt it may.
+    pub fn may_meet(&self, cube: LocationalCode) -> bool {
+        let voxel = 1.0 / f64::from(1_u32 << MAX_DEPTH);
+        let margin = FAT + 4.0 * self.double_tolerance;
+        let (mut enter, mut exit) = (-margin, self.length + margin);
+        for (axis, corner) in cube.corner().into_iter().enumerate() {
+            let low = f64::from(corner) * voxel;
+            let high = low + f64::from(cube.side()) * voxel;
+            let inverse = inverse(self.slopes[axis]);
+            let [to_low, to_high] = [low - margin, high + margin].map(|plane| (plane - self.entry[axis]) * inverse);
+            enter = enter.max(to_low.min(to_high));
+            exit = exit.min(to_low.max(to_high));
+        }
+        enter <= exit + margin
+    }
+
     /// A bound for the parameter s of a hit at `t`, rounded up.
     #[inline]
     pub fn limit(&self, t: f64) -> f32 {
@@ -130,4 +147,9 @@ impl Frame {
     pub fn limit_of(&self, s: f64) -> f32 {
         (s + 4.0 * f64::from(self.tolerance)) as f32 * (1.0 + 4.0 * f32::EPSILON)
     }
+}
+
+/// One over a slope, bounded.
+fn inverse(slope: f64) -> f64 {
+    if slope.abs() < LEAST_SLOPE { LEAST_SLOPE.recip().copysign(slope) } else { slope.recip() }
 }

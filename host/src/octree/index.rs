@@ -66,20 +66,19 @@ struct Branch {
     parts: Option<Box<[Branch; 2]>>,
 }
 
-/// The index over items: nodes, packets, and where each item went.
+/// The index over items: nodes and packets.
+#[derive(Clone, Debug, Default)]
 pub struct Index {
     /// The first is the top. None for no items.
     pub nodes: Vec<Node>,
     /// Triangles in the order of the leaves of the tree.
     pub packets: Vec<Packet>,
-    /// For each item, by number, its packet.
-    pub packet_of_item: Vec<u32>,
 }
 
 impl Index {
     /// Builds it; `corners` gives the local coordinates of a triangle.
     pub fn new(mut items: Vec<Item>, corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
-        let mut index = Self { nodes: Vec::new(), packets: Vec::new(), packet_of_item: vec![0; items.len()] };
+        let mut index = Self::default();
         if items.is_empty() {
             return index;
         }
@@ -124,9 +123,6 @@ impl Index {
     fn pack(&mut self, items: &[Item], corners: &impl Fn(u32) -> [DVec3; 3]) -> (u32, u32) {
         let start = self.packets.len() as u32;
         for chunk in items.chunks(LANES) {
-            for item in chunk {
-                self.packet_of_item[item.number as usize] = self.packets.len() as u32;
-            }
             self.packets.push(Packet::new(chunk.iter().map(|item| item.triangle), corners));
         }
         (start, self.packets.len() as u32 - start)

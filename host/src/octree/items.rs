@@ -1,9 +1,9 @@
 //! What the index holds: triangles, and pieces of those that are large among small ones.
 
-use rayon::prelude::*;
-
-use super::build::Leaves;
+use super::build::{Division, Leaves};
 use super::clip::Bounds;
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 /// A triangle is held as pieces if each of them saves more than this share of a test of every triangle by every ray.
 const WORTHWHILE: f32 = 4.0;
@@ -19,52 +19,38 @@ pub struct Item {
     pub number: u32,
 }
 
-/// Items, and which of them stands for each reference of a terminal node.
-pub struct Items {
-    /// All of them.
-    pub items: Vec<Item>,
-    /// For each entry of the leaves' triangles the number of its item.
-    pub of_reference: Vec<u32>,
-}
-
-impl Items {
-    /// Makes one item of each triangle in a leaf, or one of each of its references if that saves enough.
-    ///
-    /// - `whole`: box of a triangle in local coordinates.
-    /// - `triangles`: number of triangles.
-    pub fn new(leaves: &Leaves, triangles: usize, whole: impl Fn(u32) -> Bounds + Sync) -> Self {
-        let mut pieces = vec![(0_u32, 0.0_f32); triangles];
-        for (&triangle, bounds) in leaves.triangles.iter().zip(&leaves.bounds) {
-            let (count, area) = &mut pieces[triangle as usize];
-            *count += 1;
-            *area += bounds.half_area();
+/// Makes one item of each triangle in a leaf, or one of each of its pieces in the leaves if that saves enough.
+pub fn items(leaves: &Leaves, division: &Division<'_>) -> Vec<Item> {
+    let triangles = division.triangles.len();
+    let boxes: Vec<Bounds> = (0..triangles as u32)
+        .into_par_iter()
+        .with_min_len(4096)
+        .map(|triangle| Bounds::of(&division.corners(triangle).map(|corner| corner.to_array())))
+        .collect();
+    let all = boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b)).half_area();
+    let threshold = WORTHWHILE * all / triangles as f32;
+    // Only a triangle with a box above the threshold can save so much; of the others no piece need be made.
+    let is_large = |triangle: u32| boxes[triangle as usize].half_area() > threshold;
+    let mut pieces: FxHashMap<u32, Vec<Bounds>> = FxHashMap::default();
+    for (node, &cell) in leaves.codes.iter().enumerate() {
+        for &triangle in leaves.of(node).iter().filter(|&&triangle| is_large(triangle)) {
+            pieces.entry(triangle).or_default().extend(division.part(triangle, cell));
         }
-        let boxes: Vec<Bounds> = (0..triangles as u32).into_par_iter().with_min_len(4096).map(&whole).collect();
-        let all = boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b)).half_area();
-        let threshold = WORTHWHILE * all / triangles as f32;
-        let split = |triangle: u32| {
-            let (count, area) = pieces[triangle as usize];
-            boxes[triangle as usize].half_area() - area > threshold * count as f32
-        };
-        let mut items = Vec::with_capacity(triangles);
-        let mut single = vec![u32::MAX; triangles];
-        let of_reference = leaves
-            .triangles
-            .iter()
-            .zip(&leaves.bounds)
-            .map(|(&triangle, &bounds)| {
-                let pieces = split(triangle);
-                let known = single[triangle as usize];
-                if !pieces && known != u32::MAX {
-                    return known;
-                }
-                let number = items.len() as u32;
-                let bounds = if pieces { bounds } else { boxes[triangle as usize] };
-                single[triangle as usize] = number;
-                items.push(Item { bounds, triangle, number });
-                number
-            })
-            .collect();
-        Self { items, of_reference }
     }
+    pieces.retain(|&triangle, pieces| {
+        let area: f32 = pieces.iter().map(Bounds::half_area).sum();
+        boxes[triangle as usize].half_area() - area > threshold * pieces.len() as f32
+    });
+    let mut items: Vec<Item> = Vec::with_capacity(triangles);
+    let mut is_made = vec![false; triangles];
+    for &triangle in &leaves.triangles {
+        if std::mem::replace(&mut is_made[triangle as usize], true) {
+            continue;
+        }
+        let whole = [boxes[triangle as usize]];
+        let bounds = pieces.get(&triangle).map_or(whole.as_slice(), Vec::as_slice);
+        items.extend(bounds.iter().map(|&bounds| Item { bounds, triangle, number: 0 }));
+    }
+    items.iter_mut().zip(0..).for_each(|(item, number)| item.number = number);
+    items
 }

@@ -1,35 +1,47 @@
 //! The linear octree: sorted locational codes over triangles, location, and what a ray hits.
+//!
+//! Two structures stand on the same codes. [`Octree`] stores terminal nodes, each with every triangle that touches it, for
+//! whoever asks for a place: rays, neighbours, the inside test. [`Sorted`] files each triangle once, by its middle, for
+//! whoever asks each triangle once: the pairs of a Boolean operation. Sorting takes less than a tenth of the time of
+//! dividing, which an operation does not win back; so neither is built from the other.
 
 pub mod brute_force;
 mod build;
 mod clip;
 mod code;
 mod cube;
+mod edit;
+mod file;
 mod frame;
 mod index;
+mod inside;
 mod items;
+mod nearest;
+mod neighbours;
 mod packet;
 mod partition;
 mod sorted;
+mod statistics;
 mod walk;
 
 #[cfg(test)]
 mod tests;
 
 use glam::DVec3;
-use serde::Serialize;
 
+use crate::numeric::bounds::Bounds;
 pub use crate::numeric::ray::{Hit, Ray};
 use crate::numeric::triangle::MAX_MAGNITUDE;
-use build::Division;
-use clip::Bounds;
+use build::{Division, Leaves};
 pub use code::{LocationalCode, MAX_DEPTH};
 use cube::Cube;
+pub use file::FileError;
 pub use frame::MAX_DISTANCE;
-use index::{Index, Node};
-use items::Items;
-use packet::Packet;
+use index::Index;
+pub use inside::Side;
+pub use nearest::Nearest;
 pub use sorted::Sorted;
+pub use statistics::Statistics;
 
 /// Most triangles that one octree takes.
 pub const MAX_TRIANGLES: usize = 1 << 28;
@@ -39,15 +51,17 @@ pub const MAX_TRIANGLES: usize = 1 << 28;
 pub struct Settings {
     /// Resolution N: the modelling cube has 2^N voxels a side. Counts as [`MAX_DEPTH`] above it.
     pub depth: u32,
-    /// A cell with no more triangles than this is not divided.
+    /// A cell is not divided if no more triangles than this are small enough for it and have their middle in it.
     pub leaf_triangles: usize,
+    /// No cell has a smaller side than this, world units; 0 for no limit.
+    pub leaf_side: f64,
     /// How rays find their way.
     pub walk: Walk,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { depth: 16, leaf_triangles: 16, walk: Walk::Index }
+        Self { depth: 16, leaf_triangles: 8, leaf_side: 0.0, walk: Walk::Index }
     }
 }
 
@@ -57,7 +71,7 @@ pub enum Walk {
     /// Down an index of wide nodes that is derived from the sorted codes.
     #[default]
     Index,
-    /// From cell to cell across the side that the leading direction meets, each found by binary search.
+    /// From cell to cell across the side that the leading direction meets, each found by binary search. Needs no index.
     LeadingDirection,
 }
 
@@ -85,6 +99,12 @@ pub enum OctreeError {
         index: u32,
         /// Number of vertices.
         vertices: usize,
+    },
+    /// A coordinate is outside the modelling cube, which was given.
+    #[error("vertex {vertex} is outside the modelling cube")]
+    VertexOutside {
+        /// Index of the vertex.
+        vertex: usize,
     },
     /// More triangles than [`MAX_TRIANGLES`].
     #[error("{triangles} triangles are more than the {MAX_TRIANGLES} that one octree takes")]
@@ -121,49 +141,35 @@ pub struct WalkCount {
     pub triangles: u64,
 }
 
-/// What an octree holds.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Statistics {
-    /// Triangles given.
-    pub triangles: usize,
-    /// Terminal nodes stored.
-    pub leaves: usize,
-    /// Terminal nodes larger than a voxel.
-    pub partial_nodes: usize,
-    /// Terminal nodes that are voxels.
-    pub voxel_nodes: usize,
-    /// Triangles named by all terminal nodes together.
-    pub references: usize,
-    /// Terminal nodes of each level, from the modelling cube down.
-    pub depth_histogram: Vec<usize>,
-    /// Side of the modelling cube, world units.
-    pub side: f64,
-    /// Memory of the codes, the index and the triangles, bytes.
-    pub bytes: usize,
-    /// `bytes` over `triangles`.
-    pub bytes_per_triangle: f64,
+/// Vertices and triangles that were put into an octree together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Object {
+    vertices: usize,
+    triangles: usize,
 }
 
-/// A linear octree over triangles. It does not change; threads share it freely.
+/// A linear octree over the triangles of some objects. Threads share it freely.
+///
+/// Objects are numbered from 0 in the order in which they were put in, and so are their vertices and triangles, one object
+/// after the other. Where an object is taken out, what comes behind it moves up, as in a vector.
 #[derive(Clone, Debug)]
 pub struct Octree {
     cube: Cube,
     depth: u32,
+    leaf_triangles: usize,
+    walk: Walk,
     vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    walk: Walk,
-    codes: Vec<LocationalCode>,
-    /// Where the packets of each terminal node begin in `leaf_packets`, and at last where they end.
-    leaf_starts: Vec<u32>,
-    /// Packets that hold the triangles of each terminal node.
-    leaf_packets: Vec<u32>,
-    packets: Vec<Packet>,
-    nodes: Vec<Node>,
-    references: usize,
+    objects: Vec<Object>,
+    /// The homes of all triangles, sorted.
+    homes: Vec<LocationalCode>,
+    leaves: Leaves,
+    /// Empty unless rays are to go down the index.
+    index: Index,
 }
 
 impl Octree {
-    /// Builds the octree.
+    /// Builds the octree of one object.
     ///
     /// - `vertices`: positions, world units.
     /// - `triangles`: corners, indices into `vertices`; degenerate ones are welcome and are never hit.
@@ -173,52 +179,68 @@ impl Octree {
     /// at all is fine.
     pub fn build(vertices: &[DVec3], triangles: &[[u32; 3]], settings: &Settings) -> Result<Self, OctreeError> {
         check(vertices, triangles)?;
-        let cube = enclose(vertices, triangles);
-        let depth = settings.depth.min(MAX_DEPTH);
-        let local: Vec<DVec3> = vertices.iter().map(|&p| cube.local(p)).collect();
-        let division = Division { vertices: &local, triangles, depth, leaf_triangles: settings.leaf_triangles };
-        let leaves = division.leaves();
-        let corners = |triangle: u32| triangles[triangle as usize].map(|i| local[i as usize]);
-        let items = Items::new(&leaves, triangles.len(), |triangle| {
-            Bounds::of(&corners(triangle).map(|corner| corner.to_array()))
-        });
-        let index = Index::new(items.items, corners);
-        // The packets of each terminal node, each once.
-        let mut leaf_starts = vec![0];
-        let mut leaf_packets: Vec<u32> = Vec::new();
-        for leaf in 0..leaves.codes.len() {
-            let start = leaf_packets.len();
-            let items = &items.of_reference[leaves.range(leaf)];
-            leaf_packets.extend(items.iter().map(|&item| index.packet_of_item[item as usize]));
-            leaf_packets[start..].sort_unstable();
-            let mut kept = start;
-            for i in start..leaf_packets.len() {
-                if i == start || leaf_packets[i] != leaf_packets[kept - 1] {
-                    leaf_packets[kept] = leaf_packets[i];
-                    kept += 1;
-                }
-            }
-            leaf_packets.truncate(kept);
-            leaf_starts.push(kept as u32);
-        }
-        Ok(Self {
-            cube,
-            depth,
-            vertices: vertices.to_vec(),
-            triangles: triangles.to_vec(),
-            walk: settings.walk,
-            references: leaves.triangles.len(),
-            codes: leaves.codes,
-            leaf_starts,
-            leaf_packets,
-            packets: index.packets,
-            nodes: index.nodes,
-        })
+        let mut octree = Self::of_cube(enclose(vertices, triangles), settings);
+        octree.vertices = vertices.to_vec();
+        octree.triangles = triangles.to_vec();
+        octree.objects = vec![Object { vertices: vertices.len(), triangles: triangles.len() }];
+        let division = octree.division();
+        let homes = division.homes(0..triangles.len());
+        let leaves = division.leaves(&homes);
+        (octree.homes, octree.leaves) = (homes, leaves);
+        Ok(octree.with_walk(settings.walk))
     }
 
-    /// The same octree, walked another way.
+    /// An octree without objects, with a modelling cube around a box that all objects must lie in.
+    ///
+    /// Rays go from cell to cell until [`Octree::with_walk`] makes an index.
+    ///
+    /// # Errors
+    /// A corner of the box, as vertex 0 or 1, that is not finite or too far out.
+    pub fn around(bounds: Bounds, settings: &Settings) -> Result<Self, OctreeError> {
+        check(&[bounds.min, bounds.max], &[])?;
+        Ok(Self::of_cube(Cube::around(bounds.min.min(bounds.max), bounds.max.max(bounds.min)), settings))
+    }
+
+    fn of_cube(cube: Cube, settings: &Settings) -> Self {
+        // A level less for each time that the smallest cells would have to be doubled.
+        let depth = (0..settings.depth.min(MAX_DEPTH)).take_while(|&level| {
+            let half = cube.side * 0.5_f64.powi(level as i32 + 1);
+            half >= settings.leaf_side || settings.leaf_side.is_nan()
+        });
+        Self {
+            cube,
+            depth: depth.count() as u32,
+            leaf_triangles: settings.leaf_triangles,
+            walk: Walk::LeadingDirection,
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            objects: Vec::new(),
+            homes: Vec::new(),
+            leaves: Leaves::default(),
+            index: Index::default(),
+        }
+    }
+
+    fn division(&self) -> Division<'_> {
+        Division {
+            cube: self.cube,
+            vertices: &self.vertices,
+            triangles: &self.triangles,
+            depth: self.depth,
+            leaf_triangles: self.leaf_triangles,
+        }
+    }
+
+    /// The same octree, walked another way. Makes the index if the walk needs it, and else drops it.
     pub fn with_walk(self, walk: Walk) -> Self {
-        Self { walk, ..self }
+        let index = match walk {
+            Walk::Index => {
+                let division = self.division();
+                Index::new(items::items(&self.leaves, &division), |triangle| division.corners(triangle))
+            }
+            Walk::LeadingDirection => Index::default(),
+        };
+        Self { walk, index, ..self }
     }
 
     /// Finds the nearest hit with `t_min < t < t_max`, both exclusive.
@@ -241,36 +263,19 @@ impl Octree {
         walk::search(self, ray, t_min, t_max, true).0.is_some()
     }
 
-    /// What the octree holds.
-    pub fn statistics(&self) -> Statistics {
-        let mut depth_histogram = vec![0; self.depth as usize + 1];
-        for code in &self.codes {
-            depth_histogram[code.level() as usize] += 1;
-        }
-        let bytes = size_of_val(self.vertices.as_slice())
-            + size_of_val(self.triangles.as_slice())
-            + size_of_val(self.codes.as_slice())
-            + size_of_val(self.leaf_starts.as_slice())
-            + size_of_val(self.leaf_packets.as_slice())
-            + size_of_val(self.packets.as_slice())
-            + size_of_val(self.nodes.as_slice());
-        let voxel_nodes = depth_histogram.last().copied().unwrap_or(0);
-        Statistics {
-            triangles: self.triangles.len(),
-            leaves: self.codes.len(),
-            partial_nodes: self.codes.len() - voxel_nodes,
-            voxel_nodes,
-            references: self.references,
-            depth_histogram,
-            side: self.cube.side,
-            bytes,
-            bytes_per_triangle: bytes as f64 / self.triangles.len().max(1) as f64,
-        }
+    /// Number of objects.
+    pub fn objects(&self) -> usize {
+        self.objects.len()
     }
 
     /// The terminal nodes that hold surface, sorted.
     pub fn codes(&self) -> &[LocationalCode] {
-        &self.codes
+        &self.leaves.codes
+    }
+
+    /// The triangles that touch a terminal node, ascending; none for any other cube.
+    pub fn triangles_in(&self, node: LocationalCode) -> &[u32] {
+        self.leaves.codes.binary_search(&node).map_or(&[], |leaf| self.leaves.of(leaf))
     }
 
     /// Lowest and highest corner of a cell, world units.
@@ -282,8 +287,8 @@ impl Octree {
     pub fn locate(&self, point: DVec3) -> Location {
         match self.cube.voxel(point) {
             Some(voxel) => match self.locate_leaf(LocationalCode::containing(voxel, MAX_DEPTH)) {
-                Ok(leaf) if self.codes[leaf].level() == self.depth => Location::Voxel(self.codes[leaf]),
-                Ok(leaf) => Location::Partial(self.codes[leaf]),
+                Ok(leaf) if self.leaves.codes[leaf].level() == self.depth => Location::Voxel(self.leaves.codes[leaf]),
+                Ok(leaf) => Location::Partial(self.leaves.codes[leaf]),
                 Err(empty) => empty,
             },
             None => Location::Outside,
@@ -295,13 +300,14 @@ impl Octree {
     /// If the longest run of digits that the voxel shares with a stored code has i of them, the cube of its first
     /// i + 1 digits holds no stored node: that is the empty region. A neighbour in the order shares the longest run.
     fn locate_leaf(&self, voxel: LocationalCode) -> Result<usize, Location> {
-        let after = self.codes.partition_point(|&code| code <= voxel);
-        let before = after.checked_sub(1).filter(|&leaf| self.codes[leaf].contains(voxel));
+        let after = self.leaves.codes.partition_point(|&code| code <= voxel);
+        let before = after.checked_sub(1).filter(|&leaf| self.leaves.codes[leaf].contains(voxel));
         if let Some(leaf) = before {
             return Ok(leaf);
         }
         let neighbours = [after.checked_sub(1), Some(after)].into_iter().flatten();
-        let shared = neighbours.filter_map(|leaf| self.codes.get(leaf)).map(|code| code.common_digits(voxel)).max();
+        let shared =
+            neighbours.filter_map(|leaf| self.leaves.codes.get(leaf)).map(|code| code.common_digits(voxel)).max();
         let level = shared.map_or(0, |digits| digits + 1);
         Err(Location::Empty { code: voxel.ancestor(level), level })
     }

@@ -132,6 +132,26 @@ impl Sorted {
         }
     }
 
+    /// Visits triangles, those in near boxes first, and leaves out boxes that are farther than what a visit returned last.
+    ///
+    /// - `distance`: of a box.
+    pub(super) fn search(&self, distance: impl Fn(Bounds) -> f64, mut visit: impl FnMut(u32) -> f64) {
+        let mut limit = f64::INFINITY;
+        let mut stack: Vec<(f64, Place)> = self.top().into_iter().map(|top| (0.0, top)).collect();
+        while let Some((near, place)) = stack.pop() {
+            if near > limit {
+                continue;
+            }
+            if place.level == 0 {
+                self.run(place.index).iter().for_each(|&triangle| limit = visit(triangle));
+                continue;
+            }
+            let first = stack.len();
+            stack.extend(self.under(place).map(|place| (distance(self.at(place)), place)));
+            stack[first..].sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        }
+    }
+
     fn top(&self) -> Option<Place> {
         self.levels.len().checked_sub(1).map(|level| Place { level, index: 0 })
     }

@@ -1,5 +1,6 @@
 //! Rays through the octree: down the index, or from cell to cell.
 
+use super::build::eighths;
 use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::frame::Frame;
@@ -30,24 +31,38 @@ struct Search<'a> {
 /// Finds the nearest hit, or for `any` some hit, with `t_min < t < t_max`.
 pub fn search(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> (Option<Hit>, WalkCount) {
     let nothing = (None, WalkCount::default());
-    if octree.nodes.is_empty() {
+    if octree.leaves.codes.is_empty() {
         return nothing;
     }
     let Some(shear) = Shear::new(ray, octree.cube.side.recip()) else { return nothing };
     let Some(frame) = Frame::new(ray, &shear, &octree.cube, t_min, t_max) else { return nothing };
     let limit = frame.limit_of(frame.length);
     let mut search = Search { octree, shear, frame, t_min, t_max, any, best: None, limit, count: WalkCount::default() };
-    // A ray from so far away that its points are less certain than a cell is fat sees all cells that it may meet
-    // only from above.
-    if octree.walk == Walk::LeadingDirection && 4.0 * search.frame.double_tolerance <= FAT {
-        search.step_from_cell_to_cell();
-    } else {
-        search.descend();
+    match octree.walk {
+        Walk::Index => search.descend(),
+        // A ray from so far away that its points are less certain than a cell is fat may be in the cell beside the one
+        // that it is taken for.
+        Walk::LeadingDirection if 4.0 * search.frame.double_tolerance <= FAT => search.step_from_cell_to_cell(),
+        Walk::LeadingDirection => search.look_from_above(),
     }
     (search.best, search.count)
 }
 
 impl Search<'_> {
+    /// Tests some packets; returns whether the search is over.
+    #[inline]
+    fn any_packet(&mut self, start: u32, count: u32) -> bool {
+        let packets = &self.octree.index.packets[start as usize..(start + count) as usize];
+        packets.iter().any(|packet| self.test(packet))
+    }
+
+    /// Tests the triangles of a terminal node; returns whether the search is over.
+    fn any_of_leaf(&mut self, leaf: usize) -> bool {
+        let triangles = self.octree.leaves.of(leaf);
+        self.count.triangles += triangles.len() as u64;
+        triangles.iter().any(|&triangle| self.decide(triangle) && self.any)
+    }
+
     /// Tests a packet; returns whether the search is over.
     #[inline]
     fn test(&mut self, packet: &Packet) -> bool {
@@ -90,7 +105,7 @@ impl Search<'_> {
         loop {
             self.count.cells += 1;
             if packets == 0 {
-                let node = &octree.nodes[start as usize];
+                let node = &octree.index.nodes[start as usize];
                 let (mut lanes, near) = node.meets(&self.frame, self.limit);
                 if lanes != 0 {
                     let mut nearest = lanes.trailing_zeros() as usize;
@@ -108,8 +123,7 @@ impl Search<'_> {
                     (start, packets) = (node.start[nearest], node.packets[nearest]);
                     continue;
                 }
-            } else if octree.packets[start as usize..(start + packets) as usize].iter().any(|packet| self.test(packet))
-            {
+            } else if self.any_packet(start, packets) {
                 return;
             }
             loop {
@@ -189,15 +203,12 @@ impl Search<'_> {
             self.count.cells += 1;
             let code = LocationalCode::containing(voxel.map(|x| x as u32), MAX_DEPTH);
             let (cell, leaf) = match octree.locate_leaf(code) {
-                Ok(leaf) => (octree.codes[leaf], Some(leaf)),
+                Ok(leaf) => (octree.leaves.codes[leaf], Some(leaf)),
                 Err(Location::Empty { code, .. }) => (code, None),
                 Err(_) => return,
             };
-            if let Some(leaf) = leaf {
-                let packets = octree.leaf_starts[leaf] as usize..octree.leaf_starts[leaf + 1] as usize;
-                if octree.leaf_packets[packets].iter().any(|&packet| self.test(&octree.packets[packet as usize])) {
-                    return;
-                }
+            if leaf.is_some_and(|leaf| self.any_of_leaf(leaf)) {
+                return;
             }
             let low = cell.corner().map(i64::from);
             let side = i64::from(cell.side());
@@ -240,6 +251,23 @@ impl Search<'_> {
                 };
             }
             if !(0..VOXELS).contains(&voxel[crossed]) {
+                return;
+            }
+        }
+    }
+
+    /// Opens all cubes that the ray may meet, from the modelling cube down.
+    fn look_from_above(&mut self) {
+        let leaves = &self.octree.leaves;
+        let mut cubes = vec![(LocationalCode::ROOT, 0..leaves.codes.len())];
+        while let Some((cube, nodes)) = cubes.pop() {
+            if nodes.is_empty() || !self.frame.may_meet(cube) {
+                continue;
+            }
+            self.count.cells += 1;
+            if leaves.codes[nodes.start] != cube {
+                cubes.extend(eighths(cube).map(|eighth| (eighth, leaves.within(eighth, nodes.clone()))));
+            } else if self.any_of_leaf(nodes.start) {
                 return;
             }
         }

@@ -15,8 +15,8 @@ pub use exact::ExactSolid;
 pub use glue::GlueError;
 pub use import::SolidError;
 pub use mass::Mass;
-pub use repair::Repair;
 pub use primitive::{Primitive, PrimitiveError};
+pub use repair::Repair;
 
 use crate::mesh::Mesh;
 

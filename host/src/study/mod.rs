@@ -2,7 +2,10 @@
 //!
 //! A [`Knob`] is one quality setting that can be swept. [`KNOBS`] lists those that the program offers.
 
+mod division;
+mod octree;
 mod plot;
+mod residual;
 mod samples;
 mod sweep;
 mod tessellation;
@@ -13,9 +16,12 @@ mod tests;
 pub use plot::{Plot, PlotError, Point, Series};
 pub use sweep::{Knob, Row, Study, Trial, sweep};
 
+use crate::octree::OctreeError;
 use crate::picture::PictureError;
 use crate::render::{RenderError, Watch};
 use crate::scene::{Scene, SceneError};
+use crate::subdivision::SubdivisionError;
+use crate::surface::{TessellationError, TrimError};
 use std::num::NonZeroUsize;
 
 /// How a study is made.
@@ -57,6 +63,30 @@ pub const KNOBS: &[KnobRow] = &[
         options: Options { width: 160, samples: 4, settings: 7, threads: None },
         run: tessellation::study,
     },
+    KnobRow {
+        name: "octree",
+        summary: "triangles in a leaf of the octree; hits against a search of all triangles",
+        options: Options { width: 160, samples: 1, settings: 9, threads: None },
+        run: octree::leaf_size,
+    },
+    KnobRow {
+        name: "depth",
+        summary: "levels of the octree; hits against a search of all triangles",
+        options: Options { width: 160, samples: 1, settings: 10, threads: None },
+        run: octree::depth,
+    },
+    KnobRow {
+        name: "subdivide",
+        summary: "steps of subdivision, from coarse triangles of each object, against the limit surface",
+        options: Options { width: 160, samples: 1, settings: 4, threads: None },
+        run: division::study,
+    },
+    KnobRow {
+        name: "surface",
+        summary: "tolerance of adaptive triangles against the exact surfaces",
+        options: Options { width: 160, samples: 1, settings: 8, threads: None },
+        run: residual::study,
+    },
 ];
 
 /// Why there is no study.
@@ -71,6 +101,18 @@ pub enum StudyError {
     /// Two pictures cannot be compared.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// An octree cannot be built.
+    #[error(transparent)]
+    Octree(#[from] OctreeError),
+    /// A polyhedron cannot be subdivided.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
+    /// A surface cannot be approximated.
+    #[error(transparent)]
+    Trim(#[from] TrimError),
+    /// A surface cannot be approximated by grids, or not be measured.
+    #[error(transparent)]
+    Tessellation(#[from] TessellationError),
     /// There is nothing to be studied.
     #[error("nothing to study: {0}")]
     Nothing(&'static str),

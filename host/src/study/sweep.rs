@@ -168,8 +168,12 @@ impl Study {
         text
     }
 
-    /// The study as a plot of the errors against the run time.
+    /// The study as a plot of the errors against the run time; or of what was counted against the setting, where no
+    /// setting has an error.
     pub fn plot(&self, title: &str) -> Plot {
+        if self.rows.iter().all(|row| row.errors.iter().all(|error| *error == 0.0)) {
+            return self.plot_of_counts(title);
+        }
         // All curves have their points at the same run times: one row of labels serves them all.
         let label =
             |i: usize, row: &Row| if i + 1 == self.error_names.len() { short(row.setting) } else { String::new() };
@@ -186,6 +190,26 @@ impl Study {
             x_label: "run time (s)".into(),
             y_label: "error".into(),
             note: format!("numbers at the last curve, for the points above too: {}", self.setting),
+            series: series.collect(),
+        }
+    }
+}
+
+impl Study {
+    fn plot_of_counts(&self, title: &str) -> Plot {
+        let series = self.count_names.iter().enumerate().map(|(i, name)| Series {
+            name: name.clone(),
+            points: self
+                .rows
+                .iter()
+                .map(|row| Point { x: row.setting, y: row.counts[i], label: String::new() })
+                .collect(),
+        });
+        Plot {
+            title: title.to_owned(),
+            x_label: self.setting.clone(),
+            y_label: "cost, in the unit of each curve".into(),
+            note: format!("no setting has an error: {} 0 at all of them", self.error_names.join(", ")),
             series: series.collect(),
         }
     }

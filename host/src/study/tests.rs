@@ -66,3 +66,38 @@ fn a_cancelled_study_says_so() {
     let result = (row("render").run)(&sphere(), &row("render").options, &watch);
     assert!(matches!(result, Err(StudyError::Interrupted)));
 }
+
+#[test]
+fn leaf_size_and_depth_change_no_hit() {
+    for name in ["octree", "depth"] {
+        let options = Options { width: 40, settings: 4, ..row(name).options };
+        let study = (row(name).run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
+        assert_eq!(study.rows.len(), 4);
+        assert!(study.rows.iter().all(|row| row.errors == [0.0]), "{study:?}");
+        let svg = study.plot("A").svg().expect("a plot of what it costs");
+        assert!(svg.contains("memory (MB)") && svg.contains("no setting has an error"));
+    }
+}
+
+#[test]
+fn steps_of_subdivision_come_nearer_to_the_limit() {
+    let scene = scene(Shape::Box { size: DVec3::ONE });
+    let study = (row("subdivide").run)(&scene, &row("subdivide").options, &Watch::NOBODY).expect("a study");
+    // The distance falls by four with each step where the surface is smooth, the angle by two.
+    for pair in study.rows.windows(2).skip(1) {
+        let [angle, distance] = [0, 2].map(|k| pair[0].errors[k] / pair[1].errors[k]);
+        assert!(angle > 1.3 && distance > 2.0, "{angle} {distance}");
+    }
+    assert!(study.rows[3].errors[1] < 0.02);
+}
+
+#[test]
+fn adaptive_triangles_keep_their_tolerance() {
+    let options = Options { settings: 3, ..row("surface").options };
+    let study = (row("surface").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
+    assert!(study.rows.iter().all(|row| row.errors[2] <= row.setting * 1.01), "{study:?}");
+    let [first, last] = [0, 2].map(|k| &study.rows[k]);
+    assert!((0..3).all(|error| last.errors[error] < first.errors[error]), "{study:?}");
+    let result = (row("surface").run)(&scene(Shape::Bunny), &options, &Watch::NOBODY);
+    assert!(matches!(result, Err(StudyError::Nothing(_))));
+}

@@ -2,8 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::curvature::Curved;
-use super::{Surface, between, nearest_from};
+use super::{Curved, Surface, between, nearest_from};
 
 /// Below this part of the size squared, a cross product of derivatives is rounding.
 const ROUNDING: f64 = 1e-13;
@@ -118,7 +117,7 @@ impl Curved for BezierPatch {
     }
 }
 
-fn casteljau(points: [DVec3; 4], t: f64) -> DVec3 {
+pub(super) fn casteljau(points: [DVec3; 4], t: f64) -> DVec3 {
     let blend = |a: DVec3, b: DVec3| DVec3::from_array([0, 1, 2].map(|k| between(a[k], b[k], t)));
     let [a, b, c, d] = points;
     let (ab, bc, cd) = (blend(a, b), blend(b, c), blend(c, d));
@@ -179,6 +178,8 @@ mod tests {
                 (du - DVec3::new(1.0, 0.0, fx)).length() < 1e-14 && (dv - DVec3::new(0.0, 1.0, fy)).length() < 1e-14
             );
             assert!((patch.normal(uv) - DVec3::new(-fx, -fy, 1.0).normalize()).length() < 1e-14);
+            let second = [2.0 * y, 2.0 * x, -6.0 * y].map(|f| DVec3::Z * f);
+            assert!(patch.second_derivatives(uv).iter().zip(second).all(|(a, b)| (*a - b).length() < 1e-13));
         }
     }
 

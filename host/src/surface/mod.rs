@@ -6,13 +6,15 @@
 //! [`SplineSurface::patches`] are what is tessellated. [`tessellate`] makes grids, the better choice for even surfaces;
 //! [`tessellate_adaptively`] makes triangles that are small only where the surface bends, and [`tessellate_trimmed`] the
 //! same for surfaces of which curves cut parts off. [`joined`] makes surfaces meet smoothly, [`continuity`] tells how
-//! smoothly they do.
+//! smoothly they do. Holes of any number of sides are filled by [`n_sided_patch`] or [`patches_around_vertex`].
 
 mod accuracy;
 mod bezier;
 mod border;
+mod car_body;
 mod continuity;
 mod curvature;
+mod hole;
 mod join;
 mod nearest;
 mod parallelogram;
@@ -31,8 +33,10 @@ mod turned;
 
 pub use accuracy::{Accuracy, chord_error};
 pub use bezier::BezierPatch;
+pub use car_body::car_body;
 pub use continuity::{Joint, SurfaceSide, continuity, joint};
 pub use curvature::{Curved, normal_curvature};
+pub use hole::{FourSidedPatch, HoleError, HoleSide, MAX_SIDES, NSidedPatch, n_sided_patch, patches_around_vertex};
 pub use join::{JoinError, Smoothness, joined};
 pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};

@@ -1,7 +1,11 @@
 //! Tests of the octree against other ways to the same answer.
 
+mod edits;
 mod extremes;
+mod files;
 mod hits;
+mod neighbours;
+mod sides;
 mod structure;
 mod tightness;
 

@@ -101,7 +101,7 @@ fn any_depth_and_leaf_size_give_the_same_hits() {
     let rays: Vec<Ray> = (0..500).map(|_| chord(DVec3::ZERO, 1.4, &mut stream)).collect();
     for (depth, leaf_triangles) in [(0, 0), (1, 1), (3, 0), (7, 2), (MAX_DEPTH, 8), (99, 1000)] {
         for walk in [Walk::Index, Walk::LeadingDirection] {
-            let settings = Settings { depth, leaf_triangles, walk };
+            let settings = Settings { depth, leaf_triangles, walk, ..Settings::default() };
             let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
             for ray in &rays {
                 let hit = octree.closest(ray, 0.0, f64::INFINITY);
@@ -117,12 +117,80 @@ fn the_octree_does_not_depend_on_the_number_of_threads() {
     let built = [1, 2, 5].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let octree = pool.install(|| shape.octree());
-        let packets: Vec<[u32; 4]> = octree.packets.iter().map(|packet| packet.triangles).collect();
-        let starts: Vec<[u32; 4]> = octree.nodes.iter().map(|node| node.start).collect();
-        (octree.codes.clone(), octree.leaf_packets.clone(), packets, starts)
+        let packets: Vec<[u32; 4]> = octree.index.packets.iter().map(|packet| packet.triangles).collect();
+        let starts: Vec<[u32; 4]> = octree.index.nodes.iter().map(|node| node.start).collect();
+        (octree.leaves.clone(), octree.homes.clone(), packets, starts)
     });
     assert_eq!(built[0], built[1]);
     assert_eq!(built[0], built[2]);
+}
+
+#[test]
+fn no_cell_is_smaller_than_the_least_side_of_a_leaf() {
+    let shape = torus(30);
+    let side = shape.octree().cube.side;
+    for (leaf_side, level) in [(side / 20.0, 4), (side / 16.0, 4), (side / 15.9, 3), (2.0 * side, 0), (f64::NAN, 16)] {
+        let settings = Settings { leaf_side, leaf_triangles: 0, ..Settings::default() };
+        let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
+        assert_eq!(octree.depth, level, "{leaf_side}");
+        assert!(octree.codes().iter().all(|code| code.level() <= level));
+    }
+}
+
+#[test]
+fn the_deepest_octree_is_as_exact_as_any() {
+    // A ball on the side of a large triangle, a hundred thousandth of its size: it needs the last levels.
+    let floor = Shape {
+        vertices: vec![DVec3::new(-1.0, 0.0, -1.0), DVec3::new(1.0, 0.0, -1.0), DVec3::new(0.0, 0.0, 1.5)],
+        triangles: vec![[0, 1, 2]],
+    };
+    let place = |p: DVec3| p * 2e-5 + DVec3::new(0.1, 1e-5, 0.2);
+    let shape = floor.joined(&ball(4).moved(place));
+    let mut stream = Stream::new(43, 0);
+    for depth in [19, 20, 21] {
+        let settings = Settings { depth, leaf_triangles: 1, ..Settings::default() };
+        let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
+        assert_eq!(octree.codes().iter().map(|code| code.level()).max(), Some(depth));
+        assert!(octree.statistics().voxel_nodes > 50);
+        let octrees = [octree.clone().with_walk(Walk::LeadingDirection), octree];
+        for i in 0..1500 {
+            let target = if i % 2 == 0 { shape.vertices[3 + i] } else { place(sphere(stream.point()) * 0.9) };
+            let origin = place(sphere(stream.point()) * [2.0, 1e6][i / 2 % 2]);
+            let ray = Ray { origin, direction: target - origin };
+            assert!(assert_exact(&shape, &octrees, &ray, f64::INFINITY).is_some());
+        }
+    }
+}
+
+#[test]
+fn every_triangle_is_named_where_it_lies() {
+    let shape = soup(500, 0.01, &mut Stream::new(44, 0));
+    let octree = shape.octree();
+    let mut stream = Stream::new(44, 1);
+    for triangle in 0..shape.triangles.len() {
+        let [a, b, c] = shape.corners(triangle);
+        for _ in 0..10 {
+            let [u, v] = crate::numeric::sampling::triangle(stream.point());
+            let point = a + (b - a) * u + (c - a) * v;
+            let (Location::Partial(node) | Location::Voxel(node)) = octree.locate(point) else {
+                panic!("{point} is in no node");
+            };
+            let named = octree.triangles_in(node);
+            assert!(named.is_sorted() && named.binary_search(&(triangle as u32)).is_ok());
+        }
+    }
+    assert_eq!(octree.triangles_in(LocationalCode::ROOT), &[] as &[u32]);
+}
+
+#[test]
+fn large_triangles_through_a_crowd_of_small_ones_stay_few_in_the_nodes() {
+    // Two thousand times the same large triangle, and a ball of five thousand in the midst of it.
+    let mut shape = ball(4).moved(|p| p * 0.1);
+    let first = shape.vertices.len() as u32;
+    shape.vertices.extend([DVec3::new(-9.0, 0.0, -9.0), DVec3::new(9.0, 0.0, -9.0), DVec3::new(0.0, 0.01, 12.0)]);
+    shape.triangles.extend([[first, first + 1, first + 2]; 2000]);
+    let statistics = shape.octree().statistics();
+    assert!(statistics.references < 100 * shape.triangles.len(), "{statistics:?}");
 }
 
 #[test]
