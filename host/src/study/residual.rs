@@ -4,6 +4,7 @@ use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene, Shape};
+use crate::solid::Primitive;
 use crate::surface::{Surface, Tolerance, chord_error, rational_sphere, teapot, tessellate, tessellate_adaptively};
 use glam::DVec2;
 use std::time::Instant;
@@ -42,7 +43,9 @@ fn patches(shape: &Shape) -> Option<Patches> {
     }
     match shape {
         Shape::Teapot => Some(boxed(teapot())),
-        Shape::Sphere { radius } => rational_sphere(*radius).ok().map(|sphere| boxed(sphere.patches().to_vec())),
+        Shape::Solid(Primitive::Sphere { radius }) => {
+            rational_sphere(*radius).ok().map(|sphere| boxed(sphere.patches().to_vec()))
+        }
         _ => None,
     }
 }

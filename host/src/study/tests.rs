@@ -81,7 +81,7 @@ fn leaf_size_and_depth_change_no_hit() {
 
 #[test]
 fn steps_of_subdivision_come_nearer_to_the_limit() {
-    let scene = scene(Shape::Box { size: DVec3::ONE });
+    let scene = scene(Shape::Solid(Primitive::Box { size: DVec3::ONE }));
     let study = (row("subdivide").run)(&scene, &row("subdivide").options, &Watch::NOBODY).expect("a study");
     // The distance falls by four with each step where the surface is smooth, the angle by two.
     for pair in study.rows.windows(2).skip(1) {
