@@ -2,6 +2,7 @@
 //!
 //! A [`Knob`] is one quality setting that can be swept. [`KNOBS`] lists those that the program offers.
 
+mod composite;
 mod division;
 mod octree;
 mod plot;
@@ -19,7 +20,7 @@ pub use sweep::{Knob, Row, Study, Trial, sweep};
 use crate::octree::OctreeError;
 use crate::picture::PictureError;
 use crate::render::{RenderError, Watch};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, ShapeError};
 use crate::subdivision::SubdivisionError;
 use crate::surface::{TessellationError, TrimError};
 use std::num::NonZeroUsize;
@@ -58,7 +59,7 @@ pub const KNOBS: &[KnobRow] = &[
         run: samples::study,
     },
     KnobRow {
-        name: "tessellation",
+        name: "tessellate",
         summary: "tessellation tolerance against a far finer tessellation and the exact surfaces",
         options: Options { width: 160, samples: 4, settings: 7, threads: None },
         run: tessellation::study,
@@ -80,6 +81,12 @@ pub const KNOBS: &[KnobRow] = &[
         summary: "steps of subdivision, from coarse triangles of each object, against the limit surface",
         options: Options { width: 160, samples: 1, settings: 4, threads: None },
         run: division::study,
+    },
+    KnobRow {
+        name: "boolean",
+        summary: "tolerance of the operands of composites against results of far finer ones",
+        options: Options { width: 160, samples: 1, settings: 6, threads: None },
+        run: composite::study,
     },
     KnobRow {
         name: "surface",
@@ -110,6 +117,9 @@ pub enum StudyError {
     /// A surface cannot be approximated.
     #[error(transparent)]
     Trim(#[from] TrimError),
+    /// An object has no triangles.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
     /// A surface cannot be approximated by grids, or not be measured.
     #[error(transparent)]
     Tessellation(#[from] TessellationError),

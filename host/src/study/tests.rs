@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::illumination::{Light, Material};
-use crate::scene::{Object, Settings, Shape};
+use crate::scene::{Composite, Object, Operation, Settings, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
@@ -42,7 +42,7 @@ fn more_samples_make_a_smaller_error() {
 #[test]
 fn a_finer_tolerance_follows_the_sphere_more_closely() {
     let options = Options { width: 24, samples: 1, settings: 3, threads: None };
-    let study = (row("tessellation").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
+    let study = (row("tessellate").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
     for row in &study.rows {
         assert!(row.errors[0] <= row.setting, "chord error {} above the tolerance {}", row.errors[0], row.setting);
         assert!(row.errors[0] > row.setting / 30.0, "far more triangles than asked for");
@@ -53,9 +53,9 @@ fn a_finer_tolerance_follows_the_sphere_more_closely() {
 
 #[test]
 fn a_scene_without_curved_surfaces_has_no_tolerance_to_study() {
-    let options = row("tessellation").options;
+    let options = row("tessellate").options;
     let result =
-        (row("tessellation").run)(&scene(Shape::Solid(Primitive::Box { size: DVec3::ONE })), &options, &Watch::NOBODY);
+        (row("tessellate").run)(&scene(Shape::Solid(Primitive::Box { size: DVec3::ONE })), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
 }
 
@@ -100,4 +100,21 @@ fn adaptive_triangles_keep_their_tolerance() {
     assert!((0..3).all(|error| last.errors[error] < first.errors[error]), "{study:?}");
     let result = (row("surface").run)(&scene(Shape::Bunny), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
+}
+
+#[test]
+fn a_drilled_ball_loses_error_as_its_tolerance_falls() {
+    let ball = Object { material: None, ..scene(Shape::Solid(Primitive::Sphere { radius: 1.0 })).objects[0].clone() };
+    let mut drill = ball.clone();
+    drill.shape = Shape::Solid(Primitive::Box { size: DVec3::new(0.5, 3.0, 0.5) });
+    let composite = Composite { operation: Operation::Difference, operands: vec![ball, drill], nesting: 1 };
+    let scene = scene(Shape::Composite(Box::new(composite)));
+    let options = Options { settings: 4, ..row("boolean").options };
+    let study = (row("boolean").run)(&scene, &options, &Watch::NOBODY).expect("a study");
+    // A third of the tolerance is about a third of the error.
+    for pair in study.rows.windows(2) {
+        assert!(pair[0].errors.iter().zip(&pair[1].errors).all(|(one, two)| one / two > 2.0), "{pair:?}");
+    }
+    let error = (row("boolean").run)(&sphere(), &options, &Watch::NOBODY).expect_err("no composite");
+    assert!(error.to_string().contains("made of others"));
 }
