@@ -195,7 +195,7 @@ print(best, result.volume(), n)
 fn row(case: &Case, folder: &std::path::Path) {
     let start = Instant::now();
     let solids: Vec<Solid> =
-        case.meshes.iter().map(|mesh| Solid::new(mesh.clone()).expect("the meshes are closed")).collect();
+        case.meshes.iter().map(|mesh| Solid::resolved(mesh.clone()).expect("the meshes are closed").0).collect();
     let import = start.elapsed().as_secs_f64();
     let operands: Vec<&Solid> = solids.iter().collect();
     let expression = case.expression();

@@ -90,6 +90,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Reads a mesh that must be a solid.
 pub(super) fn solid(path: &Path) -> Result<Solid, Failure> {
     let mesh: Mesh = mesh::read(path)?;
-    let solid = Solid::new(mesh).with_context(|| format!("{} is no solid", path.display()));
-    solid.map_err(|error| Failure::new(Exit::Failed, error))
+    let solid = Solid::resolved(mesh).with_context(|| format!("{} is no solid", path.display()));
+    let (solid, crossing) = solid.map_err(|error| Failure::new(Exit::Failed, error))?;
+    if let Some(crossing) = crossing {
+        tracing::warn!("{}: {crossing}; taken for all that it winds around", path.display());
+    }
+    Ok(solid)
 }

@@ -117,6 +117,53 @@ impl Sorted {
         found.concat()
     }
 
+    /// Pairs of triangles of this set, the lower first, whose boxes have a point in common and that `keep` accepts, in a
+    /// fixed order.
+    ///
+    /// - `corners`: the corners of the triangles.
+    pub fn pairs_within(
+        &self,
+        corners: impl Fn(u32) -> [DVec3; 3] + Sync,
+        keep: impl Fn(u32, u32) -> bool + Sync,
+    ) -> Vec<[u32; 2]> {
+        let Some(top) = self.top() else { return Vec::new() };
+        let boxes: Vec<Bounds> = self.order.par_iter().with_min_len(4096).map(|&t| Bounds::of(corners(t))).collect();
+        let mut tasks = vec![(top, top)];
+        while !tasks.is_empty() && tasks.len() < TASKS && tasks[0].0.level > 0 {
+            let mut next = Vec::new();
+            tasks.into_iter().for_each(|task| self.descend_both(task, &mut next));
+            tasks = next;
+        }
+        let search = |task: (Place, Place)| {
+            let mut pairs = Vec::new();
+            let mut stack = vec![task];
+            while let Some((one, two)) = stack.pop() {
+                if one.level > 0 {
+                    self.descend_both((one, two), &mut stack);
+                    continue;
+                }
+                let near = self.at(two);
+                let places = |run: usize| run * RUN..self.order.len().min((run + 1) * RUN);
+                for i in places(one.index).filter(|&i| boxes[i].touches(near)) {
+                    let later = places(two.index).filter(|&j| j > i && boxes[i].touches(boxes[j]));
+                    let pair = later.map(|j| [self.order[i].min(self.order[j]), self.order[i].max(self.order[j])]);
+                    pairs.extend(pair.filter(|&[a, b]| keep(a, b)));
+                }
+            }
+            pairs
+        };
+        let found: Vec<Vec<[u32; 2]>> = tasks.into_par_iter().map(search).collect();
+        found.concat()
+    }
+
+    /// Adds the pairs under two boxes of one level, the second not before the first, that touch.
+    fn descend_both(&self, (one, two): (Place, Place), found: &mut Vec<(Place, Place)>) {
+        for a in self.under(one).filter(|&a| self.at(a).touches(self.at(two))) {
+            let later = self.under(two).filter(|b| b.index >= a.index && self.at(*b).touches(self.at(a)));
+            found.extend(later.map(|b| (a, b)));
+        }
+    }
+
     /// Calls for every triangle whose run has a box that touches another.
     pub fn touching(&self, near: Bounds, mut visit: impl FnMut(u32)) {
         let mut stack: Vec<Place> = self.top().into_iter().collect();
@@ -233,6 +280,19 @@ mod tests {
             let touch = |i, j| Bounds::of(corners(&a, i)).touches(Bounds::of(corners(&b, j)));
             let all = (0..one).flat_map(|i| (0..two).map(move |j| [i, j])).filter(|&[i, j]| touch(i, j));
             assert!(found.iter().copied().eq(all), "{one} {two}");
+        }
+    }
+
+    #[test]
+    fn pairs_within_a_set_are_those_that_a_search_of_all_finds() {
+        for (count, size) in [(1, 3.0), (7, 1.0), (300, 0.3), (900, 0.05), (200, 0.0)] {
+            let set = soup(count, size, 5);
+            let corners = |t: u32| set.1[t as usize].map(|v| set.0[v as usize]);
+            let mut found = Sorted::new(&set.0, &set.1).pairs_within(corners, |a, b| (a + b) % 3 != 0);
+            found.sort_unstable();
+            let touch = |a, b| Bounds::of(corners(a)).touches(Bounds::of(corners(b))) && (a + b) % 3 != 0;
+            let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).filter(|&[a, b]| touch(a, b));
+            assert!(found.iter().copied().eq(all), "{count}");
         }
     }
 

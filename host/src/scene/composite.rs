@@ -160,8 +160,7 @@ impl Leaf<'_> {
 
     fn solid(&self) -> Result<ExactSolid, ShapeError> {
         let Made { mesh, surfaces, .. } = self.object.shape.made(self.chord / largest_stretch(&self.to_whole))?;
-        let solid = ExactSolid::new(mesh, surfaces).and_then(|solid| solid.placed(&self.placement()));
-        solid.map_err(|source| self.failed(source))
+        ExactSolid::new_at(mesh, surfaces, &self.placement()).map_err(|source| self.failed(source))
     }
 
     /// As much of a half-space as covers `bounds`, which are in the coordinates of the whole.

@@ -19,11 +19,24 @@ pub struct ExactSolid {
 }
 
 impl ExactSolid {
-    /// Takes a mesh and the surfaces that its triangles name.
+    /// Takes a mesh and the surfaces that its triangles name. A mesh that crosses itself is taken for all that it winds
+    /// around, with a warning.
     ///
     /// # Errors
     /// [`SolidError`] if the mesh bounds no solid.
-    pub fn new(mut mesh: Mesh, mut surfaces: Vec<Option<Arc<dyn Surface>>>) -> Result<ExactSolid, SolidError> {
+    pub fn new(mesh: Mesh, surfaces: Vec<Option<Arc<dyn Surface>>>) -> Result<ExactSolid, SolidError> {
+        ExactSolid::new_at(mesh, surfaces, &DAffine3::IDENTITY)
+    }
+
+    /// The same, moved to another place first.
+    ///
+    /// # Errors
+    /// [`SolidError`] if the mesh bounds no solid there.
+    pub fn new_at(
+        mut mesh: Mesh,
+        mut surfaces: Vec<Option<Arc<dyn Surface>>>,
+        placement: &DAffine3,
+    ) -> Result<ExactSolid, SolidError> {
         let count = mesh.triangles.len();
         if mesh.corner_normals.is_empty() {
             let flat = |triangle| [mesh.face_normal(triangle).unwrap_or(DVec3::ZERO); 3];
@@ -37,7 +50,14 @@ impl ExactSolid {
         }
         let named = mesh.surfaces.iter().max().map_or(0, |last| *last as usize + 1);
         surfaces.resize(surfaces.len().max(named), None);
-        Ok(ExactSolid { solid: Solid::new(mesh)?, surfaces })
+        if *placement != DAffine3::IDENTITY {
+            (mesh, surfaces) = moved(&mesh, &surfaces, placement);
+        }
+        let (solid, crossing) = Solid::resolved(mesh)?;
+        if let Some(crossing) = crossing {
+            tracing::warn!("{crossing}; taken for all that it winds around");
+        }
+        Ok(ExactSolid { solid, surfaces })
     }
 
     /// The solid.
@@ -63,19 +83,8 @@ impl ExactSolid {
         if *placement == DAffine3::IDENTITY {
             return Ok(self);
         }
-        let mut mesh = self.solid.mesh().transformed(placement);
-        if placement.matrix3.determinant() < 0.0 {
-            // A mirrored surface is run through with u reversed.
-            for (corners, surface) in mesh.corner_parameters.iter_mut().zip(&mesh.surfaces) {
-                let Some(surface) = &self.surfaces[*surface as usize] else { continue };
-                let [low, high] = surface.domain();
-                corners.iter_mut().for_each(|uv| uv.x = low.x + (high.x - uv.x));
-            }
-        }
-        let moved = |surface: &Option<Arc<dyn Surface>>| {
-            surface.clone().map(|surface| Arc::new(Placed::new(surface, *placement)) as Arc<dyn Surface>)
-        };
-        ExactSolid::new(mesh, self.surfaces.iter().map(moved).collect())
+        let (mesh, surfaces) = self.into_parts();
+        ExactSolid::new_at(mesh, surfaces, placement)
     }
 
     /// Evaluates an expression over some solids at once, as [`Solid::evaluate`] does. The surfaces of the result are those
@@ -127,6 +136,27 @@ impl ExactSolid {
             (if normal.dot(mean) < 0.0 { normal * -side } else { normal * side }, uv)
         })
     }
+}
+
+/// A mesh with all tables, and its surfaces, in another place.
+fn moved(
+    mesh: &Mesh,
+    surfaces: &[Option<Arc<dyn Surface>>],
+    placement: &DAffine3,
+) -> (Mesh, Vec<Option<Arc<dyn Surface>>>) {
+    let mut mesh = mesh.transformed(placement);
+    if placement.matrix3.determinant() < 0.0 {
+        // A mirrored surface is run through with u reversed.
+        for (corners, surface) in mesh.corner_parameters.iter_mut().zip(&mesh.surfaces) {
+            let Some(surface) = &surfaces[*surface as usize] else { continue };
+            let [low, high] = surface.domain();
+            corners.iter_mut().for_each(|uv| uv.x = low.x + (high.x - uv.x));
+        }
+    }
+    let moved = |surface: &Option<Arc<dyn Surface>>| {
+        surface.clone().map(|surface| Arc::new(Placed::new(surface, *placement)) as Arc<dyn Surface>)
+    };
+    (mesh, surfaces.iter().map(moved).collect())
 }
 
 /// Weights of the corners of a triangle that give a point of it, each 0..=1.

@@ -49,8 +49,8 @@ fn list(edges: &[[DVec3; 2]]) -> String {
     edges.iter().map(|[a, b]| format!("{a} to {b}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Checks and cleans a mesh.
-pub fn solid(mesh: Mesh) -> Result<Mesh, SolidError> {
+/// Checks and cleans a mesh. Where its surface crosses itself, that of what it bounds is given, and the error.
+pub fn imported(mesh: Mesh) -> Result<(Mesh, Option<SolidError>), SolidError> {
     mesh.validate()?;
     let mut mesh = without_collapsed(mesh);
     let sheets = check_edges(&mesh)?;
@@ -61,13 +61,11 @@ pub fn solid(mesh: Mesh) -> Result<Mesh, SolidError> {
     }
     let overlaps = overlaps(&mesh);
     if overlaps == 0 && sheets == 1 {
-        return Ok(mesh);
+        return Ok((mesh, None));
     }
     let Resolution { outcome, is_same, odd } = resolve(&mesh);
-    match odd {
-        Some((winding, near)) => Err(SolidError::Crossing { winding, near, overlaps }),
-        None => Ok(if is_same { mesh } else { outcome.mesh }),
-    }
+    let crossing = odd.map(|(winding, near)| SolidError::Crossing { winding, near, overlaps });
+    Ok((if is_same { mesh } else { outcome.mesh }, crossing))
 }
 
 /// Puts right what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.
@@ -136,7 +134,7 @@ pub fn check_edges(mesh: &Mesh) -> Result<usize, SolidError> {
             }
         }
     }
-    let sheets = (0..mesh.triangles.len() as u32).filter(|&t| sheets.root(t) == t).count();
+    let sheets = (0..mesh.triangles.len() as u32).filter(|&t| sheets.find(t) == t).count();
     if count == 0 { Ok(sheets) } else { Err(SolidError::NotClosed { count, edges }) }
 }
 

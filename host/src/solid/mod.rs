@@ -41,7 +41,17 @@ impl Solid {
     /// [`SolidError`], which names the places, if the mesh is not closed, is not consistently oriented, faces inwards, or
     /// crosses itself.
     pub fn new(mesh: Mesh) -> Result<Solid, SolidError> {
-        import::solid(mesh).map(|mesh| Solid { mesh })
+        let (mesh, crossing) = import::imported(mesh)?;
+        crossing.map_or(Ok(Solid { mesh }), Err)
+    }
+
+    /// Takes a mesh whose surface may cross itself: the solid is all that it winds around more than not at all. Gives the
+    /// error too that [`Solid::new`] would have given.
+    ///
+    /// # Errors
+    /// [`SolidError`] as for [`Solid::new`], but for crossings.
+    pub fn resolved(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
+        import::imported(mesh).map(|(mesh, crossing)| (Solid { mesh }, crossing))
     }
 
     /// Its surface.

@@ -1,6 +1,5 @@
 //! Solids from meshes that are none.
 
-use super::boolean::resolve;
 use super::import::{check_edges, without_collapsed};
 use super::{Solid, SolidError};
 use crate::mesh::Mesh;
@@ -45,13 +44,9 @@ impl Solid {
             repair.turned += mesh.triangles.len();
             mesh = mesh.reversed();
         }
-        match Solid::new(mesh.clone()) {
-            Err(SolidError::Crossing { .. }) => {
-                repair.is_resolved = true;
-                Ok((Solid { mesh: resolve(&mesh).outcome.mesh }, repair))
-            }
-            result => Ok((result?, repair)),
-        }
+        let (solid, crossing) = Solid::resolved(mesh)?;
+        repair.is_resolved = crossing.is_some();
+        Ok((solid, repair))
     }
 }
 

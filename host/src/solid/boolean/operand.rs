@@ -104,9 +104,8 @@ impl<'a> Operands<'a> {
     pub fn overlaps(&self, operand: u32) -> Vec<[u32; 2]> {
         let mesh = self.meshes[operand as usize];
         let corners = |t: u32| mesh.corners(t as usize);
-        let pairs = self.sorted(operand).pairs(corners, self.sorted(operand), corners);
+        let pairs = self.sorted(operand).pairs_within(corners, |a, b| overlap(corners(a), corners(b)));
         let first = self.first_triangle(operand);
-        let is_overlap = |[a, b]: &&[u32; 2]| a < b && overlap(corners(*a), corners(*b));
-        pairs.par_iter().with_min_len(1024).filter(is_overlap).map(|pair| pair.map(|t| t + first)).collect()
+        pairs.into_iter().map(|pair| pair.map(|t| t + first)).collect()
     }
 }

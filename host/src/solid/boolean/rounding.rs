@@ -14,8 +14,7 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_kept: impl F
     let made = &result.triangles[first..];
     let sorted = Sorted::new(&result.vertices, made);
     let corners = |triangle: u32| result.corners(first + triangle as usize);
-    let pairs = sorted.pairs(corners, &sorted, corners);
-    if pairs.par_iter().with_min_len(1024).any(|&[a, b]| a < b && overlap(corners(a), corners(b))) {
+    if !sorted.pairs_within(corners, |a, b| overlap(corners(a), corners(b))).is_empty() {
         return true;
     }
     (0..operands.meshes().len() as u32).any(|operand| {
