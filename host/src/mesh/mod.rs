@@ -52,7 +52,8 @@ impl Mesh {
     /// # Panics
     /// If the triangle or one of its vertices does not exist; [`Mesh::validate`] excludes the latter.
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|vertex| self.vertices[vertex as usize])
+        let [a, b, c] = self.triangles[triangle];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 }
 

@@ -27,6 +27,26 @@ pub enum Definition {
     Middle(Box<[Definition; 3]>),
 }
 
+impl Definition {
+    /// Where two lines of one plane cross; they must not be parallel.
+    pub fn crossing(one: [DVec3; 2], two: [DVec3; 2]) -> Definition {
+        // A plane through the second along an axis: one along which the lines are seen to cross, the more squarely the better.
+        let [p, q] = two;
+        let (d, e) = (one[1] - one[0], q - p);
+        let normal = (d / d.abs().max_element()).cross(e / e.abs().max_element()).abs();
+        let mut axis = (0..3).max_by(|&i, &j| normal[i].total_cmp(&normal[j])).unwrap_or(0);
+        if normal[axis] < 1e-14 {
+            // That may be all roundings.
+            let normal = cross(&step::<Exact>(one[1], one[0]), &step(q, p));
+            let slopes = normal.map(|slope| slope.over(&Exact::from(1.0)).abs());
+            axis = (0..3).max_by(|&i, &j| slopes[i].total_cmp(&slopes[j])).unwrap_or(0);
+        }
+        let mut third = p;
+        third[axis] += p.abs().max_element().max(e.abs().max_element());
+        Definition::LineAndPlane(one, [p, q, third])
+    }
+}
+
 /// A point with its rounded place.
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -57,7 +77,8 @@ impl Point {
                 let [a, b, c] = points.each_ref().map(|point| Point::new(point.clone()));
                 let near = (a.near + b.near + c.near) / 3.0;
                 let size = a.near.abs().max(b.near.abs()).max(c.near.abs());
-                (near, a.errors.max(b.errors).max(c.errors) + size * (4.0 * f64::EPSILON))
+                let errors = a.errors.max(b.errors).max(c.errors) + size * (4.0 * f64::EPSILON);
+                return Point::known(definition, near, errors);
             }
         };
         if errors == DVec3::ZERO {
@@ -80,6 +101,11 @@ impl Point {
     /// The nearest place with floating-point coordinates, within a few roundings.
     pub fn near(&self) -> DVec3 {
         self.near
+    }
+
+    /// Whether that is where it is, without an error.
+    pub fn is_exact(&self) -> bool {
+        self.errors == DVec3::ZERO
     }
 
     /// What defines it.
@@ -321,6 +347,26 @@ mod tests {
         assert_eq!(above.near(), DVec3::ONE);
         assert_eq!(side_of([DVec3::ZERO, DVec3::X, DVec3::Y], &above), -1.0);
         assert_eq!(side_of([DVec3::ONE, DVec3::new(2.0, 1.0, 1.0), DVec3::new(1.0, 2.0, 1.0)], &above), 0.0);
+    }
+
+    #[test]
+    fn lines_that_are_almost_parallel_cross_where_they_do() {
+        let one = [
+            DVec3::new(-1.0, -1.2325951644078307e-32, -5.551115123125784e-17),
+            DVec3::new(-1.0, -2.4651903288156648e-33, -9.992007221626407e-17),
+        ];
+        let two = [
+            DVec3::new(-1.0, -2.4651903288156627e-33, -9.992007221626408e-17),
+            DVec3::new(-1.0, -1.2325951644078312e-32, -5.5511151231257815e-17),
+        ];
+        let point = Point::new(Definition::crossing(one, two));
+        assert!(point.near().is_finite() && point.near().x == -1.0 && point.homogeneous()[3].sign() > 0.0);
+        for [a, b] in [one, two] {
+            let [a, b] = [a, b].map(|p| Point::new(Definition::Given(p)));
+            assert_eq!([turn(0, &a, &b, &point), turn(1, &a, &b, &point)], [0.0; 2]);
+        }
+        let far = Point::new(Definition::crossing([DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)], [DVec3::X, DVec3::Y]));
+        assert_eq!(far.near(), DVec3::new(0.5, 0.5, 0.0));
     }
 
     #[test]

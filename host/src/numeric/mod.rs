@@ -3,6 +3,7 @@
 pub mod bounds;
 pub mod exact;
 pub mod implicit;
+pub mod plane;
 pub mod predicates;
 pub mod ray;
 pub mod sampling;

@@ -1,7 +1,7 @@
 //! Triangles in the order of their locational codes, with boxes around runs of them: what is near what.
 //!
 //! Each triangle is filed once, under the code of the voxel that holds the middle of its box. Neighbours in that order
-//! are neighbours in space, so that boxes around runs of eight, around eight such runs, and so on are small. Building
+//! are neighbours in space, so that boxes around runs of a few, around eight such runs, and so on are small. Building
 //! takes one sort; nothing is divided. It serves questions that meet each triangle seldom: which pairs of triangles of two
 //! meshes may touch, and which triangles lie beside an axis-parallel ray.
 
@@ -10,6 +10,7 @@ use super::{LocationalCode, MAX_DEPTH};
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::cmp::Ordering;
 
 /// Triangles in the smallest runs.
 const RUN: usize = 4;
@@ -25,6 +26,8 @@ const TASKS: usize = 64;
 pub struct Sorted {
     /// Triangles in order.
     order: Vec<u32>,
+    /// Their boxes, in that order.
+    boxes: Vec<Bounds>,
     /// Boxes: around runs of triangles first, around all of them last.
     levels: Vec<Vec<Bounds>>,
 }
@@ -44,7 +47,10 @@ impl Sorted {
         if triangles.is_empty() {
             return Sorted::default();
         }
-        let bounds = |triangle: &[u32; 3]| Bounds::of(triangle.map(|corner| vertices[corner as usize]));
+        let bounds = |&[a, b, c]: &[u32; 3]| {
+            let [a, b, c] = [vertices[a as usize], vertices[b as usize], vertices[c as usize]];
+            Bounds { min: a.min(b).min(c), max: a.max(b).max(c) }
+        };
         let all = Bounds::of(vertices.iter().copied());
         let cube = Cube::around(all.min, all.max);
         let keys: Vec<u64> = triangles
@@ -57,14 +63,13 @@ impl Sorted {
             })
             .collect();
         let order: Vec<u32> = radix_sorted(keys).into_iter().map(|key| key as u32).collect();
+        let boxes: Vec<Bounds> = order.par_iter().with_min_len(4096).map(|&t| bounds(&triangles[t as usize])).collect();
         let union = |boxes: &[Bounds]| boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(*b));
-        let runs = order.par_chunks(RUN).with_min_len(1024);
-        let of_run = |run: &[u32]| run.iter().fold(Bounds::EMPTY, |all, &t| all.union(bounds(&triangles[t as usize])));
-        let mut levels = vec![runs.map(of_run).collect::<Vec<_>>()];
+        let mut levels: Vec<Vec<Bounds>> = vec![boxes.par_chunks(RUN).with_min_len(1024).map(union).collect()];
         while let Some(boxes) = levels.last().filter(|boxes| boxes.len() > 1) {
             levels.push(boxes.chunks(FAN).map(union).collect());
         }
-        Sorted { order, levels }
+        Sorted { order, boxes, levels }
     }
 
     /// The box around all triangles; empty without any.
@@ -73,87 +78,33 @@ impl Sorted {
     }
 
     /// Pairs of triangles, one of this set and one of another, whose boxes have a point in common, in a fixed order.
-    ///
-    /// - `corners`, `other_corners`: the corners of the triangles of the two sets.
-    pub fn pairs(
-        &self,
-        corners: impl Fn(u32) -> [DVec3; 3] + Sync,
-        other: &Sorted,
-        other_corners: impl Fn(u32) -> [DVec3; 3] + Sync,
-    ) -> Vec<[u32; 2]> {
+    pub fn pairs(&self, other: &Sorted) -> Vec<[u32; 2]> {
         let (Some(one), Some(two)) = (self.top(), other.top()) else { return Vec::new() };
-        let (corners, other_corners) = (&corners, &other_corners);
-        // Breadth first, until there is work for many threads.
-        let mut tasks = vec![(one, two)];
-        while !tasks.is_empty() && tasks.len() < TASKS && tasks.iter().any(|(one, two)| one.level + two.level > 0) {
-            let mut next = Vec::new();
-            tasks.into_iter().for_each(|task| self.descend(other, task, &mut next));
-            tasks = next;
-        }
-        let search = |task: (Place, Place)| {
-            let mut pairs = Vec::new();
-            let mut stack = vec![task];
-            while let Some((one, two)) = stack.pop() {
-                if one.level + two.level > 0 {
-                    self.descend(other, (one, two), &mut stack);
-                    continue;
-                }
-                let near = other.at(two);
-                for &a in self.run(one.index) {
-                    let a_box = Bounds::of(corners(a));
-                    if !a_box.touches(near) {
-                        continue;
-                    }
-                    for &b in other.run(two.index) {
-                        if a_box.touches(Bounds::of(other_corners(b))) {
-                            pairs.push([a, b]);
-                        }
-                    }
-                }
+        let descend = |task: (Place, Place), found: &mut Vec<(Place, Place)>| self.descend(other, task, found);
+        let search = |(one, two): (Place, Place), pairs: &mut Vec<[u32; 2]>| {
+            let near = other.at(two);
+            for i in self.run(one).filter(|&i| self.boxes[i].touches(near)) {
+                let touching = other.run(two).filter(|&j| self.boxes[i].touches(other.boxes[j]));
+                pairs.extend(touching.map(|j| [self.order[i], other.order[j]]));
             }
-            pairs
         };
-        let found: Vec<Vec<[u32; 2]>> = tasks.into_par_iter().map(search).collect();
-        found.concat()
+        searched((one, two), descend, search)
     }
 
     /// Pairs of triangles of this set, the lower first, whose boxes have a point in common and that `keep` accepts, in a
     /// fixed order.
-    ///
-    /// - `corners`: the corners of the triangles.
-    pub fn pairs_within(
-        &self,
-        corners: impl Fn(u32) -> [DVec3; 3] + Sync,
-        keep: impl Fn(u32, u32) -> bool + Sync,
-    ) -> Vec<[u32; 2]> {
+    pub fn pairs_within(&self, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let Some(top) = self.top() else { return Vec::new() };
-        let boxes: Vec<Bounds> = self.order.par_iter().with_min_len(4096).map(|&t| Bounds::of(corners(t))).collect();
-        let mut tasks = vec![(top, top)];
-        while !tasks.is_empty() && tasks.len() < TASKS && tasks[0].0.level > 0 {
-            let mut next = Vec::new();
-            tasks.into_iter().for_each(|task| self.descend_both(task, &mut next));
-            tasks = next;
-        }
-        let search = |task: (Place, Place)| {
-            let mut pairs = Vec::new();
-            let mut stack = vec![task];
-            while let Some((one, two)) = stack.pop() {
-                if one.level > 0 {
-                    self.descend_both((one, two), &mut stack);
-                    continue;
-                }
-                let near = self.at(two);
-                let places = |run: usize| run * RUN..self.order.len().min((run + 1) * RUN);
-                for i in places(one.index).filter(|&i| boxes[i].touches(near)) {
-                    let later = places(two.index).filter(|&j| j > i && boxes[i].touches(boxes[j]));
-                    let pair = later.map(|j| [self.order[i].min(self.order[j]), self.order[i].max(self.order[j])]);
-                    pairs.extend(pair.filter(|&[a, b]| keep(a, b)));
-                }
+        let descend = |task: (Place, Place), found: &mut Vec<(Place, Place)>| self.descend_both(task, found);
+        let search = |(one, two): (Place, Place), pairs: &mut Vec<[u32; 2]>| {
+            let near = self.at(two);
+            for i in self.run(one).filter(|&i| self.boxes[i].touches(near)) {
+                let later = self.run(two).filter(|&j| j > i && self.boxes[i].touches(self.boxes[j]));
+                let pair = later.map(|j| [self.order[i].min(self.order[j]), self.order[i].max(self.order[j])]);
+                pairs.extend(pair.filter(|&[a, b]| keep(a, b)));
             }
-            pairs
         };
-        let found: Vec<Vec<[u32; 2]>> = tasks.into_par_iter().map(search).collect();
-        found.concat()
+        searched((top, top), descend, search)
     }
 
     /// Adds the pairs under two boxes of one level, the second not before the first, that touch.
@@ -164,7 +115,7 @@ impl Sorted {
         }
     }
 
-    /// Calls for every triangle whose run has a box that touches another.
+    /// Calls for every triangle whose box touches another.
     pub fn touching(&self, near: Bounds, mut visit: impl FnMut(u32)) {
         let mut stack: Vec<Place> = self.top().into_iter().collect();
         while let Some(place) = stack.pop() {
@@ -172,7 +123,7 @@ impl Sorted {
                 continue;
             }
             if place.level == 0 {
-                self.run(place.index).iter().for_each(|&triangle| visit(triangle));
+                self.run(place).filter(|&i| self.boxes[i].touches(near)).for_each(|i| visit(self.order[i]));
             } else {
                 stack.extend(self.under(place));
             }
@@ -190,7 +141,7 @@ impl Sorted {
                 continue;
             }
             if place.level == 0 {
-                self.run(place.index).iter().for_each(|&triangle| limit = visit(triangle));
+                self.run(place).for_each(|i| limit = visit(self.order[i]));
                 continue;
             }
             let first = stack.len();
@@ -207,8 +158,9 @@ impl Sorted {
         self.levels[place.level][place.index]
     }
 
-    fn run(&self, index: usize) -> &[u32] {
-        &self.order[index * RUN..self.order.len().min((index + 1) * RUN)]
+    /// Places in the order of the triangles of a run.
+    fn run(&self, place: Place) -> std::ops::Range<usize> {
+        place.index * RUN..self.order.len().min((place.index + 1) * RUN)
     }
 
     fn under(&self, place: Place) -> impl Iterator<Item = Place> {
@@ -217,18 +169,54 @@ impl Sorted {
         (first..self.levels[level].len().min(first + FAN)).map(move |index| Place { level, index })
     }
 
-    /// Adds the pairs under a pair of boxes, the larger of which is opened, that touch; the pair itself at the bottom.
+    /// Adds the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch.
     fn descend(&self, other: &Sorted, (one, two): (Place, Place), found: &mut Vec<(Place, Place)>) {
         let (a, b) = (self.at(one), other.at(two));
-        let is_first_larger = a.size().max_element() >= b.size().max_element();
-        if one.level + two.level == 0 {
-            found.push((one, two));
-        } else if two.level == 0 || one.level > 0 && is_first_larger {
-            found.extend(self.under(one).filter(|&one| self.at(one).touches(b)).map(|one| (one, two)));
-        } else {
-            found.extend(other.under(two).filter(|&two| other.at(two).touches(a)).map(|two| (one, two)));
+        match one.level.cmp(&two.level) {
+            Ordering::Greater => {
+                found.extend(self.under(one).filter(|&one| self.at(one).touches(b)).map(|one| (one, two)));
+            }
+            Ordering::Less => {
+                found.extend(other.under(two).filter(|&two| other.at(two).touches(a)).map(|two| (one, two)));
+            }
+            Ordering::Equal => {
+                for one in self.under(one).filter(|&one| self.at(one).touches(b)) {
+                    let a = self.at(one);
+                    found.extend(other.under(two).filter(|&two| other.at(two).touches(a)).map(|two| (one, two)));
+                }
+            }
         }
     }
+}
+
+/// Searches from a pair of boxes on, in a fixed order.
+///
+/// - `descend`: adds the pairs under a pair.
+/// - `search`: adds what is found in a pair of runs.
+fn searched(
+    top: (Place, Place),
+    descend: impl Fn((Place, Place), &mut Vec<(Place, Place)>) + Sync,
+    search: impl Fn((Place, Place), &mut Vec<[u32; 2]>) + Sync,
+) -> Vec<[u32; 2]> {
+    let is_open = |(one, two): &(Place, Place)| one.level + two.level > 0;
+    // Breadth first, until there is work for many threads.
+    let mut tasks = vec![top];
+    while !tasks.is_empty() && tasks.len() < TASKS && tasks.iter().any(is_open) {
+        let mut next = Vec::new();
+        tasks.into_iter().for_each(|task| if is_open(&task) { descend(task, &mut next) } else { next.push(task) });
+        tasks = next;
+    }
+    let below = |task: (Place, Place)| {
+        let mut pairs = Vec::new();
+        let mut stack = Vec::with_capacity(256);
+        stack.push(task);
+        while let Some(task) = stack.pop() {
+            if is_open(&task) { descend(task, &mut stack) } else { search(task, &mut pairs) }
+        }
+        pairs
+    };
+    let found: Vec<Vec<[u32; 2]>> = tasks.into_par_iter().map(below).collect();
+    found.concat()
 }
 
 /// Keys sorted by their upper halves, by three passes over digits of 10 bits; the lower halves are in order already.
@@ -275,7 +263,7 @@ mod tests {
             let (a, b) = (soup(one, size, 1), soup(two, size, 2));
             let corners = |soup: &(Vec<DVec3>, Vec<[u32; 3]>), t: u32| soup.1[t as usize].map(|v| soup.0[v as usize]);
             let (first, second) = (Sorted::new(&a.0, &a.1), Sorted::new(&b.0, &b.1));
-            let mut found = first.pairs(|t| corners(&a, t), &second, |t| corners(&b, t));
+            let mut found = first.pairs(&second);
             found.sort_unstable();
             let touch = |i, j| Bounds::of(corners(&a, i)).touches(Bounds::of(corners(&b, j)));
             let all = (0..one).flat_map(|i| (0..two).map(move |j| [i, j])).filter(|&[i, j]| touch(i, j));
@@ -288,7 +276,7 @@ mod tests {
         for (count, size) in [(1, 3.0), (7, 1.0), (300, 0.3), (900, 0.05), (200, 0.0)] {
             let set = soup(count, size, 5);
             let corners = |t: u32| set.1[t as usize].map(|v| set.0[v as usize]);
-            let mut found = Sorted::new(&set.0, &set.1).pairs_within(corners, |a, b| (a + b) % 3 != 0);
+            let mut found = Sorted::new(&set.0, &set.1).pairs_within(|a, b| (a + b) % 3 != 0);
             found.sort_unstable();
             let touch = |a, b| Bounds::of(corners(a)).touches(Bounds::of(corners(b))) && (a + b) % 3 != 0;
             let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).filter(|&[a, b]| touch(a, b));
@@ -304,7 +292,6 @@ mod tests {
         let mut found = Vec::new();
         sorted.touching(near, |t| found.push(t));
         let touches = |t: &u32| Bounds::of(triangles[*t as usize].map(|v| vertices[v as usize])).touches(near);
-        found.retain(|t| touches(t));
         found.sort_unstable();
         assert_eq!(found, (0..1000).filter(touches).collect::<Vec<u32>>());
         assert!(found.len() > 5 && sorted.bounds() == Bounds::of(vertices));

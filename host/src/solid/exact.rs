@@ -111,7 +111,7 @@ impl ExactSolid {
             firsts[operand as usize] + operands[operand as usize].solid.mesh().surfaces[source as usize]
         };
         mesh.surfaces = outcome.sources.iter().map(number).collect();
-        (ExactSolid { solid: Solid { mesh }, surfaces }, outcome)
+        (ExactSolid { solid: Solid::of(mesh), surfaces }, outcome)
     }
 
     /// Normals and parameters at the corners of a triangle of a result that is a part of triangle `source` of this solid.

@@ -1,5 +1,6 @@
 //! From meshes to solids: what must hold is checked, what does no harm is put right.
 
+use super::Solid;
 use super::boolean::{Resolution, UnionFind, overlaps, resolve};
 use crate::mesh::{Fault, Mesh};
 use crate::numeric::implicit::projection;
@@ -50,7 +51,7 @@ fn list(edges: &[[DVec3; 2]]) -> String {
 }
 
 /// Checks and cleans a mesh. Where its surface crosses itself, that of what it bounds is given, and the error.
-pub fn imported(mesh: Mesh) -> Result<(Mesh, Option<SolidError>), SolidError> {
+pub fn imported(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
     mesh.validate()?;
     let mut mesh = without_collapsed(mesh);
     let sheets = check_edges(&mesh)?;
@@ -59,13 +60,14 @@ pub fn imported(mesh: Mesh) -> Result<(Mesh, Option<SolidError>), SolidError> {
     if volume < 0.0 {
         return Err(SolidError::InsideOut { volume });
     }
-    let overlaps = overlaps(&mesh);
+    let solid = Solid::of(mesh);
+    let overlaps = overlaps(solid.mesh(), solid.sorted()).len();
     if overlaps == 0 && sheets == 1 {
-        return Ok((mesh, None));
+        return Ok((solid, None));
     }
-    let Resolution { outcome, is_same, odd } = resolve(&mesh);
+    let Resolution { outcome, is_same, odd } = resolve(solid.mesh());
     let crossing = odd.map(|(winding, near)| SolidError::Crossing { winding, near, overlaps });
-    Ok((if is_same { mesh } else { outcome.mesh }, crossing))
+    Ok((if is_same { solid } else { Solid::of(outcome.mesh) }, crossing))
 }
 
 /// Puts right what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.

@@ -19,6 +19,9 @@ pub use primitive::{Primitive, PrimitiveError};
 pub use repair::Repair;
 
 use crate::mesh::Mesh;
+use crate::octree::Sorted;
+use rayon::prelude::*;
+use std::sync::{Arc, OnceLock};
 
 /// What a closed surface bounds.
 ///
@@ -29,20 +32,33 @@ use crate::mesh::Mesh;
 /// Results have rounded points. Where surfaces lie within a few roundings of each other, that could make a result cross
 /// itself; it is then made simple again, for which points move by a few roundings more. An expression that is given to
 /// [`Solid::evaluate`] as a whole is rounded only once.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Solid {
     mesh: Mesh,
+    /// Its triangles by place, once someone asked for them.
+    sorted: OnceLock<Arc<Sorted>>,
+}
+
+impl PartialEq for Solid {
+    fn eq(&self, other: &Solid) -> bool {
+        self.mesh == other.mesh
+    }
 }
 
 impl Solid {
+    /// A mesh that is known to be what a solid has.
+    fn of(mesh: Mesh) -> Solid {
+        Solid { mesh, sorted: OnceLock::new() }
+    }
+
     /// Takes a mesh; vertices at the same place become one, and triangles without an area are dissolved.
     ///
     /// # Errors
     /// [`SolidError`], which names the places, if the mesh is not closed, is not consistently oriented, faces inwards, or
     /// crosses itself.
     pub fn new(mesh: Mesh) -> Result<Solid, SolidError> {
-        let (mesh, crossing) = import::imported(mesh)?;
-        crossing.map_or(Ok(Solid { mesh }), Err)
+        let (solid, crossing) = Solid::resolved(mesh)?;
+        crossing.map_or(Ok(solid), Err)
     }
 
     /// Takes a mesh whose surface may cross itself: the solid is all that it winds around more than not at all. Gives the
@@ -51,7 +67,7 @@ impl Solid {
     /// # Errors
     /// [`SolidError`] as for [`Solid::new`], but for crossings.
     pub fn resolved(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
-        import::imported(mesh).map(|(mesh, crossing)| (Solid { mesh }, crossing))
+        import::imported(mesh)
     }
 
     /// Its surface.
@@ -64,11 +80,17 @@ impl Solid {
         self.mesh
     }
 
+    /// Its triangles by place.
+    pub fn sorted(&self) -> &Sorted {
+        self.sorted.get_or_init(|| Arc::new(Sorted::new(&self.mesh.vertices, &self.mesh.triangles)))
+    }
+
     /// Evaluates an expression over some solids at once. The result may be empty.
     pub fn evaluate(operands: &[&Solid], expression: &Expression) -> (Solid, Outcome) {
-        let mut outcome = boolean::evaluate(operands.iter().map(|solid| &solid.mesh).collect(), expression);
+        let mut outcome =
+            boolean::evaluate(operands.par_iter().map(|solid| (&solid.mesh, solid.sorted())).collect(), expression);
         let mesh = std::mem::take(&mut outcome.mesh);
-        (Solid { mesh }, outcome)
+        (Solid::of(mesh), outcome)
     }
 
     /// What is in either.

@@ -1,9 +1,10 @@
 //! Boolean operations against closed forms and set identities.
 
-use super::boolean::{Expression, Outcome, evaluate, resolve};
+use super::boolean::{self, Expression, Outcome, resolve};
 use super::{Solid, SolidError};
 use crate::mesh::{Mesh, bunny};
 use crate::numeric::exact::{Exact, cross, dot};
+use crate::octree::Sorted;
 use crate::surface::{Sphere, Tolerance, box_faces, tessellate};
 use glam::{DAffine3, DVec3};
 use rand::{RngExt, SeedableRng};
@@ -32,6 +33,11 @@ fn balanced(mesh: &Mesh) -> bool {
         }
     }
     edges.values().all(|n| *n == 0)
+}
+
+fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
+    let sorted: Vec<Sorted> = meshes.iter().map(|mesh| Sorted::new(&mesh.vertices, &mesh.triangles)).collect();
+    boolean::evaluate(meshes.into_iter().zip(&sorted).collect(), expression)
 }
 
 fn all(one: &Mesh, two: &Mesh) -> [Outcome; 4] {

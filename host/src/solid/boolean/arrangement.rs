@@ -8,7 +8,7 @@ use super::contact::{Common, Contact, Edge, Face, Feature, Key, crossing};
 use super::operand::Operands;
 use super::relevance::relevant;
 use super::union_find::UnionFind;
-use crate::numeric::implicit::{Definition, Point, coincide, compare, projection, turn};
+use crate::numeric::implicit::{Definition, Point, coincide, compare, turn};
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -240,16 +240,7 @@ impl Arrangement {
             Key::Vertex(vertex) => Definition::Given(self.place[&vertex]),
             Key::Pierced(edge, face) => Definition::LineAndPlane(self.ends(edge), plane(face)),
             Key::Faces(faces) => Definition::Planes(faces.map(plane)),
-            Key::Edges(one, two) => {
-                // A plane through the second edge, along the axis that is steepest on both.
-                let ([a, b], [p, q]) = (self.ends(one), self.ends(two));
-                let (d, e) = ((b - a), (q - p));
-                let normal = (d / d.abs().max_element()).cross(e / e.abs().max_element()).abs();
-                let axis = (0..3).max_by(|&i, &j| normal[i].total_cmp(&normal[j])).unwrap_or(0);
-                let mut third = p;
-                third[axis] += p.abs().max_element().max(e.abs().max_element());
-                Definition::LineAndPlane([a, b], [p, q, third])
-            }
+            Key::Edges(one, two) => Definition::crossing(self.ends(one), self.ends(two)),
         }
     }
 
@@ -402,25 +393,35 @@ impl Arrangement {
         for point in inner {
             let at = self.points[point as usize].bounds();
             for (segment, near) in segments.iter().zip(&boxes) {
-                if at.touches(*near) && !segment.ends.contains(&point) && self.is_on(axis, point, segment) {
-                    self.add(segment.carrier, point);
+                if at.touches(*near) && !segment.ends.contains(&point) {
+                    self.put_on(axis, point, segment);
                 }
             }
         }
     }
 
-    /// Whether a point lies inside a segment of the same plane.
-    fn is_on(&self, axis: usize, point: u32, segment: &Segment) -> bool {
+    /// Adds a point to the carrier of a segment of the same plane, if it lies inside the segment.
+    fn put_on(&mut self, axis: usize, point: u32, segment: &Segment) {
+        let [from, to, same] = [segment.ends[0], segment.ends[1], point].map(|p| self.same.root(p));
+        if same == from || same == to {
+            return;
+        }
         let [p, q, x] = [segment.ends[0], segment.ends[1], point].map(|p| &self.points[p as usize]);
-        turn(axis, p, q, x) == 0.0 && along(p, x) == along(x, q) && along(p, x) != Ordering::Equal
+        if turn(axis, p, q, x) != 0.0 {
+            return;
+        }
+        match [along(p, x), along(x, q)] {
+            [Ordering::Equal, _] => self.join([segment.ends[0], point]),
+            [_, Ordering::Equal] => self.join([segment.ends[1], point]),
+            [one, two] if one == two => self.add(segment.carrier, point),
+            _ => {}
+        }
     }
 
     fn cross_segments(&mut self, face: u32, one: &Segment, two: &Segment) {
         let axis = self.faces[face as usize].axis;
         for (point, segment) in [one, two].into_iter().zip([two, one]).flat_map(|(a, b)| a.ends.map(|end| (end, b))) {
-            if self.is_on(axis, point, segment) {
-                self.add(segment.carrier, point);
-            }
+            self.put_on(axis, point, segment);
         }
         let [p, q] = one.ends.map(|p| &self.points[p as usize]);
         let [a, b] = two.ends.map(|p| &self.points[p as usize]);
@@ -470,10 +471,18 @@ impl Arrangement {
         pairs.into_iter().flatten().for_each(|pair| self.unite(pair));
     }
 
-    /// Makes one of two points that are.
+    /// Makes one of two points if they coincide.
     fn unite(&mut self, pair: [u32; 2]) {
         let [a, b] = pair.map(|p| self.same.root(p));
         if a != b && coincide(&self.points[pair[0] as usize], &self.points[pair[1] as usize]) {
+            self.join(pair);
+        }
+    }
+
+    /// Makes one of two points that coincide.
+    fn join(&mut self, pair: [u32; 2]) {
+        let [a, b] = pair.map(|p| self.same.root(p));
+        if a != b {
             self.same.join(a, b);
             let [root, other] = [a.min(b) as usize, a.max(b) as usize];
             self.vertices[root] = self.vertices[root].or(self.vertices[other]);
@@ -544,21 +553,21 @@ impl Faces {
             if self.of_triangle[triangle as usize] != NONE {
                 continue;
             }
-            let (mut vertices, corners) = operands.corners(triangle);
-            let Some((axis, turn)) = projection(corners) else { continue };
+            let (vertices, corners) = operands.corners(triangle);
+            let id = self.faces.len() as u32;
+            let Some(mut face) = Face::new(id, vertices, corners) else { continue };
             if named {
                 for k in 0..3 {
                     let name = *self.first_at.entry(crate::mesh::bits(corners[k])).or_insert(vertices[k]);
                     if name != vertices[k] {
                         self.ambiguous.insert(name);
-                        vertices[k] = name;
+                        face.vertices[k] = name;
                     }
                     self.place.insert(name, corners[k]);
                 }
             }
-            let id = self.faces.len() as u32;
             self.of_triangle[triangle as usize] = id;
-            self.faces.push(Face { id, vertices, corners, axis, turn });
+            self.faces.push(face);
             self.triangles.push(triangle);
         }
     }

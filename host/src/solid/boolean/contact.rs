@@ -4,6 +4,7 @@
 //! face. The same point found from a neighbouring triangle has the same name, which is how neighbours agree.
 
 use crate::numeric::implicit::{others, projection, side};
+use crate::numeric::plane::Plane;
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
@@ -23,9 +24,17 @@ pub struct Face {
     pub axis: usize,
     /// 1.0 or -1.0.
     pub turn: f64,
+    /// The plane of it.
+    plane: Plane,
 }
 
 impl Face {
+    /// A triangle; `None` if its corners are on one line.
+    pub fn new(id: u32, vertices: [u32; 3], corners: [DVec3; 3]) -> Option<Face> {
+        let (axis, turn) = projection(corners)?;
+        Some(Face { id, vertices, corners, axis, turn, plane: Plane::through(corners) })
+    }
+
     /// The edge from corner `k` to the next.
     pub fn edge(&self, k: u8) -> Edge {
         let (a, b) = (self.vertices[k as usize], self.vertices[(k as usize + 1) % 3]);
@@ -100,10 +109,7 @@ impl Contact {
     /// Finds what two triangles with an area have in common.
     pub fn of(one: &Face, two: &Face) -> Contact {
         let mut contact = Contact::default();
-        let signs = |plane: &Face, of: &Face| {
-            let [a, b, c] = plane.corners;
-            of.corners.map(|corner| side(a, b, c, corner))
-        };
+        let signs = |plane: &Face, of: &Face| of.corners.map(|corner| plane.plane.side(corner));
         let apart = |signs: &[f64; 3]| signs.iter().all(|s| *s > 0.0) || signs.iter().all(|s| *s < 0.0);
         let of_two = signs(one, two);
         if apart(&of_two) {
@@ -153,11 +159,13 @@ impl Contact {
             }
             let [p, q] = one.ends(k);
             // On which side of each edge of the other triangle the line passes.
-            let passes = [0, 1, 2].map(|j| {
+            let mut passes = [0.0; 3];
+            let is_beside = (0..3).any(|j| {
                 let [a, b] = two.ends(j);
-                side(p, q, a, b)
+                passes[j] = side(p, q, a, b);
+                passes[..j].iter().any(|other| other * passes[j] < 0.0)
             });
-            if passes.iter().any(|s| *s > 0.0) && passes.iter().any(|s| *s < 0.0) {
+            if is_beside {
                 continue;
             }
             let edge = one.edge(k as u8);
@@ -192,41 +200,45 @@ impl Contact {
 pub fn overlap(one: [DVec3; 3], two: [DVec3; 3]) -> bool {
     // Which corner of the first each corner of the second is.
     let shared = two.map(|corner| one.iter().position(|&c| c == corner));
-    let [a, b, c] = one;
-    let beside = |[a, b, c]: [DVec3; 3], p: DVec3, q: DVec3| side(a, b, c, p) * side(a, b, c, q) > 0.0;
-    let is_own = |k: usize| !shared.contains(&Some(k));
-    match shared.iter().flatten().count() {
-        3 => return true,
-        2 => {
-            let apex = (0..3).find(|&k| shared[k].is_none()).map_or(two[0], |k| two[k]);
-            if side(a, b, c, apex) != 0.0 {
-                return false;
-            }
-        }
-        1 => {
-            // Where the common corner is, the other two are next in either.
-            let k = (0..3).find(|&k| shared[k].is_some()).unwrap_or(0);
-            let j = (0..3).find(|&k| !is_own(k)).unwrap_or(0);
-            if beside(one, two[(k + 1) % 3], two[(k + 2) % 3]) || beside(two, one[(j + 1) % 3], one[(j + 2) % 3]) {
-                return false;
-            }
-        }
-        _ => {
-            if beside(one, two[0], two[1]) && beside(one, two[0], two[2])
-                || beside(two, one[0], one[1]) && beside(two, one[0], one[2])
-            {
-                return false;
-            }
-        }
+    if shared.iter().all(Option::is_some) {
+        return true;
     }
-    let face = |id: u32, corners: [DVec3; 3], vertices: [u32; 3]| {
-        projection(corners).map(|(axis, turn)| Face { id, vertices, corners, axis, turn })
+    let is_own = |of: [DVec3; 3], corner: &DVec3| !of.contains(corner);
+    // Whether all of a triangle that is not common lies on one side of the other.
+    let is_beside = |plane: &Plane, corners: [DVec3; 3]| {
+        let mut sides = corners.iter().filter(|c| is_own(plane.corners, c)).map(|&corner| plane.rounded_side(corner));
+        let first = sides.next().flatten().filter(|side| *side != 0.0);
+        first.is_some() && sides.all(|side| side == first)
     };
+    let plane = Plane::through(one);
+    if is_beside(&plane, two) || is_beside(&Plane::through(two), one) || are_apart_in_view(plane.normal, one, two) {
+        return false;
+    }
     let names = [0, 1, 2].map(|k| shared[k].map_or(3 + k as u32, |own| own as u32));
-    let (Some(one), Some(two)) = (face(0, one, [0, 1, 2]), face(1, two, names)) else { return false };
+    let (Some(one), Some(two)) = (Face::new(0, [0, 1, 2], one), Face::new(1, names, two)) else { return false };
     let contact = Contact::of(&one, &two);
     contact.points.len() > 2
         || contact.points.iter().any(|point| !matches!(point.features, [Feature::Corner(_), Feature::Corner(_)]))
+}
+
+/// Whether an edge of one of two triangles parts them where both are seen along an axis, so that they have no more in
+/// common than corners, and the edge between two of these.
+///
+/// Neighbours in one plane or nearly so, of which a division is full, mostly are.
+///
+/// - `normal`: of the first, to see it from the side where it is largest.
+fn are_apart_in_view(normal: DVec3, one: [DVec3; 3], two: [DVec3; 3]) -> bool {
+    let normal = normal.abs();
+    let axis = if normal.max_element() == normal.x { 0 } else { if normal.y >= normal.z { 1 } else { 2 } };
+    let parts = |one: [DVec3; 3], two: [DVec3; 3]| {
+        let facing = flat_turn(axis, one[0], one[1], one[2]);
+        facing != 0.0
+            && [(0, 1), (1, 2), (2, 0)].into_iter().any(|(p, q)| {
+                let (p, q) = (one[p], one[q]);
+                two.into_iter().all(|c| c == p || c == q || flat_turn(axis, p, q, c) * facing < 0.0)
+            })
+    };
+    parts(one, two) || parts(two, one)
 }
 
 /// The name of the point where two edges cross.

@@ -168,5 +168,5 @@ fn are_one(operands: &Operands, arrangement: &Arrangement, one: &Piece, two: &Pi
 }
 
 fn are_coplanar([a, b, c]: [glam::DVec3; 3], other: [glam::DVec3; 3]) -> bool {
-    other.into_iter().all(|point| side(a, b, c, point) == 0.0)
+    other.into_iter().all(|point| [a, b, c].contains(&point) || side(a, b, c, point) == 0.0)
 }

@@ -33,11 +33,13 @@ mod union_find;
 mod winding;
 
 pub use arrangement::Counts;
+pub(super) use operand::overlaps;
 pub use result::Outcome;
-pub(super) use simple::{Resolution, overlaps, resolve};
+pub(super) use simple::{Resolution, resolve};
 pub(super) use union_find::UnionFind;
 
 use crate::mesh::Mesh;
+use crate::octree::Sorted;
 use arrangement::Arrangement;
 use operand::Operands;
 use parts::Parts;
@@ -77,9 +79,9 @@ impl Expression {
     }
 }
 
-/// Evaluates an expression over meshes that bound solids simply.
-pub(super) fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
-    let operands = Operands::new(meshes, true);
+/// Evaluates an expression over meshes that bound solids simply, with their triangles by place.
+pub(super) fn evaluate(solids: Vec<(&Mesh, &Sorted)>, expression: &Expression) -> Outcome {
+    let operands = Operands::new(solids, true);
     let Work { outcome, must_settle, .. } = work(&operands, expression);
     if must_settle { simple::settled(outcome) } else { outcome }
 }

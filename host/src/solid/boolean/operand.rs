@@ -12,16 +12,18 @@ pub struct Operands<'a> {
     /// within each are looked for too.
     pub are_simple: bool,
     meshes: Vec<&'a Mesh>,
-    sorted: Vec<Sorted>,
+    sorted: Vec<&'a Sorted>,
     first_vertex: Vec<u32>,
     first_triangle: Vec<u32>,
 }
 
 impl<'a> Operands<'a> {
-    /// Counts through the vertices and triangles of some meshes, and sorts the triangles of each by place.
+    /// Counts through the vertices and triangles of some meshes.
     ///
+    /// - `meshes`: with the triangles of each by place.
     /// - `are_simple`: whether their surfaces are known to bound them simply.
-    pub fn new(meshes: Vec<&'a Mesh>, are_simple: bool) -> Operands<'a> {
+    pub fn new(meshes: Vec<(&'a Mesh, &'a Sorted)>, are_simple: bool) -> Operands<'a> {
+        let (meshes, sorted): (Vec<&Mesh>, Vec<&Sorted>) = meshes.into_iter().unzip();
         let starts = |count: fn(&Mesh) -> usize| {
             let mut sum = 0;
             let mut starts = vec![0];
@@ -33,7 +35,6 @@ impl<'a> Operands<'a> {
         };
         let first_vertex = starts(|mesh| mesh.vertices.len());
         let first_triangle = starts(|mesh| mesh.triangles.len());
-        let sorted = meshes.par_iter().map(|mesh| Sorted::new(&mesh.vertices, &mesh.triangles)).collect();
         Operands { are_simple, meshes, sorted, first_vertex, first_triangle }
     }
 
@@ -44,7 +45,7 @@ impl<'a> Operands<'a> {
 
     /// The triangles of an operand by place.
     pub fn sorted(&self, operand: u32) -> &Sorted {
-        &self.sorted[operand as usize]
+        self.sorted[operand as usize]
     }
 
     /// Number of all vertices.
@@ -89,9 +90,7 @@ impl<'a> Operands<'a> {
         let found: Vec<Vec<[u32; 2]>> = tasks
             .into_par_iter()
             .map(|(i, j)| {
-                let [a, b] = [i, j].map(|operand| self.meshes[operand as usize]);
-                let corners = |mesh: &Mesh, t: u32| mesh.corners(t as usize);
-                let mut pairs = self.sorted(i).pairs(|t| corners(a, t), self.sorted(j), |t| corners(b, t));
+                let mut pairs = self.sorted(i).pairs(self.sorted(j));
                 let first = [self.first_triangle(i), self.first_triangle(j)];
                 pairs.iter_mut().for_each(|pair| *pair = [pair[0] + first[0], pair[1] + first[1]]);
                 pairs
@@ -102,10 +101,16 @@ impl<'a> Operands<'a> {
 
     /// Pairs of triangles of one operand, the lower first, that have more in common than corners and the edges between.
     pub fn overlaps(&self, operand: u32) -> Vec<[u32; 2]> {
-        let mesh = self.meshes[operand as usize];
-        let corners = |t: u32| mesh.corners(t as usize);
-        let pairs = self.sorted(operand).pairs_within(corners, |a, b| overlap(corners(a), corners(b)));
         let first = self.first_triangle(operand);
+        let pairs = overlaps(self.meshes[operand as usize], self.sorted(operand));
         pairs.into_iter().map(|pair| pair.map(|t| t + first)).collect()
     }
+}
+
+/// Pairs of triangles of a mesh, the lower first, that have more in common than corners and the edges between.
+///
+/// - `sorted`: the triangles by place.
+pub fn overlaps(mesh: &Mesh, sorted: &Sorted) -> Vec<[u32; 2]> {
+    let corners = |triangle: u32| mesh.corners(triangle as usize);
+    sorted.pairs_within(|a, b| overlap(corners(a), corners(b)))
 }

@@ -93,58 +93,63 @@ fn relevant_of(operands: &Operands, expression: &Expression, operand: u32, touch
     let mesh = operands.meshes()[operand as usize];
     let bounds = operands.sorted(operand).bounds();
     let near = |other: &u32| *other != operand && operands.sorted(*other).bounds().touches(bounds);
-    let partners: Vec<u32> = (0..operands.meshes().len() as u32).filter(near).collect();
-    let places: Vec<Vec<Option<bool>>> = partners
-        .iter()
-        .map(|&partner| {
-            let begin = touched.partition_point(|t| t.1 < partner);
-            let end = touched.partition_point(|t| t.1 <= partner);
-            known_places(operands, operand, partner, touched[begin..end].iter().map(|t| t.2))
-        })
-        .collect();
+    // By triangle, the partners that it may lie in; it is outside of all others.
+    let mut places: Vec<(u32, u32, Option<bool>)> = Vec::new();
+    for partner in (0..operands.meshes().len() as u32).filter(near) {
+        let begin = touched.partition_point(|t| t.1 < partner);
+        let end = touched.partition_point(|t| t.1 <= partner);
+        let touched = touched[begin..end].iter().map(|t| t.2);
+        known_places(operands, operand, partner, touched, |triangle, place| places.push((triangle, partner, place)));
+    }
+    places.par_sort_unstable_by_key(|&(triangle, partner, _)| (triangle, partner));
     let mut known = vec![Some(false); operands.meshes().len()];
     known[operand as usize] = None;
-    let mut last: Option<(Vec<Option<bool>>, bool)> = None;
-    (0..mesh.triangles.len())
-        .map(|triangle| {
-            let place: Vec<Option<bool>> = places.iter().map(|place| place[triangle]).collect();
-            // Neighbours are mostly alike.
-            if let Some((of_last, answer)) = &last
-                && *of_last == place
-            {
-                return *answer;
-            }
-            partners.iter().zip(&place).for_each(|(&partner, &place)| known[partner as usize] = place);
-            let answer = expression.depends_on(operand as usize, &known);
-            last = Some((place, answer));
-            answer
-        })
-        .collect()
+    let mut answers = vec![expression.depends_on(operand as usize, &known); mesh.triangles.len()];
+    let mut last: (&[(u32, u32, Option<bool>)], bool) = (&[], answers.first().copied().unwrap_or(true));
+    for group in places.chunk_by(|a, b| a.0 == b.0) {
+        // Neighbours are mostly alike.
+        if !group.iter().map(|&(_, partner, place)| (partner, place)).eq(last.0.iter().map(|t| (t.1, t.2))) {
+            group.iter().for_each(|&(_, partner, place)| known[partner as usize] = place);
+            last = (group, expression.depends_on(operand as usize, &known));
+            group.iter().for_each(|&(_, partner, _)| known[partner as usize] = Some(false));
+        }
+        answers[group[0].0 as usize] = last.1;
+    }
+    answers
 }
 
-/// For each triangle of an operand whether it lies in another; not known of those that the other touches.
+/// Tells of the triangles of an operand near another whether they lie in that; it is not known of those that it touches.
 fn known_places(
     operands: &Operands,
     operand: u32,
     other: u32,
     touched: impl Iterator<Item = u32>,
-) -> Vec<Option<bool>> {
+    mut tell: impl FnMut(u32, Option<bool>),
+) {
     let mesh = operands.meshes()[operand as usize];
+    let mut near = Vec::new();
+    operands.sorted(operand).touching(operands.sorted(other).bounds(), |triangle| near.push(triangle));
     let mut is_touched = vec![false; mesh.triangles.len()];
     touched.for_each(|triangle| is_touched[triangle as usize] = true);
     let mut parts = UnionFind::new(mesh.vertices.len());
-    let free = || mesh.triangles.iter().zip(&is_touched).filter(|(_, touched)| !**touched);
-    for (triangle, _) in free() {
-        parts.join(triangle[0], triangle[1]);
-        parts.join(triangle[1], triangle[2]);
+    for &triangle in near.iter().filter(|&&triangle| !is_touched[triangle as usize]) {
+        let corners = mesh.triangles[triangle as usize];
+        parts.join(corners[0], corners[1]);
+        parts.join(corners[1], corners[2]);
     }
     let mut inside: Vec<Option<bool>> = vec![None; mesh.vertices.len()];
-    let mut place = |triangle: &[u32; 3]| {
-        let root = parts.find(triangle[0]);
-        *inside[root as usize].get_or_insert_with(|| {
+    for triangle in near {
+        if is_touched[triangle as usize] {
+            tell(triangle, None);
+            continue;
+        }
+        let root = parts.find(mesh.triangles[triangle as usize][0]);
+        let is_inside = *inside[root as usize].get_or_insert_with(|| {
             let point = Point::new(Definition::Given(mesh.vertices[root as usize]));
             winding(operands, other, &point, &mut 0) > 0
-        })
-    };
-    mesh.triangles.iter().zip(&is_touched).map(|(t, touched)| (!touched).then(|| place(t))).collect()
+        });
+        if is_inside {
+            tell(triangle, Some(true));
+        }
+    }
 }

@@ -8,9 +8,7 @@ use super::operand::Operands;
 use super::parts::{Fate, Parts};
 use super::rounding;
 use crate::mesh::Mesh;
-use crate::numeric::implicit::projection;
 use glam::DVec3;
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// What an operation gives.
@@ -62,6 +60,7 @@ pub fn assemble(
     }
     let first_facet = outcome.mesh.triangles.len();
     let mut of_point: FxHashMap<u32, u32> = FxHashMap::default();
+    let mut is_moved = vec![false; outcome.mesh.vertices.len()];
     for piece in pieces(operands, arrangement, facets, parts) {
         let corners = piece.corners.map(|point| {
             let number = match arrangement.vertices[point as usize] {
@@ -71,6 +70,7 @@ pub fn assemble(
             if *number == u32::MAX {
                 *number = outcome.mesh.vertices.len() as u32;
                 outcome.mesh.vertices.push(arrangement.points[point as usize].near());
+                is_moved.push(!arrangement.points[point as usize].is_exact());
             }
             *number
         });
@@ -80,18 +80,12 @@ pub fn assemble(
         outcome.push(corners, piece.fate, [operand, index]);
         tables.interpolate(&mut outcome.mesh, operands.meshes()[operand as usize], operand, index as usize);
     }
-    // Points are rounded now. A triangle between points that fell together, or on one line, bounds nothing.
-    let is_flat = |triangle: usize| projection(outcome.mesh.corners(triangle)).is_none();
-    if (first_facet..outcome.mesh.triangles.len()).into_par_iter().any(is_flat) {
-        outcome.clean();
-        return (outcome, true);
-    }
     let is_kept = |operand: u32, triangle: u32| {
         let vertex = operands.meshes()[operand as usize].triangles[triangle as usize][0];
         is_whole[(operands.first_triangle(operand) + triangle) as usize]
             && parts.of_vertex(vertex + operands.first_vertex(operand)) != Fate::Dropped
     };
-    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, is_kept);
+    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, is_kept);
     (outcome, crosses)
 }
 

@@ -3,20 +3,21 @@
 //! A surface is simple if it winds once or not at all around every point off it. What any closed surface bounds are
 //! the points that it winds around more than not at all.
 
-use super::operand::Operands;
+use super::operand::{Operands, overlaps};
 use super::result::Outcome;
 use super::snapping::snapped;
 use super::union_find::UnionFind;
 use super::{Expression, Work, work};
 use crate::mesh::Mesh;
+use crate::octree::Sorted;
 use crate::solid::import::is_closed;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// What counts as near when a surface is drawn together, in units in the last place, one attempt after the other; with none,
-/// it is only divided and rounded again, which mostly suffices.
-const ROUNDINGS: [Option<f64>; 7] =
-    [None, Some(2.0), Some(16.0), Some(128.0), Some(1024.0), Some(8192.0), Some(65536.0)];
+/// What counts as near when a surface is drawn together, in units in the last place, one attempt after the other.
+const ROUNDINGS: [f64; 6] = [2.0, 16.0, 128.0, 1024.0, 8192.0, 65536.0];
+/// Times that a surface is only divided before it is drawn together, one round of attempts after the other.
+const DIVISIONS: [usize; 4] = [0, 1, 2, 4];
 /// Times that a surface is drawn together or divided in an attempt.
 const TURNS: usize = 15;
 
@@ -30,15 +31,10 @@ pub struct Resolution {
     pub odd: Option<(i32, DVec3)>,
 }
 
-/// Number of pairs of triangles of a mesh that have more in common than corners and edges.
-pub fn overlaps(mesh: &Mesh) -> usize {
-    overlapping(mesh).len()
-}
-
 /// Makes a closed surface simple.
 pub fn resolve(mesh: &Mesh) -> Resolution {
     let mesh = separated(mesh);
-    let Work { mut outcome, is_all_kept, odd, .. } = work(&Operands::new(vec![&mesh], false), &Expression::Operand(0));
+    let Work { mut outcome, is_all_kept, odd, .. } = divided(&mesh);
     outcome.clean();
     Resolution { outcome: settled(outcome), is_same: is_all_kept, odd }
 }
@@ -56,10 +52,13 @@ pub fn settled(mut outcome: Outcome) -> Outcome {
     // What rounding may make of the volume. Whoever moves points further has spoilt something.
     let reach = outcome.mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
     let (volume, bound) = (outcome.mesh.signed_volume(), 8.0 * f64::EPSILON * reach * outcome.mesh.area());
-    let attempts = ROUNDINGS.iter().flat_map(|roundings| [(*roundings, false), (*roundings, true)]);
-    for ((roundings, widely), number) in attempts.filter(|(roundings, widely)| roundings.is_some() || !widely).zip(1..)
-    {
-        if let Some(mut settled) = attempted(outcome.clone(), pairs.clone(), roundings, widely)
+    let never = Attempt { first: TURNS, roundings: 0.0, widely: false };
+    let drawn = DIVISIONS.into_iter().flat_map(|first| {
+        let each = ROUNDINGS.into_iter().flat_map(|roundings| [(roundings, false), (roundings, true)]);
+        each.map(move |(roundings, widely)| Attempt { first, roundings, widely })
+    });
+    for (attempt, number) in std::iter::once(never).chain(drawn).zip(1..) {
+        if let Some(mut settled) = attempt.on(outcome.clone(), pairs.clone())
             && (settled.mesh.signed_volume() - volume).abs() <= bound
         {
             settled.counts.settled = number;
@@ -70,45 +69,62 @@ pub fn settled(mut outcome: Outcome) -> Outcome {
     outcome
 }
 
-/// The outcome made simple by drawing together what is as near as some roundings, if that succeeds.
-///
-/// - `pairs`: the triangles that overlap.
-/// - `widely`: whether those around them are drawn together too. Surfaces that coincide along lines need it, in others it
-///   spreads the trouble.
-fn attempted(mut trial: Outcome, mut pairs: Vec<[u32; 2]>, roundings: Option<f64>, widely: bool) -> Option<Outcome> {
-    let first = pairs.len();
-    let mut least = first;
-    for turn in 0..TURNS {
-        trial = match roundings {
-            Some(roundings) if turn % 3 < 2 => snapped(trial, &pairs, roundings, widely),
-            _ => again(trial),
-        };
-        pairs = overlapping(&trial.mesh);
-        if pairs.is_empty() {
-            // What was turned inside out goes now.
-            let trial = again(trial);
-            return (overlapping(&trial.mesh).is_empty() && is_closed(&trial.mesh)).then_some(trial);
+/// A way to make a surface simple, which may succeed.
+struct Attempt {
+    /// Times that it is only divided and rounded again, which mostly suffices, before it is drawn together too.
+    first: usize,
+    /// What counts as near when it is drawn together, in units in the last place.
+    roundings: f64,
+    /// Whether triangles around those that overlap are drawn together too. Surfaces that coincide along lines need it, in
+    /// others it spreads the trouble.
+    widely: bool,
+}
+
+impl Attempt {
+    /// The outcome made simple, if that succeeds.
+    ///
+    /// - `pairs`: the triangles that overlap.
+    fn on(&self, mut trial: Outcome, mut pairs: Vec<[u32; 2]>) -> Option<Outcome> {
+        let first = pairs.len();
+        let mut least = first;
+        for turn in 0..TURNS {
+            trial = match turn.checked_sub(self.first) {
+                Some(turn) if turn % 3 < 2 => snapped(trial, &pairs, self.roundings, self.widely),
+                _ => again(trial),
+            };
+            pairs = overlapping(&trial.mesh);
+            if pairs.is_empty() {
+                // What was turned inside out goes now.
+                let trial = again(trial);
+                return (overlapping(&trial.mesh).is_empty() && is_closed(&trial.mesh)).then_some(trial);
+            }
+            if pairs.len() > 4 * first + 100 || turn > 2 && pairs.len() > 4 * least + 20 {
+                return None;
+            }
+            least = least.min(pairs.len());
         }
-        if pairs.len() > 4 * first + 100 || turn > 2 && pairs.len() > 4 * least + 20 {
-            return None;
-        }
-        least = least.min(pairs.len());
+        None
     }
-    None
 }
 
 /// Divides a surface where it crosses itself, and rounds again.
 fn again(outcome: Outcome) -> Outcome {
     let mesh = separated(&outcome.mesh);
-    let mut next = work(&Operands::new(vec![&mesh], false), &Expression::Operand(0)).outcome;
+    let mut next = divided(&mesh).outcome;
     next.clean();
     next.sources.iter_mut().for_each(|source| *source = outcome.sources[source[1] as usize]);
     next.counts = outcome.counts;
     next
 }
 
+/// What a mesh bounds, with its surface divided where it crosses itself.
+fn divided(mesh: &Mesh) -> Work {
+    let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
+    work(&Operands::new(vec![(mesh, &sorted)], false), &Expression::Operand(0))
+}
+
 fn overlapping(mesh: &Mesh) -> Vec<[u32; 2]> {
-    Operands::new(vec![mesh], false).overlaps(0)
+    overlaps(mesh, &Sorted::new(&mesh.vertices, &mesh.triangles))
 }
 
 /// The mesh with vertices of their own for all that is not joined by edges of two triangles.

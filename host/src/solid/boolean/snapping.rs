@@ -90,8 +90,7 @@ fn near_triangles(mesh: &Mesh, involved: &[u32], reach: impl Fn(DVec3) -> f64) -
         .collect();
     let triangles: Vec<[u32; 3]> = (0..involved.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
     let set = Sorted::new(&boxes, &triangles);
-    let corners = |k: u32| triangles[k as usize].map(|v| boxes[v as usize]);
-    let pairs = set.pairs(corners, &set, corners).into_iter().filter(|[a, b]| a != b);
+    let pairs = set.pairs(&set).into_iter().filter(|[a, b]| a != b);
     let mut pairs: Vec<[u32; 2]> = pairs.map(|pair| pair.map(|k| involved[k as usize])).collect();
     pairs.sort_unstable();
     pairs

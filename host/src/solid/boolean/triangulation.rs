@@ -7,7 +7,7 @@
 //! Lawson 1977 for the exchange of diagonals; Sloan 1993 for given edges.
 
 use crate::numeric::implicit::{Point, compare, others, turn};
-use robust::{Coord, incircle};
+use glam::DVec2;
 use rustc_hash::FxHashSet;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
@@ -206,12 +206,19 @@ impl<'a> Triangulation<'a> {
 
     fn is_in_circle(&self, triangle: [u32; 3], d: u32) -> bool {
         let [x, y] = others(self.axis);
-        let coord = |p: u32| {
+        let at = |p: u32| {
             let near = self.points[p as usize].near();
-            Coord { x: near[x], y: near[y] }
+            DVec2::new(near[x], near[y])
         };
-        let [a, b, c] = triangle.map(coord);
-        incircle(a, b, c, coord(d)) > 0.0
+        let d = at(d);
+        let [a, b, c] = triangle.map(|p| at(p) - d);
+        let terms = [
+            a.length_squared() * b.perp_dot(c),
+            b.length_squared() * c.perp_dot(a),
+            c.length_squared() * a.perp_dot(b),
+        ];
+        // Four points of a grid are on one circle; either diagonal will do.
+        terms[0] + terms[1] + terms[2] > terms.into_iter().map(f64::abs).sum::<f64>() * 4e-15
     }
 
     /// Exchanges the diagonal at side `k` of a triangle; the two triangles keep their numbers.

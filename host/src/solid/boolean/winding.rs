@@ -20,10 +20,7 @@ pub fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64)
     let beside = Bounds { min: near.min, max: near.max.with_x(f64::INFINITY) };
     let mut winding = 0;
     operands.sorted(operand).touching(beside, |triangle| {
-        let corners = mesh.corners(triangle as usize);
-        if Bounds::of(corners).touches(beside) {
-            winding += passes(point, corners);
-        }
+        winding += passes(point, mesh.corners(triangle as usize));
     });
     winding
 }
