@@ -1,6 +1,6 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
-use super::{Exit, Failure, Row};
+use super::{Definitions, Exit, Failure, Row};
 use crate::mesh::{self, Mesh};
 use crate::picture::Picture;
 use crate::scene::{Object, Prepared, Scene, Shape};
@@ -24,6 +24,8 @@ struct Arguments {
     /// A mesh (.obj, .stl, .ply, .cmesh), a picture (.png, .exr), a scene script (.rhai) or the name of a scene that ships
     #[arg(value_name = "IN")]
     input: PathBuf,
+    #[command(flatten)]
+    definitions: Definitions,
     /// The file to write: a mesh from a mesh or a scene, a picture from a picture; or commands (.ps300) that build a
     /// mesh or scene on a PS 340 as polygons with camera, lights and materials, below a node PERIS.SHADE that renders
     /// them on request: SEND FIX(4) TO <1>PERIS.SHADE removes hidden lines, FIX(7) and FIX(8) shade
@@ -63,7 +65,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if to_commands {
         return commands(arguments);
     }
-    let mut mesh = triangles(input)?;
+    let mut mesh = triangles(input, &arguments.definitions)?;
     if let Some(most) = most.filter(|most| *most < mesh.triangles.len()) {
         mesh = mesh.simplified(most);
     }
@@ -79,8 +81,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Writes the commands that build a scene on a PS 340.
 fn commands(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { input, output, json, lines, tolerance, .. } = arguments;
-    let scene = match scene(input)? {
+    let Arguments { input, definitions, output, json, lines, tolerance, .. } = arguments;
+    let scene = match scene(input, definitions)? {
         Some(scene) => scene,
         None => {
             let shape = Shape::Mesh { path: input.clone() };
@@ -109,15 +111,18 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The scene of a script or of the name of one that ships; none for another file.
-fn scene(input: &Path) -> Result<Option<Scene>, Failure> {
+fn scene(input: &Path, definitions: &Definitions) -> Result<Option<Scene>, Failure> {
     let name = input.to_string_lossy();
     let is_script = input.extension().is_some_and(|e| e == "rhai");
     let known = is_script || script::EMBEDDED.iter().any(|e| e.name == name);
-    Ok(if known { Some(super::load(&name)?.scene) } else { None })
+    if !known && !definitions.is_empty() {
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
+    }
+    Ok(if known { Some(super::load(&name, definitions)?.scene) } else { None })
 }
 
-fn triangles(input: &Path) -> Result<Mesh, Failure> {
-    match scene(input)? {
+fn triangles(input: &Path, definitions: &Definitions) -> Result<Mesh, Failure> {
+    match scene(input, definitions)? {
         Some(scene) => Ok(Prepared::new(&scene)?.into_mesh()),
         None => Ok(mesh::read(input)?),
     }

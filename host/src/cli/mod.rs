@@ -19,7 +19,7 @@ mod study;
 
 pub use exit::{Exit, Failure};
 pub use progress::{Progress, interrupted, watch_interrupts};
-pub use source::{SCRIPT_HELP, load};
+pub use source::{Definitions, SCRIPT_HELP, load};
 
 use crate::illumination::Bands;
 use crate::scene::Scene;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rhai::{Array, Dynamic, Map};
 
 /// A checked value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 enum Argument {
     Object(Handle),
     Number(f64),
@@ -14,6 +14,7 @@ enum Argument {
     Vector(DVec3),
     Text(String),
     Flag(bool),
+    Scalar(Dynamic),
     Contours(Vec<Vec<DVec3>>),
 }
 
@@ -105,6 +106,13 @@ impl Bound {
         }
     }
 
+    pub(super) fn scalar(&self, name: &str) -> Option<Dynamic> {
+        match self.get(name)? {
+            Argument::Scalar(value) => Some(value.clone()),
+            _ => None,
+        }
+    }
+
     pub(super) fn flag(&self, name: &str) -> Option<bool> {
         match self.get(name)? {
             Argument::Flag(flag) => Some(*flag),
@@ -187,6 +195,10 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
             named.or_else(|| vector(value)?.try_normalize()).map(Argument::Vector)
         }
         Kind::Flag => value.as_bool().ok().map(Argument::Flag),
+        Kind::Scalar => {
+            let is_scalar = value.is_bool() || value.is_string() || number(value).is_some();
+            is_scalar.then(|| Argument::Scalar(value.clone()))
+        }
         Kind::Points => points(value).map(|points| Argument::Contours(vec![points])),
         Kind::Contours => contours(value).map(Argument::Contours),
         Kind::Text => value.read_lock::<rhai::ImmutableString>().map(|s| Argument::Text(s.to_string())),

@@ -1,7 +1,11 @@
 //! A row of the function table: name, parameters, help, example, action.
 
 use super::argument::Bound;
-use super::builder::{Builder, Handle};
+use super::builder::Builder;
+use rhai::Dynamic;
+
+/// The value of a call, or what was wrong with it.
+pub(super) type Done = Result<Dynamic, String>;
 
 /// A function that scripts may call.
 pub struct Function {
@@ -13,8 +17,8 @@ pub struct Function {
     pub parameters: &'static [Parameter],
     /// A line of script that uses it.
     pub example: &'static str,
-    /// What it does to the scene; returns the object that it made or changed.
-    pub(super) action: fn(&mut Builder, &Bound) -> Result<Option<Handle>, String>,
+    /// What it does to the scene; returns the value of the call: the object that it made or changed, if there is one.
+    pub(super) action: fn(&mut Builder, &Bound) -> Done,
 }
 
 /// What a function takes.
@@ -66,6 +70,8 @@ pub enum Kind {
     Text,
     /// true or false.
     Flag,
+    /// A number, a whole number, true or false, or a string.
+    Scalar,
     /// A list of points [x, y] or [x, y, z].
     Points,
     /// A list of points, or of several such lists.
@@ -107,6 +113,7 @@ impl Kind {
             Kind::Axis => "\"x\", \"y\", \"z\" or a vector [x, y, z]".into(),
             Kind::Text => "a string".into(),
             Kind::Flag => "true or false".into(),
+            Kind::Scalar => "a number, true or false, or a string".into(),
             Kind::Points => "a list of points [[x, y], ...], with a third number where it is used".into(),
             Kind::Contours => "a list of points [[x, y], ...] or a list of such lists".into(),
         }

@@ -5,6 +5,7 @@
 
 mod argument;
 mod builder;
+mod definition;
 mod engine;
 mod error;
 mod function;
@@ -14,6 +15,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub use definition::Definition;
 pub use engine::{MAX_OPERATIONS, MAX_SCRIPT_BYTES};
 pub use error::ScriptError;
 pub use function::{Function, Kind, Parameter};
@@ -74,22 +76,24 @@ pub struct Evaluated {
 
 /// Runs the embedded scene of this name, or else the script in the file of this name.
 ///
+/// - `given`: values for parameters that the script asks for.
+///
 /// # Errors
-/// [`ScriptError`] if the file cannot be read or the script is wrong.
-pub fn load(name: &str) -> Result<Evaluated, ScriptError> {
+/// [`ScriptError`] if the file cannot be read, the script is wrong, or it does not ask for what is given.
+pub fn load(name: &str, given: &[Definition]) -> Result<Evaluated, ScriptError> {
     match EMBEDDED.iter().find(|e| e.name == name) {
-        Some(embedded) => evaluate(embedded.text, embedded.name, Path::new("")),
-        None => load_file(Path::new(name)),
+        Some(embedded) => evaluate(embedded.text, embedded.name, Path::new(""), given),
+        None => load_file(Path::new(name), given),
     }
 }
 
 /// Runs the script in a file; the paths in it are relative to its folder.
 ///
 /// # Errors
-/// [`ScriptError`] if the file cannot be read or the script is wrong.
-pub fn load_file(path: &Path) -> Result<Evaluated, ScriptError> {
+/// As [`load`].
+pub fn load_file(path: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
     let text = engine::read(path)?;
-    evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")))
+    evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")), given)
 }
 
 /// Runs a script.
@@ -97,11 +101,12 @@ pub fn load_file(path: &Path) -> Result<Evaluated, ScriptError> {
 /// - `text`: the script.
 /// - `name`: what messages call it.
 /// - `folder`: where the relative paths in it begin.
+/// - `given`: values for parameters that it asks for.
 ///
 /// # Errors
 /// [`ScriptError`], with line and column where there are any.
-pub fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluated, ScriptError> {
-    engine::evaluate(text, name, folder)
+pub fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
+    engine::evaluate(text, name, folder, given)
 }
 
 /// The reference of all functions, as Markdown.

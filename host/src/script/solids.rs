@@ -1,14 +1,13 @@
 //! Functions of the scene language that make solids and combine them, one row each.
 
 use super::argument::Bound;
-use super::builder::{Builder, Handle};
+use super::builder::Builder;
 use super::function::Default::{Is, Required};
-use super::function::{Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
+use super::function::{Done, Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
 use crate::scene::{Operation, Shape};
 use crate::solid::Primitive;
 use glam::{DVec2, DVec3};
-
-type Done = Result<Option<Handle>, String>;
+use rhai::Dynamic;
 
 const OTHER: Parameter = parameter("other", Kind::Object, Required, "the other object; both must be closed");
 const CONTOURS: Parameter = parameter(
@@ -265,7 +264,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "let dome = sphere(1) - half_space(\"y\");",
         action: |builder, bound| {
             let (normal, at) = (bound.vector("normal").unwrap_or(DVec3::Y), bound.vector("at").unwrap_or_default());
-            builder.add(Shape::HalfSpace { normal, at }, None).map(Some)
+            builder.add(Shape::HalfSpace { normal, at }, None).map(Dynamic::from)
         },
     },
     Function {
@@ -319,7 +318,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
 /// Adds a solid if there is one of these measures.
 fn add(builder: &mut Builder, bound: &Bound, primitive: Primitive) -> Done {
     primitive.body().map_err(|error| error.to_string())?;
-    builder.add(Shape::Solid(primitive), bound.number("tolerance")).map(Some)
+    builder.add(Shape::Solid(primitive), bound.number("tolerance")).map(Dynamic::from)
 }
 
 fn add_box(builder: &mut Builder, bound: &Bound) -> Done {
