@@ -4,6 +4,7 @@
 mod say;
 mod boolean;
 mod check;
+mod continuity;
 mod convert;
 mod exit;
 mod functions;
@@ -55,6 +56,7 @@ pub const COMMANDS: &[Row] = &[
     boolean::ROW,
     check::ROW,
     measure::ROW,
+    continuity::ROW,
     functions::ROW,
 ];
 

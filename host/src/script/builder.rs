@@ -87,12 +87,17 @@ impl Builder {
             }
         };
         check_nesting(composite.nesting)?;
-        for handle in [one, two].into_iter().flatten() {
-            self.objects[handle.0] = None;
-        }
+        [one, two].into_iter().flatten().for_each(|handle| self.use_up(handle));
         let whole = self.add(Shape::Composite(composite), None)?;
         self.object(Some(whole))?.material = material;
         Ok(Dynamic::from(whole))
+    }
+
+    /// Notes that an object became part of another.
+    pub(super) fn use_up(&mut self, handle: Handle) {
+        if let Some(object) = self.objects.get_mut(handle.0) {
+            *object = None;
+        }
     }
 
     /// Divides a solid by the plane through `at`: what is behind stays, what is in front, where `normal` points, becomes

@@ -76,6 +76,22 @@ pub enum Kind {
     Points,
     /// A list of points, or of several such lists.
     Contours,
+    /// A number, a list of numbers, or several such lists.
+    Numbers,
+    /// A list of whole numbers from 0, or several such lists.
+    Indices,
+    /// A list of objects.
+    Objects,
+    /// A list of objects, each with the name of a side.
+    Sides,
+    /// What control points mean in one direction.
+    Spline,
+    /// A curve, or the control points of a path.
+    Curve,
+    /// A closed loop of curves, or several.
+    Loops,
+    /// One of some words.
+    Word(&'static [&'static str]),
 }
 
 /// How closely the triangles of a curved object follow it.
@@ -116,6 +132,18 @@ impl Kind {
             Kind::Scalar => "a number, true or false, or a string".into(),
             Kind::Points => "a list of points [[x, y], ...], with a third number where it is used".into(),
             Kind::Contours => "a list of points [[x, y], ...] or a list of such lists".into(),
+            Kind::Numbers => "a number or a list of numbers, or several lists of them".into(),
+            Kind::Indices => "a list of whole numbers from 0, or several such lists".into(),
+            Kind::Objects => "a list of objects".into(),
+            Kind::Sides => {
+                "a list of pairs of an object and one of \"low u\", \"high u\", \"low v\", \"high v\"".into()
+            }
+            Kind::Spline => "what bezier(), b_spline(), beta_spline() or bbb_spline() return".into(),
+            Kind::Curve => "a curve, or a list of points [[x, y, z], ...]".into(),
+            Kind::Loops => {
+                "a list of loops, each a closed curve, a list of curves, or a list of corners [[u, v], ...]".into()
+            }
+            Kind::Word(words) => words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(" or "),
         }
     }
 }

@@ -9,9 +9,16 @@ mod definition;
 mod engine;
 mod error;
 mod function;
+mod lists;
+mod sculpting;
 mod solids;
+mod spline;
+mod subdividing;
+mod surfaces;
 mod table;
 
+#[cfg(test)]
+mod surface_tests;
 #[cfg(test)]
 mod tests;
 
@@ -25,7 +32,7 @@ use std::path::Path;
 
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
-    solids::FUNCTIONS.iter().chain(table::FUNCTIONS)
+    [solids::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS, table::FUNCTIONS].into_iter().flatten()
 }
 
 /// A scene that ships with the program.

@@ -233,21 +233,21 @@ pub(super) const FUNCTIONS: &[Function] = &[
             CONTOURS,
             parameter(
                 "path",
-                Kind::Points,
+                Kind::Curve,
                 Required,
-                "control points [x, y, z] of a cubic B-spline; it begins in the first and ends in the last",
+                "the curve, or control points of the cubic B-spline that begins in the first and ends in the last",
             ),
-            parameter("closed", Kind::Flag, Is("false"), "whether the curve is closed"),
+            parameter("closed", Kind::Flag, Is("false"), "whether the curve of control points is closed"),
             parameter("twist", ANY, Is("0"), "how far the polygon turns about the curve, degrees"),
             parameter("taper", Kind::Number(0.0, 1e6), Is("1"), "how much wider the polygon is at the end"),
             TOLERANCE,
         ],
         example: "let horn = sweep(#{ contours: [[-1, -1], [1, -1], [0, 1]], path: [[0, 0, 0], [0, 5, 0], [5, 5, 0]], taper: 0.2 });",
         action: |builder, bound| {
+            let path = bound.curve("path", bound.flag("closed").unwrap_or(false))?.ok_or("path is missing")?;
             let sweep = Primitive::Sweep {
                 contours: flat(bound),
-                path: bound.contours("path").concat(),
-                is_closed: bound.flag("closed").unwrap_or(false),
+                path,
                 twist: bound.number("twist").unwrap_or(0.0) / 360.0,
                 taper: bound.number("taper").unwrap_or(1.0),
             };

@@ -266,10 +266,19 @@ pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         name: "tolerance",
         summary: "Sets how closely triangles follow the surfaces of all objects that have no tolerance of their own.",
-        parameters: &[parameter("length", Kind::Length, Required, "largest distance, scene units")],
-        example: "tolerance(0.001);",
+        parameters: &[
+            parameter("length", Kind::Length, Required, "largest distance, scene units"),
+            parameter(
+                "angle",
+                Kind::Number(0.01, 180.0),
+                Is("45"),
+                "largest turn of the normal along a triangle, degrees",
+            ),
+        ],
+        example: "tolerance(0.001, 20);",
         action: |builder, bound| {
             builder.scene.settings.tolerance = bound.number("length");
+            builder.scene.settings.angle = bound.number("angle").unwrap_or(builder.scene.settings.angle);
             Ok(Dynamic::UNIT)
         },
     },

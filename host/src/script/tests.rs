@@ -6,11 +6,11 @@ use crate::scene::Shape;
 use crate::solid::Primitive;
 use glam::DVec3;
 
-fn run(text: &str) -> Evaluated {
+pub(super) fn run(text: &str) -> Evaluated {
     evaluate(text, "test.rhai", Path::new(""), &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn problem(text: &str) -> (usize, usize, String) {
+pub(super) fn problem(text: &str) -> (usize, usize, String) {
     match evaluate(text, "test.rhai", Path::new(""), &[]) {
         Err(ScriptError::Place(place)) => (place.line, place.column, place.message),
         other => panic!("{text}: no error with a place, but {other:?}"),
