@@ -17,6 +17,7 @@ mod render;
 mod show;
 mod source;
 mod study;
+mod tessellate;
 
 pub use exit::{Exit, Failure};
 pub use progress::{Progress, interrupted, watch_interrupts};
@@ -52,6 +53,7 @@ pub const COMMANDS: &[Row] = &[
     plan::ROW,
     octree::ROW,
     study::ROW,
+    tessellate::ROW,
     convert::ROW,
     boolean::ROW,
     check::ROW,

@@ -8,6 +8,7 @@ mod error;
 mod prepared;
 mod sculpture;
 mod shape;
+mod triangles;
 mod view;
 
 pub use cage::{Cage, Sharp, Sharpening};

@@ -210,11 +210,6 @@ impl Prepared {
         View::Camera(self.camera)
     }
 
-    /// Everything as one mesh, without materials.
-    pub fn into_mesh(self) -> Mesh {
-        Mesh { vertices: self.vertices, triangles: self.triangles, ..Mesh::default() }
-    }
-
     /// Bytes that the tables take.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.vertices[..])

@@ -67,7 +67,7 @@ pub enum Shape {
         /// Its side.
         size: f64,
     },
-    /// A mesh from an OBJ, STL or PLY file.
+    /// A mesh from an OBJ, STL, PLY or glTF file.
     Mesh {
         /// The file.
         path: PathBuf,

@@ -45,7 +45,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     Function {
         name: "mesh",
-        summary: "Adds a mesh from an OBJ, STL or PLY file.",
+        summary: "Adds a mesh from an OBJ, STL, PLY or glTF file.",
         parameters: &[parameter("file", Kind::Text, Required, "its path; relative to the folder of the script")],
         example: "let bunny = mesh(\"bunny.ply\");",
         action: add_mesh,
