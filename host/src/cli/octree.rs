@@ -19,7 +19,7 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A scene script (.rhai), the name of a scene that ships with the program, or an octree that was kept (.octree)
+    /// A scene script (.rhai), the name of a scene that ships, or an octree that was kept (.octree)
     #[arg(default_value = "teapot", value_name = "SCENE")]
     scene: String,
     #[command(flatten)]

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Help for the argument SCRIPT.
 pub const SCRIPT_HELP: &str =
-    "A scene script (.rhai), or the name of a scene that ships with the program: teapot, primitives, flange, chess";
+    "A scene script (.rhai), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal";
 
 /// Values for parameters of the script.
 #[derive(Args, Clone, Debug, Default)]

@@ -47,7 +47,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 4] = [
+pub const EMBEDDED: [Embedded; 6] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -67,6 +67,16 @@ pub const EMBEDDED: [Embedded; 4] = [
         name: "chess",
         summary: "a game of chess: revolved profiles, swept polygons, and what is cut out of them",
         text: include_str!("../../scenes/chess.rhai"),
+    },
+    Embedded {
+        name: "car",
+        summary: "a car of sculptured surfaces that are joined smoothly, closed, cut and trimmed",
+        text: include_str!("../../scenes/car.rhai"),
+    },
+    Embedded {
+        name: "crystal",
+        summary: "polyhedra between sharp and smooth, by subdivision with creases",
+        text: include_str!("../../scenes/crystal.rhai"),
     },
 ];
 
