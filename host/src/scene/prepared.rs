@@ -274,6 +274,6 @@ impl Object {
     }
 
     fn failed(&self, source: ShapeError) -> SceneError {
-        SceneError::Shape { object: self.name.clone(), source }
+        SceneError::Shape { object: self.name.clone(), source: Box::new(source) }
     }
 }

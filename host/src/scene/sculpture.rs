@@ -27,7 +27,7 @@ pub enum Sheet {
     /// A surface of a net of control points.
     Spline {
         /// The surface.
-        surface: SplineSurface,
+        surface: Box<SplineSurface>,
         /// Closed loops of curves in its parameters; what an odd number of them surrounds is there. Without any, all is.
         loops: Vec<Vec<SplineCurve>>,
     },
@@ -71,7 +71,10 @@ impl Sheet {
                 let map =
                     DAffine3::from_translation(DVec3::X * shift) * DAffine3::from_scale(DVec3::new(factor, 1.0, 1.0));
                 let moved = |ring: &Vec<SplineCurve>| ring.iter().map(|curve| curve.transformed(&map)).collect();
-                Sheet::Spline { surface: surface.transformed(placement), loops: loops.iter().map(moved).collect() }
+                Sheet::Spline {
+                    surface: Box::new(surface.transformed(placement)),
+                    loops: loops.iter().map(moved).collect(),
+                }
             }
             Sheet::Filled { sides, around_vertex } => {
                 Sheet::Filled { sides: HoleSide::transformed(sides, placement), around_vertex: *around_vertex }
@@ -98,11 +101,11 @@ impl Sheet {
         let placed = |ring: &Vec<SplineCurve>| ring.iter().map(|curve| curve.transformed(&to_domain)).collect();
         let mut all: Vec<Vec<SplineCurve>> = loops.clone();
         if holes && all.is_empty() {
-            let whole = TrimmedSurface::with_holes(surface, Vec::new()).map_err(|error| error.to_string())?;
+            let whole = TrimmedSurface::with_holes(surface.as_ref(), Vec::new()).map_err(|error| error.to_string())?;
             all = whole.loops().iter().map(|ring| ring.iter().map(|edge| edge.curve.clone()).collect()).collect();
         }
         all.extend(cut.iter().map(placed));
-        TrimmedSurface::new(surface, edges(&all)).map_err(|error| error.to_string())?;
+        TrimmedSurface::new(surface.as_ref(), edges(&all)).map_err(|error| error.to_string())?;
         Ok(Sheet::Spline { surface: surface.clone(), loops: all })
     }
 
@@ -135,7 +138,7 @@ impl Sheet {
         if let Sheet::Spline { surface, loops } = self
             && !loops.is_empty()
         {
-            return Ok(vec![TrimmedSurface::new(Arc::new(surface.clone()) as Patch, edges(loops))?]);
+            return Ok(vec![TrimmedSurface::new(Arc::new(SplineSurface::clone(surface)) as Patch, edges(loops))?]);
         }
         let whole = |patch| Ok(TrimmedSurface::with_holes(patch, Vec::new())?);
         self.patches()?.into_iter().map(whole).collect()
@@ -217,7 +220,7 @@ mod tests {
     use crate::surface::{Direction, car_body, rational_sphere};
 
     fn spline(surface: SplineSurface) -> Sheet {
-        Sheet::Spline { surface, loops: Vec::new() }
+        Sheet::Spline { surface: Box::new(surface), loops: Vec::new() }
     }
 
     fn square(low: f64, high: f64) -> Vec<SplineCurve> {

@@ -3,7 +3,7 @@
 use super::builder::Handle;
 use super::function::{Default, Function, Kind, Parameter};
 use super::lists::{contours, curve, indices, loops, numbers, objects, points, sides, vector};
-use super::spline::Spline;
+use super::spline::ControlMeaning;
 use crate::curve::SplineCurve;
 use crate::solid::primitive::path;
 use crate::surface::SurfaceSide;
@@ -25,7 +25,7 @@ enum Argument {
     Indices(Vec<Vec<u32>>),
     Objects(Vec<Handle>),
     Sides(Vec<(Handle, SurfaceSide)>),
-    Spline(Spline),
+    Spline(ControlMeaning),
     Curve(SplineCurve),
     Loops(Vec<Vec<SplineCurve>>),
 }
@@ -142,7 +142,7 @@ values! {
     indices: Indices -> Vec<Vec<u32>>,
     objects: Objects -> Vec<Handle>,
     sides: Sides -> Vec<(Handle, SurfaceSide)>,
-    spline: Spline -> Spline,
+    spline: Spline -> ControlMeaning,
     loops: Loops -> Vec<Vec<SplineCurve>>,
 }
 
@@ -191,7 +191,7 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
         Kind::Indices => indices(value).map(Argument::Indices),
         Kind::Objects => objects(value).map(Argument::Objects),
         Kind::Sides => sides(value).map(Argument::Sides),
-        Kind::Spline => value.read_lock::<Spline>().map(|spline| Argument::Spline(spline.clone())),
+        Kind::Spline => value.read_lock::<ControlMeaning>().map(|spline| Argument::Spline(spline.clone())),
         Kind::Curve => {
             let control = || points(value).map(|points| Argument::Contours(vec![points]));
             curve(value).map(Argument::Curve).or_else(control)
@@ -211,7 +211,7 @@ fn shown(value: &Dynamic) -> String {
     for (is_one, words) in [
         (value.is::<Handle>(), "an object"),
         (value.is::<SplineCurve>(), "a curve"),
-        (value.is::<Spline>(), "a kind of spline"),
+        (value.is::<ControlMeaning>(), "a kind of spline"),
     ] {
         if is_one {
             return words.into();

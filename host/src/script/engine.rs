@@ -5,7 +5,7 @@ use super::builder::{Builder, Handle};
 use super::definition::Definition;
 use super::error::{self, ScriptError};
 use super::function::Function;
-use super::spline::Spline;
+use super::spline::ControlMeaning;
 use super::{Evaluated, functions};
 use crate::curve::SplineCurve;
 use rhai::module_resolvers::DummyModuleResolver;
@@ -64,7 +64,7 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definitio
     });
     engine.on_debug(|_, _, _| {});
     engine.register_type_with_name::<Handle>("object");
-    engine.register_type_with_name::<Spline>("spline");
+    engine.register_type_with_name::<ControlMeaning>("spline");
     engine.register_type_with_name::<SplineCurve>("curve");
     for function in functions() {
         bind(&mut engine, function, &state);

@@ -2,7 +2,7 @@
 
 use super::argument::number;
 use super::builder::Handle;
-use super::spline::{Spline, side};
+use super::spline::{ControlMeaning, side};
 use crate::curve::SplineCurve;
 use crate::surface::SurfaceSide;
 use glam::DVec3;
@@ -79,7 +79,7 @@ fn ring(value: &Dynamic) -> Option<Vec<SplineCurve>> {
     let polygon = |value: &Dynamic| {
         let mut corners = points(value).filter(|corners| corners.len() > 2)?;
         corners.push(corners[0]);
-        let straight = Spline::BSpline { degree: 1, is_closed: false, is_clamped: true, knots: Vec::new() };
+        let straight = ControlMeaning::BSpline { degree: 1, is_closed: false, is_clamped: true, knots: Vec::new() };
         Some(vec![straight.curve(&corners, &[]).ok()?])
     };
     curve(value).map(|one| vec![one]).or_else(|| polygon(value)).or_else(|| each(value, curve))

@@ -59,7 +59,7 @@ impl Builder {
     /// The only spline surface of an object, placed as it is.
     pub(super) fn spline_surface(&mut self, handle: Option<Handle>) -> Result<SplineSurface, String> {
         match self.placed_sheets(handle)?.pop() {
-            Some(Sheet::Spline { surface, .. }) if self.sheet_count(handle)? == 1 => Ok(surface),
+            Some(Sheet::Spline { surface, .. }) if self.sheet_count(handle)? == 1 => Ok(*surface),
             _ => Err(format!("{} is not one surface over a mesh of control points", self.object(handle)?.name)),
         }
     }
@@ -120,7 +120,7 @@ impl Builder {
         let found = [at(sides[1]), at(opposite(sides[1]))];
         let found = if found[0].gap <= found[1].gap { found[0] } else { found[1] };
         for (handle, surface) in handles.into_iter().zip([first, second]) {
-            self.set_sheet(handle, Sheet::Spline { surface, loops: Vec::new() })?;
+            self.set_sheet(handle, Sheet::Spline { surface: Box::new(surface), loops: Vec::new() })?;
         }
         Ok(report(&Joint { sides: [(0, sides[0]), (1, sides[1])], ..found }))
     }

@@ -247,7 +247,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let path = bound.curve("path", bound.flag("closed").unwrap_or(false))?.ok_or("path is missing")?;
             let sweep = Primitive::Sweep {
                 contours: flat(bound),
-                path,
+                path: Box::new(path),
                 twist: bound.number("twist").unwrap_or(0.0) / 360.0,
                 taper: bound.number("taper").unwrap_or(1.0),
             };

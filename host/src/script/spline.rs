@@ -5,7 +5,7 @@ use crate::surface::SurfaceSide;
 
 /// How control points become a curve; for how many of them is seen when they are there.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Spline {
+pub(super) enum ControlMeaning {
     /// One curve of a degree below the number of points.
     Bezier,
     /// A B-spline.
@@ -21,25 +21,27 @@ pub(super) enum Spline {
     Bbb { bias: Vec<f64>, tension: Vec<f64>, intervals: Vec<f64>, is_closed: bool, is_clamped: bool },
 }
 
-impl Spline {
+impl ControlMeaning {
     /// What holds if nothing is said: the cubic B-spline, of a lower degree where there are too few points for that.
-    pub(super) fn usual(count: usize) -> Spline {
+    pub(super) fn usual(count: usize) -> ControlMeaning {
         let degree = count.saturating_sub(1).clamp(1, 3);
-        Spline::BSpline { degree, is_closed: false, is_clamped: true, knots: Vec::new() }
+        ControlMeaning::BSpline { degree, is_closed: false, is_clamped: true, knots: Vec::new() }
     }
 
     /// The basis for `count` control points.
     pub(super) fn basis(&self, count: usize) -> Result<Basis, SplineError> {
         match self {
-            Spline::Bezier => Basis::bezier(count.saturating_sub(1)),
-            Spline::BSpline { degree, is_closed, is_clamped, knots } => match (&knots[..], is_closed, is_clamped) {
-                ([], true, _) => Basis::closed_uniform(*degree, count),
-                ([], false, true) => Basis::clamped(*degree, count),
-                ([], false, false) => Basis::uniform(*degree, count),
-                (knots, true, _) => Basis::closed_b_spline(*degree, knots),
-                (knots, false, _) => Basis::b_spline(*degree, knots),
-            },
-            Spline::Bbb { bias, tension, intervals, is_closed, is_clamped } => {
+            ControlMeaning::Bezier => Basis::bezier(count.saturating_sub(1)),
+            ControlMeaning::BSpline { degree, is_closed, is_clamped, knots } => {
+                match (&knots[..], is_closed, is_clamped) {
+                    ([], true, _) => Basis::closed_uniform(*degree, count),
+                    ([], false, true) => Basis::clamped(*degree, count),
+                    ([], false, false) => Basis::uniform(*degree, count),
+                    (knots, true, _) => Basis::closed_b_spline(*degree, knots),
+                    (knots, false, _) => Basis::b_spline(*degree, knots),
+                }
+            }
+            ControlMeaning::Bbb { bias, tension, intervals, is_closed, is_clamped } => {
                 let each = |given: &[f64]| if let [one] = given { vec![*one; count] } else { given.to_vec() };
                 let intervals = match (&intervals[..], is_closed) {
                     ([one], true) => vec![*one; count],

@@ -5,7 +5,7 @@ use super::builder::{Builder, value};
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
 use super::sculpting::{array, on_curve};
-use super::spline::{SIDES, Spline};
+use super::spline::{ControlMeaning, SIDES};
 use crate::scene::{Sculpture, Shape, Sheet};
 use crate::surface::{Smoothness, SplineSurface, car_body, revolved};
 use rhai::Dynamic;
@@ -27,7 +27,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         summary: "Says that control points are those of one Bezier curve, of a degree below their number.",
         parameters: &[],
         example: "let arch = curve([[0, 0, 0], [0, 2, 0], [2, 2, 0]], bezier(), [1, 0.7071067811865476, 1]);",
-        action: |_, _| Ok(Dynamic::from(Spline::Bezier)),
+        action: |_, _| Ok(Dynamic::from(ControlMeaning::Bezier)),
     },
     Function {
         name: "b_spline",
@@ -49,7 +49,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let degree = bound.integer("degree").and_then(|degree| usize::try_from(degree).ok()).unwrap_or(3);
             let knots = bound.numbers("knots").unwrap_or_default().concat();
             let (is_closed, is_clamped) = (flag("closed", false), flag("clamped", true));
-            Ok(Dynamic::from(Spline::BSpline { degree, is_closed, is_clamped, knots }))
+            Ok(Dynamic::from(ControlMeaning::BSpline { degree, is_closed, is_clamped, knots }))
         },
     },
     Function {
@@ -98,7 +98,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "let pipe = sweep([[-0.1, -0.1], [0.1, -0.1], [0, 0.1]], curve([[0, 0, 0], [0, 1, 0], [1, 1, 1]], bezier()));",
         action: |_, bound| {
             let (points, weights) = (bound.contours("points").concat(), bound.numbers("weights").unwrap_or_default());
-            let spline = bound.spline("kind").unwrap_or_else(|| Spline::usual(points.len()));
+            let spline = bound.spline("kind").unwrap_or_else(|| ControlMeaning::usual(points.len()));
             let curve = spline.curve(&points, &weights.concat()).map_err(|error| error.to_string())?;
             Ok(Dynamic::from(curve))
         },
@@ -291,24 +291,25 @@ pub(super) const FUNCTIONS: &[Function] = &[
 ];
 
 /// A Beta-spline or BBB-spline.
-fn bbb(bound: &Bound) -> Spline {
+fn bbb(bound: &Bound) -> ControlMeaning {
     let list = |name: &str, default: f64| {
         let one = bound.number(name).map(|one| vec![one]);
         one.or_else(|| bound.numbers(name).map(|rows| rows.concat())).unwrap_or_else(|| vec![default])
     };
     let (is_closed, is_clamped) = (bound.flag("closed").unwrap_or(false), bound.flag("clamped").unwrap_or(true));
     let [bias, tension, intervals] = [("bias", 1.0), ("tension", 0.0), ("intervals", 1.0)].map(|(n, d)| list(n, d));
-    Spline::Bbb { bias, tension, intervals, is_closed, is_clamped }
+    ControlMeaning::Bbb { bias, tension, intervals, is_closed, is_clamped }
 }
 
 fn add(builder: &mut Builder, bound: &Bound, surface: SplineSurface) -> Done {
-    let sculpture = Sculpture::of(Sheet::Spline { surface, loops: Vec::new() });
+    let sculpture = Sculpture::of(Sheet::Spline { surface: Box::new(surface), loops: Vec::new() });
     builder.add(Shape::Sculpture(Box::new(sculpture)), bound.number("tolerance")).map(Dynamic::from)
 }
 
 fn add_surface(builder: &mut Builder, bound: &Bound) -> Done {
     let rows = bound.contours("points");
-    let kind = |name: &str, count: usize| bound.spline(name).unwrap_or_else(|| Spline::usual(count)).basis(count);
+    let kind =
+        |name: &str, count: usize| bound.spline(name).unwrap_or_else(|| ControlMeaning::usual(count)).basis(count);
     let weights = bound.numbers("weights").unwrap_or_default();
     let surface = kind("u", rows.len()).and_then(|u| {
         let v = kind("v", rows.first().map_or(0, Vec::len))?;

@@ -119,7 +119,7 @@ pub enum Primitive {
         /// Corners of the polygon.
         contours: Vec<Vec<DVec2>>,
         /// The curve.
-        path: SplineCurve,
+        path: Box<SplineCurve>,
         /// How far the polygon turned about the curve; turns.
         twist: f64,
         /// How much wider it was at the end.
@@ -172,7 +172,7 @@ impl Primitive {
             Primitive::Lathe { profile } => smooth_revolution(profile),
             Primitive::Turning { contours, turn } => turned_polygon(contours, *turn),
             Primitive::Sweep { contours, path, twist, taper } => {
-                sweep(contours, path.clone(), Widening { turns: *twist, scale: *taper })
+                sweep(contours, SplineCurve::clone(path), Widening { turns: *twist, scale: *taper })
             }
         }
     }
