@@ -1,7 +1,7 @@
 //! `peris boolean`: solids from solids.
 
 use super::{Exit, Failure, Row};
-use crate::mesh::{self, Mesh};
+use crate::mesh::{self, Grouped};
 use crate::solid::{Expression, Solid};
 use anyhow::Context;
 use clap::{Args, FromArgMatches, ValueEnum};
@@ -33,7 +33,7 @@ struct Arguments {
     /// The operation
     #[arg(value_enum, value_name = "OPERATION")]
     operation: Operation,
-    /// Closed meshes (.obj, .stl, .ply, .cmesh), two or more
+    /// Closed meshes (.obj, .stl, .ply, .gltf, .glb, .cmesh), two or more; their groups stay, one without has its name
     #[arg(value_name = "MESH", num_args = 2.., required = true)]
     meshes: Vec<PathBuf>,
     /// The file to write; its extension names the format
@@ -49,7 +49,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if mesh::Format::of(output).is_none() {
         return Err(mesh::MeshError::Format { path: output.clone() }.into());
     }
-    let solids = meshes.iter().map(|path| solid(path)).collect::<Result<Vec<Solid>, Failure>>()?;
+    let (mut solids, mut names) = (Vec::new(), Vec::new());
+    for path in meshes {
+        let (solid, own) = grouped_solid(path)?;
+        // Numbers of surfaces of a result go on from operand to operand.
+        let count = solid.mesh().surfaces.iter().max().map_or(0, |last| *last as usize + 1);
+        names.extend((0..count).map(|k| own.get(k).cloned().unwrap_or_else(|| format!("{}/{k}", stem(path)))));
+        solids.push(solid);
+    }
     let all = |range: std::ops::Range<usize>| range.map(Expression::Operand).collect::<Vec<_>>();
     let expression = match operation {
         Operation::Union => Expression::Union(all(0..solids.len())),
@@ -63,7 +70,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (result, outcome) = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
     let seconds = start.elapsed().as_secs_f64();
     let mesh = result.mesh();
-    mesh::write(mesh, output)?;
+    mesh::write_grouped(mesh, &names, output)?;
     let volume = mesh.signed_volume();
     if *json {
         let counts = &outcome.counts;
@@ -87,13 +94,26 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
 /// Reads a mesh that must be a solid.
 pub(super) fn solid(path: &Path) -> Result<Solid, Failure> {
-    let mesh: Mesh = mesh::read(path)?;
+    grouped_solid(path).map(|(solid, _)| solid)
+}
+
+/// Reads a mesh that must be a solid, and the names of its groups; one without groups is one, called as the file.
+fn grouped_solid(path: &Path) -> Result<(Solid, Vec<String>), Failure> {
+    let Grouped { mut mesh, mut names } = mesh::read_grouped(path)?;
+    if mesh.surfaces.is_empty() {
+        mesh.surfaces = vec![0; mesh.triangles.len()];
+        names = vec![stem(path)];
+    }
     let solid = Solid::resolved(mesh).with_context(|| format!("{} is no solid", path.display()));
     let (solid, crossing) = solid.map_err(|error| Failure::new(Exit::Failed, error))?;
     if let Some(crossing) = crossing {
         tracing::warn!("{}: {crossing}; taken for all that it winds around", path.display());
     }
-    Ok(solid)
+    Ok((solid, names))
 }

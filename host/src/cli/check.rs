@@ -15,7 +15,7 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A mesh (.obj, .stl, .ply, .cmesh)
+    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh)
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Makes a solid of the mesh, and writes it to this file

@@ -1,13 +1,13 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
-use super::{Exit, Failure, Row};
-use crate::mesh::{self, Mesh};
+use super::{Definitions, Exit, Failure, Row};
+use crate::mesh::{self, Grouped};
 use crate::picture::Picture;
 use crate::scene::{Object, Prepared, Scene, Shape};
 use crate::script;
 use crate::workstation::{Drawing, Lines, structure};
 use clap::{Args, FromArgMatches};
-use glam::DMat4;
+use glam::{DAffine3, DMat4, DVec3};
 use protocol::command::print;
 use std::path::{Path, PathBuf};
 
@@ -21,9 +21,11 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A mesh (.obj, .stl, .ply, .cmesh), a picture (.png, .exr), a scene script (.rhai) or the name of a scene that ships
+    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), a picture (.png, .exr), a scene script (.rhai) or the name of a scene that ships
     #[arg(value_name = "IN")]
     input: PathBuf,
+    #[command(flatten)]
+    definitions: Definitions,
     /// The file to write: a mesh from a mesh or a scene, a picture from a picture; or commands (.ps300) that build a
     /// mesh or scene on a PS 340 as polygons with camera, lights and materials, below a node PERIS.SHADE that renders
     /// them on request: SEND FIX(4) TO <1>PERIS.SHADE removes hidden lines, FIX(7) and FIX(8) shade
@@ -32,6 +34,10 @@ struct Arguments {
     /// For a mesh: at most so many triangles; edges collapse, those first with which least changes
     #[arg(long, value_name = "COUNT")]
     triangles: Option<usize>,
+    /// For a mesh: all lengths are multiplied by it. Without it numbers stay: glTF counts in metres, the other formats do
+    /// not say in what, so that a file in millimetres needs 0.001 on its way to glTF
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = factor)]
+    scale: f64,
     /// For .ps300: the edges that pictures without hidden lines draw; all others are soft
     #[arg(long, value_enum, default_value = "grid")]
     lines: Lines,
@@ -63,11 +69,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if to_commands {
         return commands(arguments);
     }
-    let mut mesh = triangles(input)?;
+    let Grouped { mut mesh, mut names } = triangles(input, &arguments.definitions)?;
     if let Some(most) = most.filter(|most| *most < mesh.triangles.len()) {
         mesh = mesh.simplified(most);
+        names.clear();
     }
-    mesh::write(&mesh, output)?;
+    if arguments.scale != 1.0 {
+        mesh = mesh.transformed(&DAffine3::from_scale(DVec3::splat(arguments.scale)));
+    }
+    mesh::write_grouped(&mesh, &names, output)?;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     if *json {
         say!("{:#}", serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));
@@ -79,16 +89,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Writes the commands that build a scene on a PS 340.
 fn commands(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { input, output, json, lines, tolerance, .. } = arguments;
-    let scene = match scene(input)? {
-        Some(scene) => scene,
-        None => {
-            let shape = Shape::Mesh { path: input.clone() };
-            let name = input.display().to_string();
-            let object = Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance: None };
-            Scene { objects: vec![object], ..Scene::default() }
-        }
-    };
+    let Arguments { input, definitions, output, json, lines, tolerance, .. } = arguments;
+    let scene = input_scene(input, definitions)?;
     let prepared = Prepared::new(&scene)?;
     let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
     let shown = structure::commands(&scene, &prepared.camera, &prepared.bounds, &drawing)
@@ -108,17 +110,37 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Reads a factor above 0.
+fn factor(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|factor| *factor > 0.0 && *factor < f64::INFINITY);
+    factor.ok_or_else(|| "give a number above 0".to_string())
+}
+
 /// The scene of a script or of the name of one that ships; none for another file.
-fn scene(input: &Path) -> Result<Option<Scene>, Failure> {
+fn scene(input: &Path, definitions: &Definitions) -> Result<Option<Scene>, Failure> {
     let name = input.to_string_lossy();
     let is_script = input.extension().is_some_and(|e| e == "rhai");
     let known = is_script || script::EMBEDDED.iter().any(|e| e.name == name);
-    Ok(if known { Some(super::load(&name)?.scene) } else { None })
+    if !known && !definitions.is_empty() {
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
+    }
+    Ok(if known { Some(super::load(&name, definitions)?.scene) } else { None })
 }
 
-fn triangles(input: &Path) -> Result<Mesh, Failure> {
-    match scene(input)? {
-        Some(scene) => Ok(Prepared::new(&scene)?.into_mesh()),
-        None => Ok(mesh::read(input)?),
+/// The scene of a script or of the name of one that ships; for another file the mesh in it as the only object.
+pub(super) fn input_scene(input: &Path, definitions: &Definitions) -> Result<Scene, Failure> {
+    if let Some(scene) = scene(input, definitions)? {
+        return Ok(scene);
+    }
+    let name = input.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let shape = Shape::Mesh { path: input.to_owned() };
+    let object = Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance: None };
+    Ok(Scene { objects: vec![object], ..Scene::default() })
+}
+
+fn triangles(input: &Path, definitions: &Definitions) -> Result<Grouped, Failure> {
+    match scene(input, definitions)? {
+        Some(scene) => Ok(scene.tessellated()?),
+        None => Ok(mesh::read_grouped(input)?),
     }
 }

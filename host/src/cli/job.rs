@@ -1,6 +1,6 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
-use super::{Exit, Failure, Progress, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
+use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
@@ -77,6 +77,8 @@ struct RunArguments {
     #[arg(help = SCRIPT_HELP, value_name = "SCRIPT")]
     script: String,
     #[command(flatten)]
+    definitions: Definitions,
+    #[command(flatten)]
     common: Common,
     /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started
     #[arg(long, value_name = "LINE")]
@@ -109,7 +111,7 @@ struct Job<'a> {
 }
 
 fn run(arguments: &RunArguments) -> Result<(), Failure> {
-    let evaluated = load(&arguments.script)?;
+    let evaluated = load(&arguments.script, &arguments.definitions)?;
     let (common, to, dials) = (&arguments.common, arguments.to.as_ref(), arguments.dials.as_slice());
     Job {
         title: &evaluated.name,
@@ -125,7 +127,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
 }
 
 fn demo(arguments: &DemoArguments) -> Result<(), Failure> {
-    let evaluated = load("teapot")?;
+    let evaluated = load("teapot", &Definitions::default())?;
     let (common, study) = (&arguments.common, !arguments.quick);
     Job {
         title: "the teapot",

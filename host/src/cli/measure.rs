@@ -15,7 +15,7 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A closed mesh (.obj, .stl, .ply, .cmesh)
+    /// A closed mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh)
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Reports as JSON on standard output

@@ -4,6 +4,7 @@
 mod say;
 mod boolean;
 mod check;
+mod continuity;
 mod convert;
 mod exit;
 mod functions;
@@ -16,10 +17,11 @@ mod render;
 mod show;
 mod source;
 mod study;
+mod tessellate;
 
 pub use exit::{Exit, Failure};
 pub use progress::{Progress, interrupted, watch_interrupts};
-pub use source::{SCRIPT_HELP, load};
+pub use source::{Definitions, SCRIPT_HELP, load};
 
 use crate::illumination::Bands;
 use crate::scene::Scene;
@@ -51,10 +53,12 @@ pub const COMMANDS: &[Row] = &[
     plan::ROW,
     octree::ROW,
     study::ROW,
+    tessellate::ROW,
     convert::ROW,
     boolean::ROW,
     check::ROW,
     measure::ROW,
+    continuity::ROW,
     functions::ROW,
 ];
 

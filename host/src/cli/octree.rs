@@ -1,6 +1,6 @@
 //! `peris octree`: the linear octree of a scene, or one from a file.
 
-use super::{Exit, Failure, Row, load};
+use super::{Definitions, Exit, Failure, Row, load};
 use crate::octree::{MAX_DEPTH, Octree, Settings, Statistics};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
@@ -19,9 +19,11 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A scene script (.rhai), the name of a scene that ships with the program, or an octree that was kept (.octree)
+    /// A scene script (.rhai), the name of a scene that ships, or an octree that was kept (.octree)
     #[arg(default_value = "teapot", value_name = "SCENE")]
     scene: String,
+    #[command(flatten)]
+    definitions: Definitions,
     /// Keeps the octree in a file
     #[arg(short, long, value_name = "FILE.octree")]
     output: Option<PathBuf>,
@@ -71,7 +73,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Builds the octree of a scene; also says how long it took, seconds.
 fn build(arguments: &Arguments) -> Result<(Octree, f64), Failure> {
-    let prepared = Prepared::new(&load(&arguments.scene)?.scene)?;
+    let prepared = Prepared::new(&load(&arguments.scene, &arguments.definitions)?.scene)?;
     let defaults = Settings::default();
     let settings = Settings {
         depth: arguments.depth.unwrap_or(defaults.depth),
@@ -86,8 +88,9 @@ fn build(arguments: &Arguments) -> Result<(Octree, f64), Failure> {
 
 /// Reads an octree; also says how long it took, seconds.
 fn read(path: &Path, arguments: &Arguments) -> Result<(Octree, f64), Failure> {
-    if arguments.depth.is_some() || arguments.leaf.is_some() || arguments.leaf_side.is_some() {
-        let why = "--depth, --leaf and --leaf-side are for an octree that is built, not for one that is read";
+    let Arguments { depth, leaf, leaf_side, definitions, .. } = arguments;
+    if depth.is_some() || leaf.is_some() || leaf_side.is_some() || !definitions.is_empty() {
+        let why = "-D, --depth, --leaf and --leaf-side are for an octree that is built, not for one that is read";
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
     }
     let start = Instant::now();

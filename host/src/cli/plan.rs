@@ -1,6 +1,6 @@
 //! `peris plan`: what a scene needs, and why.
 
-use super::{Failure, Row, SCRIPT_HELP, load};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, load};
 use crate::plan::Plan;
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
@@ -16,6 +16,8 @@ pub(super) const ROW: Row = Row {
 struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     script: String,
+    #[command(flatten)]
+    definitions: Definitions,
     /// Leaves nothing out, as `render --everything` does
     #[arg(long)]
     everything: bool,
@@ -25,7 +27,7 @@ struct Arguments {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let prepared = Prepared::new(&load(&arguments.script)?.scene)?;
+    let prepared = Prepared::new(&load(&arguments.script, &arguments.definitions)?.scene)?;
     let view = prepared.view();
     let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
     if arguments.json {

@@ -1,7 +1,7 @@
 //! `peris render`: a scene to a picture file.
 
 use super::source::stem;
-use super::{Exit, Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
+use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::ray_tracing::RayTracer;
@@ -23,6 +23,8 @@ pub(super) const ROW: Row = Row {
 struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     script: String,
+    #[command(flatten)]
+    definitions: Definitions,
     /// Picture file, .png (sRGB) or .exr (linear, coverage as alpha); may be given more than once [default: NAME.png]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
@@ -59,7 +61,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         outputs.push(PathBuf::from(format!("{}.png", stem(&arguments.script))));
     }
     outputs.iter().try_for_each(|path| Picture::check_name(path)).map_err(|e| Failure::new(Exit::Usage, e))?;
-    let mut scene = load(&arguments.script)?.scene;
+    let mut scene = load(&arguments.script, &arguments.definitions)?.scene;
     super::warn_of_darkness(&scene);
     let settings = &mut scene.settings;
     (settings.width, settings.height) = size(settings.width, settings.height, arguments.width, arguments.height);

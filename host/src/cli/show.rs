@@ -1,6 +1,6 @@
 //! `peris show`: a scene on a workstation, with dials and keys, until someone ends it.
 
-use super::{Exit, Failure, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
 use crate::{
     production::{Production, ProductionError, Sent},
     render::{Order, Watch},
@@ -28,6 +28,8 @@ const GLANCE: Duration = Duration::from_millis(50);
 struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     script: String,
+    #[command(flatten)]
+    definitions: Definitions,
     /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, and the
     /// lines of standard input are orders for its operator ('help' lists them)
     #[arg(long, value_name = "LINE")]
@@ -67,7 +69,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         tolerance: arguments.tolerance,
         facets: arguments.facets,
     };
-    let scene = load(&arguments.script)?.scene;
+    let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
         None => {

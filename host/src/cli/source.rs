@@ -1,19 +1,36 @@
 //! Where a scene comes from: a script file, or a name.
 
 use super::Failure;
-use crate::script::{self, Evaluated};
+use crate::script::{self, Definition, Evaluated};
+use clap::Args;
 use std::path::Path;
 
 /// Help for the argument SCRIPT.
 pub const SCRIPT_HELP: &str =
-    "A scene script (.rhai), or the name of a scene that ships with the program: teapot, primitives, flange, chess";
+    "A scene script (.rhai), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal";
+
+/// Values for parameters of the script.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Definitions {
+    /// Sets a parameter of the script; may be given more than once. A name that the script does not ask for is an error
+    /// that lists those that it asks for
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE")]
+    given: Vec<Definition>,
+}
+
+impl Definitions {
+    /// Whether there are none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.given.is_empty()
+    }
+}
 
 /// Runs the script that the command line names; what it prints goes to standard error.
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`].
-pub fn load(name: &str) -> Result<Evaluated, Failure> {
-    let evaluated = script::load(name)?;
+pub fn load(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
+    let evaluated = script::load(name, &definitions.given)?;
     for line in &evaluated.printed {
         eprintln!("{line}");
     }

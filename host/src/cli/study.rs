@@ -1,7 +1,7 @@
 //! `peris study`: error against run time.
 
 use super::source::stem;
-use super::{Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
+use super::{Definitions, Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
 use crate::render::Watch;
 use crate::study::{KNOBS, KnobRow};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -19,6 +19,8 @@ pub(super) const ROW: Row = Row {
 struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     script: String,
+    #[command(flatten)]
+    definitions: Definitions,
     /// Folder for the table (.csv) and the plot (.svg and .png); it is made if need be
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     output: PathBuf,
@@ -58,7 +60,7 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
 
 fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
     let cancelled = watch_interrupts();
-    let scene = load(&arguments.script)?.scene;
+    let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let mut options = knob.options;
     options.width = arguments.width.unwrap_or(options.width);
     options.samples = arguments.samples.unwrap_or(options.samples);

@@ -1,5 +1,7 @@
 //! The kinds of splines, in one direction: what turns control points into Bezier curves.
 
+use serde::{Deserialize, Serialize};
+
 use super::SplineError;
 use super::bbb::Bbb;
 use super::bezier::check_degree;
@@ -11,16 +13,34 @@ use super::knots::Knots;
 ///
 /// Every kind has Bezier points that are convex combinations of a few neighbouring control points, with sum 1: the
 /// spline lies in the convex hull of its control points, follows affine maps, and changes only near what is changed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Kind", into = "Kind")]
 pub struct Basis {
     kind: Kind,
     form: BezierForm,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Kind {
     Knots(Knots),
     Bbb(Bbb),
+}
+
+impl TryFrom<Kind> for Basis {
+    type Error = SplineError;
+
+    fn try_from(kind: Kind) -> Result<Basis, SplineError> {
+        match kind {
+            Kind::Knots(knots) => Basis::of_knots(knots.checked()?).checked(),
+            Kind::Bbb(bbb) => Basis::of_bbb(bbb.checked()?).checked(),
+        }
+    }
+}
+
+impl From<Basis> for Kind {
+    fn from(basis: Basis) -> Kind {
+        basis.kind
+    }
 }
 
 /// Another basis for the same curve, and the steps that lead to its control points.

@@ -14,13 +14,15 @@
 //! the joint divides the way between the inner Bezier points beside it in the ratio before(i) : bias(i) after(i). All
 //! ratios are positive: the Bezier points are convex combinations, whatever the parameters.
 
+use serde::{Deserialize, Serialize};
+
 use super::SplineError;
 use super::control::Row;
 use super::form::BezierForm;
 
 /// Bias and tension of each joint; the intervals, of which interval i lies before joint i and i + 1 behind it. An open
 /// spline has one interval more than joints; its curve runs from joint 1 to the last but one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bbb {
     bias: Vec<f64>,
     tension: Vec<f64>,
@@ -31,6 +33,14 @@ pub(super) struct Bbb {
 }
 
 impl Bbb {
+    /// The same after all checks, for one that comes from elsewhere.
+    pub fn checked(self) -> Result<Bbb, SplineError> {
+        let start = [self.start];
+        check("first parameter", &start, "a number within 1e100", |x| x.abs() <= 1e100)?;
+        let bbb = Bbb::new(self.bias, self.tension, self.intervals, self.is_closed)?;
+        Ok(Bbb { start: self.start, ..bbb })
+    }
+
     pub fn new(bias: Vec<f64>, tension: Vec<f64>, intervals: Vec<f64>, closed: bool) -> Result<Bbb, SplineError> {
         let (count, least) = (bias.len(), if closed { 3 } else { 4 });
         if count < least {

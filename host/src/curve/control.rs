@@ -1,6 +1,7 @@
 //! Control points with weights.
 
 use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
 
 use super::SplineError;
 
@@ -13,7 +14,7 @@ const WEIGHTS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 ///
 /// All sums are formed around one of the points. So points that coincide stay one point to the bit, and equal weights
 /// stay equal, whatever rounding does.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ControlPoint {
     /// The point, model units.
     pub point: DVec3,
@@ -68,6 +69,16 @@ pub(crate) fn control_row(row: usize, points: &[DVec3], weights: &[f64]) -> Resu
         Ok(ControlPoint { point, weight })
     });
     control.collect()
+}
+
+/// Checks control points that come from elsewhere.
+///
+/// # Errors
+/// [`SplineError`] with the place in the list.
+pub(crate) fn check_control(control: &[ControlPoint]) -> Result<(), SplineError> {
+    let points: Vec<DVec3> = control.iter().map(|control| control.point).collect();
+    let weights: Vec<f64> = control.iter().map(|control| control.weight).collect();
+    control_row(0, &points, &weights).map(|_| ())
 }
 
 /// Checks a rectangular mesh of control points and joins them with their weights, row by row; no weights at all stand

@@ -3,6 +3,8 @@
 //! All of it by blossoms: the control point i of a B-spline of degree p is the value of its polar form at the knots
 //! i + 1 ..= i + p (Ramshaw 1987; Boehm 1980 for the insertion).
 
+use serde::{Deserialize, Serialize};
+
 use super::bezier::check_degree;
 use super::control::Row;
 use super::form::BezierForm;
@@ -12,7 +14,7 @@ use super::{MAX_DEGREE, SplineError};
 ///
 /// Open: control points and degree and 1 more knots; the domain leaves `degree` knots at either side. Closed: the knots
 /// of one period, its end included, which is the domain; beyond it they repeat.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Knots {
     pub degree: usize,
     values: Vec<f64>,
@@ -20,6 +22,11 @@ pub(super) struct Knots {
 }
 
 impl Knots {
+    /// The same after all checks, for one that comes from elsewhere.
+    pub fn checked(self) -> Result<Knots, SplineError> {
+        Knots::new(self.degree, self.values, self.is_closed)
+    }
+
     pub fn new(degree: usize, values: Vec<f64>, is_closed: bool) -> Result<Knots, SplineError> {
         check_degree(degree)?;
         let least = if is_closed { degree + 2 } else { 2 * degree + 2 };

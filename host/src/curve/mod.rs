@@ -17,7 +17,7 @@ pub(crate) use basis::Refinement;
 pub use bezier::{BezierCurve, MAX_DEGREE};
 pub(crate) use bezier::{bernstein, casteljau};
 pub use control::ControlPoint;
-pub(crate) use control::control_net;
+pub(crate) use control::{check_control, control_net};
 pub use error::SplineError;
 pub(crate) use form::apply;
 pub use spline::SplineCurve;

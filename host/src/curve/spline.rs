@@ -1,19 +1,47 @@
 //! Spline curves of every kind.
 
 use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
 
 use super::basis::{Basis, Refinement};
 use super::bezier::BezierCurve;
-use super::control::{ControlPoint, control_row};
+use super::control::{ControlPoint, check_control, control_row};
 use super::form::apply;
 use super::{Curve, SplineError};
 
 /// A curve of control points over a [`Basis`], polynomial or rational; evaluated through the Bezier curves of its spans.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Plain", into = "Plain")]
 pub struct SplineCurve {
     basis: Basis,
     control: Vec<ControlPoint>,
     pieces: Vec<BezierCurve>,
+}
+
+/// What a curve is made of.
+#[derive(Serialize, Deserialize)]
+struct Plain {
+    basis: Basis,
+    control: Vec<ControlPoint>,
+}
+
+impl TryFrom<Plain> for SplineCurve {
+    type Error = SplineError;
+
+    fn try_from(Plain { basis, control }: Plain) -> Result<SplineCurve, SplineError> {
+        let (found, needed) = (control.len(), basis.control_count());
+        if found != needed {
+            return Err(SplineError::Count { what: "control points", found, needed });
+        }
+        check_control(&control)?;
+        Ok(SplineCurve::of(basis, control))
+    }
+}
+
+impl From<SplineCurve> for Plain {
+    fn from(curve: SplineCurve) -> Plain {
+        Plain { basis: curve.basis, control: curve.control }
+    }
 }
 
 impl SplineCurve {

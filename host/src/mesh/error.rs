@@ -1,5 +1,6 @@
 //! What can be wrong with a mesh or its file, and where.
 
+use super::JsonPath;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -15,7 +16,7 @@ pub enum MeshError {
         source: std::io::Error,
     },
     /// The extension names no known format.
-    #[error("{}: unknown mesh format; known extensions are obj, stl, ply and cmesh", path.display())]
+    #[error("{}: unknown mesh format; known extensions are obj, stl, ply, gltf, glb and cmesh", path.display())]
     Format {
         /// The file.
         path: PathBuf,
@@ -51,6 +52,8 @@ pub enum Place {
     Vertex(usize),
     /// A triangle, from 0.
     Triangle(usize),
+    /// A member of a JSON document.
+    Json(JsonPath),
     /// The mesh as a whole.
     Mesh,
 }
@@ -69,6 +72,7 @@ impl fmt::Display for Place {
             Place::Byte(byte) => write!(formatter, "byte {byte}"),
             Place::Vertex(vertex) => write!(formatter, "vertex {vertex}"),
             Place::Triangle(triangle) => write!(formatter, "triangle {triangle}"),
+            Place::Json(path) => write!(formatter, "{path}"),
             Place::Mesh => write!(formatter, "mesh"),
         }
     }
@@ -132,6 +136,29 @@ pub enum Problem {
     Range {
         /// The coordinate.
         value: f64,
+    },
+    /// A member that must be there.
+    #[error("is missing")]
+    Missing,
+    /// A list of numbers of another length, or of other things.
+    #[error("expected {0} finite numbers")]
+    Numbers(usize),
+    /// A document that is none.
+    #[error("{0}")]
+    Syntax(String),
+    /// Something that ends beyond what holds it.
+    #[error("reaches beyond the {length} bytes there are")]
+    Outside {
+        /// The bytes there are.
+        length: usize,
+    },
+    /// A file that belongs to this one and cannot be read.
+    #[error("cannot read {name}: {why}")]
+    Neighbour {
+        /// Its name.
+        name: String,
+        /// Why.
+        why: String,
     },
     /// A mesh that the format cannot hold.
     #[error("{0}")]

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::{Fault, Mesh, MeshError, Place, Problem, compact, obj, ply, stl};
+use super::{Fault, Grouped, Mesh, MeshError, Place, Problem, compact, gltf, obj, ply, stl};
 
 /// The longest file that is read, bytes.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
@@ -21,6 +21,10 @@ pub enum Format {
     Stl,
     /// Stanford polygon file: text and binary of both byte orders are read, little-endian double precision is written.
     Ply,
+    /// glTF 2.0 as JSON: single precision, metres; buffers in the file or beside it are read, one in the file is written.
+    Gltf,
+    /// glTF 2.0, binary.
+    Glb,
     /// The compact form of a closed mesh that PERIS ships data in: quantised positions, about two bytes a triangle.
     Compact,
 }
@@ -33,48 +37,76 @@ impl Format {
             "obj" => Some(Format::Obj),
             "stl" => Some(Format::Stl),
             "ply" => Some(Format::Ply),
+            "gltf" => Some(Format::Gltf),
+            "glb" => Some(Format::Glb),
             "cmesh" => Some(Format::Compact),
             _ => None,
         }
     }
 }
 
-/// Reads a mesh; the extension of `path` names the format.
+/// Reads a mesh; see [`read_grouped`].
+///
+/// # Errors
+/// As [`read_grouped`].
+pub fn read(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
+    Ok(read_grouped(path)?.mesh)
+}
+
+/// Reads a mesh and the names of its groups; the extension of `path` names the format.
 ///
 /// Polygons become fans of triangles around their first corner, which is right for convex polygons and for those that
-/// are star-shaped from that corner; other concave polygons come out with overlapping triangles. Vertices of STL files
-/// that have the same bits become one.
+/// are star-shaped from that corner; other concave polygons come out with overlapping triangles. Vertices of STL and glTF
+/// files that have the same bits become one. Groups are those of OBJ files (`o`, `g` and `usemtl` together), the property
+/// `surface` of the faces of PLY files, and the primitives of glTF files.
 ///
 /// # Errors
 /// [`MeshError`], with the line or byte where the content is wrong. Whatever is returned has finite vertices and
 /// indices in range; it may be open or hold degenerate triangles.
-pub fn read(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
+pub fn read_grouped(path: impl AsRef<Path>) -> Result<Grouped, MeshError> {
     let path = path.as_ref();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
-    let in_file = |source| MeshError::File { path: path.to_owned(), source };
     let in_content = |fault| MeshError::Content { path: path.to_owned(), fault };
-    let mut bytes = Vec::new();
-    File::open(path).map_err(in_file)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(in_file)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        let problem = Problem::TooMany { what: "bytes", count: bytes.len() as u64, limit: MAX_BYTES };
-        return Err(in_content(Place::Mesh.fault(problem)));
-    }
-    let mesh = parse(&bytes, format).map_err(in_content)?;
+    let bytes = bytes_of(path).map_err(|source| MeshError::File { path: path.to_owned(), source })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let neighbour = |name: &str| bytes_of(&folder.join(name)).map_err(|error| error.to_string());
+    let grouped = parse_beside(&bytes, format, &neighbour).map_err(in_content)?;
     // Bytes of any kind can pass for an OBJ file without a face.
-    if mesh.triangles.is_empty() { Err(in_content(Place::Mesh.fault(Problem::NoTriangles))) } else { Ok(mesh) }
+    let is_empty = grouped.mesh.triangles.is_empty();
+    if is_empty { Err(in_content(Place::Mesh.fault(Problem::NoTriangles))) } else { Ok(grouped) }
+}
+
+/// The bytes of a file, if it is not too long.
+fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(std::io::Error::other(format!("longer than {MAX_BYTES} bytes")));
+    }
+    Ok(bytes)
 }
 
 /// Writes a mesh; the extension of `path` names the format.
 ///
-/// OBJ keeps positions to the last bit, corner normals and parameters; PLY keeps positions to the last bit; STL rounds
-/// positions to single precision; the compact form rounds them to 1/65535 of the longest side.
+/// OBJ keeps positions to the last bit, corner normals, parameters and surfaces; PLY keeps positions to the last bit and
+/// surfaces; glTF keeps all of them but in single precision; STL rounds positions to single precision; the compact form
+/// rounds them to 1/65535 of the longest side.
 ///
 /// # Errors
 /// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written.
 pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
+    write_grouped(mesh, &[], path)
+}
+
+/// Writes a mesh with names for its surfaces, as [`write()`] does.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_grouped(mesh: &Mesh, names: &[String], path: impl AsRef<Path>) -> Result<(), MeshError> {
     let path = path.as_ref();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
-    let bytes = print(mesh, format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
+    let bytes =
+        print_grouped(mesh, names, format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
     std::fs::write(path, bytes).map_err(|source| MeshError::File { path: path.to_owned(), source })
 }
 
@@ -83,14 +115,31 @@ pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
 /// # Errors
 /// What is wrong, and the line or byte where.
 pub fn parse(bytes: &[u8], format: Format) -> Result<Mesh, Fault> {
-    let mesh = match format {
-        Format::Obj => obj::parse(bytes),
-        Format::Stl => stl::parse(bytes),
-        Format::Ply => ply::parse(bytes),
-        Format::Compact => compact::parse(bytes),
-    }?;
-    mesh.validate()?;
-    Ok(mesh)
+    Ok(parse_grouped(bytes, format)?.mesh)
+}
+
+/// Understands the bytes of a mesh file that stands alone.
+///
+/// # Errors
+/// What is wrong, and the line, byte or member where.
+pub fn parse_grouped(bytes: &[u8], format: Format) -> Result<Grouped, Fault> {
+    parse_beside(bytes, format, &|_| Err("there is no folder".into()))
+}
+
+fn parse_beside(
+    bytes: &[u8],
+    format: Format,
+    neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+) -> Result<Grouped, Fault> {
+    let grouped = match format {
+        Format::Obj => obj::parse(bytes)?,
+        Format::Stl => stl::parse(bytes)?.into(),
+        Format::Ply => ply::parse(bytes)?,
+        Format::Gltf | Format::Glb => gltf::parse(bytes, neighbour)?,
+        Format::Compact => compact::parse(bytes)?.into(),
+    };
+    grouped.mesh.validate()?;
+    Ok(grouped)
 }
 
 /// The bytes of a mesh file.
@@ -98,11 +147,21 @@ pub fn parse(bytes: &[u8], format: Format) -> Result<Mesh, Fault> {
 /// # Errors
 /// If the mesh is not valid, or the format cannot hold it.
 pub fn print(mesh: &Mesh, format: Format) -> Result<Vec<u8>, Fault> {
+    print_grouped(mesh, &[], format)
+}
+
+/// The bytes of a mesh file with names for its surfaces.
+///
+/// # Errors
+/// As [`print`].
+pub fn print_grouped(mesh: &Mesh, names: &[String], format: Format) -> Result<Vec<u8>, Fault> {
     mesh.validate()?;
     match format {
-        Format::Obj => Ok(obj::print(mesh)),
+        Format::Obj => Ok(obj::print(mesh, names)),
         Format::Stl => stl::print(mesh),
-        Format::Ply => Ok(ply::print(mesh)),
+        Format::Ply => Ok(ply::print(mesh, names)),
+        Format::Gltf => gltf::print_text(mesh, names),
+        Format::Glb => gltf::print_binary(mesh, names),
         Format::Compact => compact::print(mesh),
     }
 }

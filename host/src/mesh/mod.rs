@@ -1,6 +1,7 @@
 //! Triangle meshes, and what can be said of them without knowing their surfaces.
 //!
-//! Files come in through [`read`], go out through [`write()`]; [`Mesh::validate`] and [`Mesh::edge_report`] tell whether
+//! Files come in through [`read`], go out through [`write()`], with names of surfaces as groups through [`read_grouped`]
+//! and [`write_grouped`]; [`Mesh::validate`] and [`Mesh::edge_report`] tell whether
 //! a mesh can be trusted; [`edges`] and [`Polylines`] turn it into vectors.
 
 mod check;
@@ -8,7 +9,10 @@ mod compact;
 pub mod edges;
 mod error;
 mod file;
+mod gltf;
+mod groups;
 mod holes;
+mod json_path;
 mod measure;
 mod obj;
 mod placement;
@@ -21,7 +25,9 @@ mod subdivide;
 pub use check::EdgeReport;
 pub use edges::{Eye, Interior, Selection, wire};
 pub use error::{Fault, MeshError, Place, Problem};
-pub use file::{Format, parse, print, read, write};
+pub use file::{Format, parse, parse_grouped, print, print_grouped, read, read_grouped, write, write_grouped};
+pub use groups::Grouped;
+pub use json_path::JsonPath;
 pub(crate) use measure::bits;
 pub(crate) use placement::normal_matrix;
 pub use polylines::{Polylines, polylines};

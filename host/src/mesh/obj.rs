@@ -1,6 +1,8 @@
-//! Wavefront OBJ: positions, normals, texture coordinates and polygons of a text file.
+//! Wavefront OBJ: positions, normals, texture coordinates, polygons and groups of a text file.
 //!
-//! Not modelled: free-form curves and surfaces, materials, groups, lines and points; their statements are skipped.
+//! Triangles with the same object, group and material (`o`, `g` and `usemtl`) are a group.
+//!
+//! Not modelled: free-form curves and surfaces, what materials look like, lines and points; their statements are skipped.
 //!
 //! # Source
 //! Wavefront Technologies, Advanced Visualizer manual, appendix B1.
@@ -12,6 +14,7 @@ use glam::{DVec2, DVec3};
 
 use super::error::shortened;
 use super::file::fan;
+use super::groups::{Grouped, Groups, has_groups, name_of};
 use super::measure::bits;
 use super::{Fault, Mesh, Place, Problem};
 
@@ -24,10 +27,13 @@ struct Content {
     parameters: Vec<DVec2>,
     normals: Vec<DVec3>,
     triangles: Vec<[Corner; 3]>,
+    groups: Groups,
+    /// The current object, group and material.
+    names: [String; 3],
 }
 
 /// Understands an OBJ file.
-pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+pub(super) fn parse(bytes: &[u8]) -> Result<Grouped, Fault> {
     let mut content = Content::default();
     let mut lines = bytes.split(|&byte| byte == b'\n').enumerate();
     let mut corners = Vec::new();
@@ -43,7 +49,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         let text = text.split('#').next().unwrap_or_default();
         statement(text, &mut content, &mut corners).map_err(|problem| Place::Line(index + 1).fault(problem))?;
     }
-    Ok(content.into_mesh())
+    Ok(content.into_grouped())
 }
 
 fn statement(text: &str, content: &mut Content, corners: &mut Vec<Corner>) -> Result<(), Problem> {
@@ -65,6 +71,12 @@ fn statement(text: &str, content: &mut Content, corners: &mut Vec<Corner>) -> Re
                 return Err(Problem::FewCorners(corners.len()));
             }
             content.triangles.extend(fan(corners));
+            let count = content.triangles.len();
+            content.groups.extend(&content.group(), count);
+        }
+        Some(word @ ("o" | "g" | "usemtl")) => {
+            let which = usize::from(word != "o") + usize::from(word == "usemtl");
+            content.names[which] = words.collect::<Vec<_>>().join(" ");
         }
         _ => {}
     }
@@ -118,13 +130,21 @@ fn index(word: &str, count: usize, table: &'static str) -> Result<u32, Problem> 
 }
 
 impl Content {
-    fn into_mesh(self) -> Mesh {
+    /// What the current group is called: the different ones of its names.
+    fn group(&self) -> String {
+        let mut names: Vec<&str> = self.names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+        names.dedup();
+        names.join("/")
+    }
+
+    fn into_grouped(self) -> Grouped {
         let per_corner = |(_, parameter, _): Corner| parameter.map(|index| self.parameters[index as usize]);
         let corner_parameters = all_corners(&self.triangles, per_corner);
         let per_corner = |(_, _, normal): Corner| normal.map(|index| self.normals[index as usize]);
         let corner_normals = all_corners(&self.triangles, per_corner);
         let triangles = self.triangles.iter().map(|corners| corners.map(|(position, ..)| position)).collect();
-        Mesh { vertices: self.positions, triangles, corner_normals, corner_parameters, surfaces: Vec::new() }
+        let surfaces = Vec::new();
+        self.groups.on(Mesh { vertices: self.positions, triangles, corner_normals, corner_parameters, surfaces })
     }
 }
 
@@ -134,8 +154,9 @@ fn all_corners<T>(triangles: &[[Corner; 3]], entry: impl Fn(Corner) -> Option<T>
     triangles.iter().map(row).collect::<Option<_>>().unwrap_or_default()
 }
 
-/// The text of `mesh`; every number reads back to the same bits.
-pub(super) fn print(mesh: &Mesh) -> Vec<u8> {
+/// The text of `mesh`; every number reads back to the same bits. Groups and materials are the names of surfaces, in
+/// which spaces become underscores.
+pub(super) fn print(mesh: &Mesh, names: &[String]) -> Vec<u8> {
     let mut text = String::with_capacity(mesh.vertices.len() * 48 + mesh.triangles.len() * 24);
     let mut line = |arguments: std::fmt::Arguments<'_>| text.write_fmt(arguments).expect("a string takes any text");
     for p in &mesh.vertices {
@@ -144,7 +165,14 @@ pub(super) fn print(mesh: &Mesh) -> Vec<u8> {
     let parameters =
         distinct(&mesh.corner_parameters, |p| bits(p.extend(0.0)), |p| line(format_args!("vt {} {}\n", p.x, p.y)));
     let normals = distinct(&mesh.corner_normals, |n| bits(*n), |n| line(format_args!("vn {} {} {}\n", n.x, n.y, n.z)));
+    let (mut group, is_grouped) = (None, has_groups(mesh, names));
     for (triangle, corners) in mesh.triangles.iter().enumerate() {
+        let surface = mesh.surfaces.get(triangle).copied().filter(|_| is_grouped);
+        if surface != group {
+            let name = name_of(names, surface.unwrap_or_default()).replace([' ', '#', '\\'], "_");
+            line(format_args!("g {name}\nusemtl {name}\n"));
+            group = surface;
+        }
         line(format_args!("f"));
         for k in 0..3 {
             let vertex = corners[k] + 1;
@@ -180,7 +208,8 @@ mod tests {
     #[test]
     fn polygons_negative_indices_comments_and_continued_lines_are_understood() {
         let text = "# a square\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 \\\n 0\nvt 0.5\nvn 0 0 2\ng x\nf -4//1 2//1 3//-1 -1//1 # face\n";
-        let mesh = parse(text.as_bytes()).unwrap();
+        let Grouped { mesh, names } = parse(text.as_bytes()).unwrap();
+        assert_eq!((mesh.surfaces.as_slice(), names), ([0; 2].as_slice(), vec!["x".to_owned()]));
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(mesh.vertices[3], DVec3::Y);
         assert_eq!(mesh.corner_normals, [[DVec3::Z; 3]; 2]);
@@ -190,7 +219,24 @@ mod tests {
     #[test]
     fn a_table_that_some_corner_lacks_is_dropped() {
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nf 1/1 2/2 3\n";
-        assert!(parse(text.as_bytes()).unwrap().corner_parameters.is_empty());
+        assert!(parse(text.as_bytes()).unwrap().mesh.corner_parameters.is_empty());
+    }
+
+    #[test]
+    fn groups_come_back_with_their_names() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no a\ng a\nf 1 2 3\nusemtl red\nf 2 3 1\ng a\nf 1 2 3\no\ng\nusemtl\nf 3 1 2\n";
+        let Grouped { mesh, names } = parse(text.as_bytes()).unwrap();
+        assert_eq!(
+            (mesh.surfaces.as_slice(), &names),
+            ([0, 1, 2, 2, 0].as_slice(), &["", "a", "a/red"].map(String::from).to_vec())
+        );
+        let back = parse(&print(&mesh, &names)).unwrap();
+        assert_eq!(
+            (&back.mesh, back.names.as_slice()),
+            (&mesh, ["surface_0", "a", "a/red"].map(String::from).as_slice())
+        );
+        let ungrouped = Mesh { surfaces: Vec::new(), ..mesh };
+        assert!(!String::from_utf8(print(&ungrouped, &[])).unwrap().contains("\ng"));
     }
 
     #[test]

@@ -6,8 +6,14 @@ use proptest::prelude::*;
 use super::samples::torus;
 use super::*;
 
-const FORMATS: [(Format, &str); 4] =
-    [(Format::Obj, "obj"), (Format::Stl, "stl"), (Format::Ply, "ply"), (Format::Compact, "cmesh")];
+const FORMATS: [(Format, &str); 6] = [
+    (Format::Obj, "obj"),
+    (Format::Stl, "stl"),
+    (Format::Ply, "ply"),
+    (Format::Gltf, "gltf"),
+    (Format::Glb, "glb"),
+    (Format::Compact, "cmesh"),
+];
 
 fn ball() -> Mesh {
     samples::ball(40, 20)
@@ -40,7 +46,7 @@ fn files_come_back_as_they_were_written() {
         match format {
             Format::Obj => assert!(Mesh { surfaces: mesh.surfaces.clone(), ..back } == mesh),
             Format::Ply => assert!(back.vertices == mesh.vertices && back.triangles == mesh.triangles),
-            Format::Stl => {
+            Format::Stl | Format::Gltf | Format::Glb => {
                 let single = |p: &DVec3| p.as_vec3().as_dvec3();
                 let rounded = Mesh { vertices: mesh.vertices.iter().map(single).collect(), ..mesh.clone() };
                 assert!(sorted_triangles(&back) == sorted_triangles(&rounded));
@@ -97,7 +103,7 @@ fn other_readers_understand_what_is_written() {
 fn unknown_extensions_missing_files_and_faults_are_told_with_the_path() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    assert!(matches!(read(path("a.gltf")), Err(MeshError::Format { .. })));
+    assert!(matches!(read(path("a.dxf")), Err(MeshError::Format { .. })));
     assert!(matches!(read(path("a.obj")), Err(MeshError::File { .. })));
     std::fs::write(path("a.OBJ"), "v 0 0 0\nf 1 2 3\n").unwrap();
     let message = read(path("a.OBJ")).unwrap_err().to_string();

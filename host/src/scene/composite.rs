@@ -63,15 +63,15 @@ struct Leaf<'a> {
 }
 
 impl Composite {
-    /// Triangles within `chord` of the exact surfaces, with normals and parameters of these. All operations of nested
+    /// Triangles within `tolerance` of the exact surfaces, with normals and parameters of these. All operations of nested
     /// composites are done at once.
     ///
     /// # Errors
     /// [`ShapeError`] if an operand has no triangles, or bounds no solid, or if the result has no end.
-    pub fn made(&self, chord: f64) -> Result<Made, ShapeError> {
+    pub fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
         let mut leaves = Vec::new();
-        let expression = self.collect(&DMat4::IDENTITY, None, chord, &mut leaves);
-        let finite = |leaf: &Leaf| if leaf.is_half_space() { Ok(None) } else { leaf.solid().map(Some) };
+        let expression = self.collect(&DMat4::IDENTITY, None, tolerance.chord, &mut leaves);
+        let finite = |leaf: &Leaf| if leaf.is_half_space() { Ok(None) } else { leaf.solid(tolerance.angle).map(Some) };
         let finite: Vec<Option<ExactSolid>> = leaves.par_iter().map(finite).collect::<Result<_, _>>()?;
         let vertices = finite.iter().flatten().flat_map(|solid| &solid.solid().mesh().vertices);
         let bounds = Bounds::of(vertices.copied());
@@ -158,14 +158,15 @@ impl Leaf<'_> {
         ShapeError::Solid { object: self.object.name.clone(), source }
     }
 
-    fn solid(&self) -> Result<ExactSolid, ShapeError> {
-        let Made { mesh, surfaces, .. } = self.object.shape.made(self.chord / largest_stretch(&self.to_whole))?;
+    fn solid(&self, angle: f64) -> Result<ExactSolid, ShapeError> {
+        let tolerance = Tolerance::new(self.chord / largest_stretch(&self.to_whole), angle);
+        let Made { mesh, surfaces, .. } = self.object.shape.made(tolerance)?;
         ExactSolid::new_at(mesh, surfaces, &self.placement()).map_err(|source| self.failed(source))
     }
 
     /// As much of a half-space as covers `bounds`, which are in the coordinates of the whole.
     fn half_space(&self, bounds: &Bounds) -> Result<ExactSolid, ShapeError> {
-        let Shape::HalfSpace { normal, at } = self.object.shape else { return self.solid() };
+        let Shape::HalfSpace { normal, at } = self.object.shape else { return Err(PrimitiveError::Endless.into()) };
         let normal = normal_matrix(self.placement().matrix3) * normal;
         let body = half_space(normal, self.to_whole.transform_point3(at), bounds)?;
         Ok(body.solid(Tolerance::new(1.0, 90.0))?)
@@ -193,6 +194,10 @@ mod tests {
         object(Shape::Solid(Primitive::Box { size: DVec3::ONE }), DMat4::from_translation(DVec3::X * x))
     }
 
+    fn within(chord: f64) -> Tolerance {
+        Tolerance::new(chord, 45.0)
+    }
+
     fn composite(operation: Operation, operands: Vec<Object>) -> Composite {
         Composite { operation, operands, nesting: 1 }
     }
@@ -203,7 +208,8 @@ mod tests {
         let mirrored = DMat4::from_scale(DVec3::new(-2.0, 1.0, 1.0));
         let inner = object(Shape::Composite(Box::new(inner)), mirrored);
         let operands = vec![inner, cube(-2.0), solid(Primitive::Sphere { radius: 0.25 })];
-        let mesh = Composite { operation: Operation::Difference, operands, nesting: 2 }.made(1e-3).unwrap().mesh;
+        let mesh =
+            Composite { operation: Operation::Difference, operands, nesting: 2 }.made(within(1e-3)).unwrap().mesh;
         // The bar reaches from -2 to 1, the cube takes all below -1.5, the ball its inscribed triangles.
         let rest = 2.5 - mesh.signed_volume();
         let ball = 4.0 / 3.0 * PI / 64.0;
@@ -218,7 +224,7 @@ mod tests {
     #[test]
     fn an_open_shape_is_named() {
         let operands = vec![object(Shape::Teapot, DMat4::IDENTITY), object(Shape::Bunny, DMat4::IDENTITY)];
-        let error = composite(Operation::Union, operands).made(0.01).err().unwrap();
+        let error = composite(Operation::Union, operands).made(within(0.01)).err().unwrap();
         assert!(error.to_string().starts_with("teapot bounds no solid"), "{error}");
     }
 
@@ -229,7 +235,7 @@ mod tests {
             ..solid(Primitive::Cylinder { radius: 0.4, height: 4.0 })
         };
         let made = composite(Operation::Difference, vec![solid(Primitive::Sphere { radius: 1.0 }), drill]);
-        let Made { mesh, surfaces, operand_of } = made.made(1e-3).unwrap();
+        let Made { mesh, surfaces, operand_of } = made.made(within(1e-3)).unwrap();
         assert_eq!((surfaces.len(), operand_of.len()), (4, mesh.triangles.len()));
         for triangle in 0..mesh.triangles.len() {
             let surface = surfaces[mesh.surfaces[triangle] as usize].as_ref().unwrap();
@@ -250,14 +256,14 @@ mod tests {
     fn half_spaces_cut_and_do_not_make_endless_solids() {
         let half = || object(Shape::HalfSpace { normal: DVec3::Y, at: DVec3::Y * 0.25 }, DMat4::IDENTITY);
         let ball = || solid(Primitive::Sphere { radius: 1.0 });
-        let cap = |operation| Ok::<_, ShapeError>(composite(operation, vec![ball(), half()]).made(1e-4)?.mesh);
+        let cap = |operation| Ok::<_, ShapeError>(composite(operation, vec![ball(), half()]).made(within(1e-4))?.mesh);
         let (below, above) = (cap(Operation::Intersection).unwrap(), cap(Operation::Difference).unwrap());
         assert!((above.signed_volume() - PI * 0.75_f64.powi(2) * 2.25 / 3.0).abs() < 1e-3);
         assert!((below.signed_volume() + above.signed_volume() - 4.0 / 3.0 * PI).abs() < 1e-3);
         assert!(below.bounds().unwrap().max.y == 0.25 && above.bounds().unwrap().min.y == 0.25);
         assert!(cap(Operation::Union).unwrap_err().to_string().starts_with("a half-space has no end"));
-        assert!(half().shape.made(1.0).is_err());
-        assert!(composite(Operation::Union, vec![half(), half()]).made(1.0).is_err());
+        assert!(half().shape.made(within(1.0)).is_err());
+        assert!(composite(Operation::Union, vec![half(), half()]).made(within(1.0)).is_err());
     }
 
     #[test]

@@ -41,6 +41,6 @@ pub enum SceneError {
         /// The object's name.
         object: String,
         /// Why.
-        source: ShapeError,
+        source: Box<ShapeError>,
     },
 }

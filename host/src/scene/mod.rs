@@ -2,15 +2,20 @@
 //!
 //! Modelling space is right-handed: x right, y up, z towards the viewer. Lengths are in scene units.
 
+mod cage;
 mod composite;
 mod error;
 mod prepared;
+mod sculpture;
 mod shape;
+mod triangles;
 mod view;
 
+pub use cage::{Cage, Sharp, Sharpening};
 pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
 pub use prepared::{Prepared, PreparedObject};
+pub use sculpture::{Sculpture, SculptureError, Sheet};
 pub use shape::{Made, Shape, ShapeError};
 pub use view::{Camera, Projection, View};
 
@@ -78,11 +83,14 @@ pub struct Settings {
     /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
     /// diagonal of each object.
     pub tolerance: Option<f64>,
+    /// Largest turn of the normal from vertex to vertex of an exact surface, degrees. Where it is large, interpolated
+    /// normals are no longer those of the surface, however close the triangles are.
+    pub angle: f64,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { width: 640, height: 480, samples: 16, seed: 1, reflection_depth: 6, tolerance: None }
+        Settings { width: 640, height: 480, samples: 16, seed: 1, reflection_depth: 6, tolerance: None, angle: 45.0 }
     }
 }
 
@@ -121,7 +129,7 @@ impl Scene {
     pub fn chord_error(&self) -> Result<f64, SceneError> {
         let mut largest = 0.0f64;
         for object in self.objects.iter().filter(|o| o.shape.is_exact_and_curved()) {
-            largest = largest.max(object.chord_error(self.settings.tolerance)?);
+            largest = largest.max(object.chord_error(self.settings.tolerance, self.settings.angle)?);
         }
         Ok(largest)
     }
@@ -181,6 +189,9 @@ impl Settings {
         }
         if self.reflection_depth > MAX_REFLECTION_DEPTH {
             return Err(SceneError::Limit { what: "reflections in a chain", limit: u64::from(MAX_REFLECTION_DEPTH) });
+        }
+        if !(self.angle > 0.0 && self.angle <= 180.0) {
+            return Err(SceneError::Setting(format!("angle {} is not within 0 to 180 degrees", self.angle)));
         }
         self.tolerance.map_or(Ok(()), check_tolerance).map_err(SceneError::Setting)
     }

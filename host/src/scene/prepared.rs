@@ -4,6 +4,7 @@ use super::{Camera, Made, Object, Scene, SceneError, Settings, Shape, ShapeError
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
+use crate::surface::Tolerance;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
 /// Most triangles in a scene.
@@ -94,15 +95,15 @@ impl Prepared {
             bounds: Bounds::EMPTY,
         };
         for object in &scene.objects {
-            prepared.add(object, scene.settings.tolerance)?;
+            prepared.add(object)?;
         }
         prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.bounds));
         Ok(prepared)
     }
 
-    fn add(&mut self, object: &Object, scene_tolerance: Option<f64>) -> Result<(), SceneError> {
+    fn add(&mut self, object: &Object) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let (Made { mesh, operand_of, .. }, tolerance) = object.made(scene_tolerance)?;
+        let (Made { mesh, operand_of, .. }, tolerance) = object.made(self.settings.tolerance, self.settings.angle)?;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
         }
@@ -209,11 +210,6 @@ impl Prepared {
         View::Camera(self.camera)
     }
 
-    /// Everything as one mesh, without materials.
-    pub fn into_mesh(self) -> Mesh {
-        Mesh { vertices: self.vertices, triangles: self.triangles, ..Mesh::default() }
-    }
-
     /// Bytes that the tables take.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.vertices[..])
@@ -247,11 +243,12 @@ pub(super) fn largest_stretch(m: &DMat4) -> f64 {
 
 impl Object {
     /// The triangles in own coordinates, and the tolerance in scene units that they were made for (0 for flat shapes).
-    fn made(&self, scene_tolerance: Option<f64>) -> Result<(Made, f64), SceneError> {
+    pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<(Made, f64), SceneError> {
         let stretch = largest_stretch(&self.transform);
         let own = self.own_chord(scene_tolerance);
         // A flat shape fits any tolerance.
-        let made = self.shape.made(own.unwrap_or(f64::MAX)).map_err(|source| self.failed(source))?;
+        let tolerance = Tolerance::new(own.unwrap_or(f64::MAX), angle);
+        let made = self.shape.made(tolerance).map_err(|source| self.failed(source))?;
         Ok((made, own.unwrap_or(0.0) * stretch))
     }
 
@@ -262,21 +259,21 @@ impl Object {
     }
 
     /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
-    pub(super) fn chord_error(&self, scene_tolerance: Option<f64>) -> Result<f64, SceneError> {
+    pub(super) fn chord_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
         let stretch = largest_stretch(&self.transform);
         if let Shape::Composite(composite) = &self.shape {
             let own = self.own_chord(scene_tolerance);
             let curved = composite.operands.iter().filter(|operand| operand.shape.is_exact_and_curved());
-            let errors = curved.map(|operand| operand.chord_error(own));
+            let errors = curved.map(|operand| operand.chord_error(own, angle));
             let largest = errors.reduce(|a, b| Ok(a?.max(b?))).unwrap_or(Ok(0.0))?;
             return Ok(largest * stretch);
         }
-        let (made, _) = self.made(scene_tolerance)?;
+        let (made, _) = self.made(scene_tolerance, angle)?;
         let error = made.chord_error().map_err(|source| self.failed(source.into()))?;
         Ok(error * stretch)
     }
 
     fn failed(&self, source: ShapeError) -> SceneError {
-        SceneError::Shape { object: self.name.clone(), source }
+        SceneError::Shape { object: self.name.clone(), source: Box::new(source) }
     }
 }

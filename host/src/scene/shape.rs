@@ -1,17 +1,17 @@
 //! Shapes in their own coordinates, and their triangles.
 
+use super::cage::Cage;
 use super::composite::{Composite, MAX_NESTING};
+use super::sculpture::{Sculpture, SculptureError};
 use crate::mesh::{self, Mesh, MeshError};
 use crate::solid::{Primitive, PrimitiveError, SolidError};
+use crate::subdivision::SubdivisionError;
 use crate::surface::{self, Surface, TessellationError, Tolerance, chord_error, ground, tessellate};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Largest turn of the normal from vertex to vertex, degrees: beyond it, interpolated normals are no longer those of the
-/// surface, however loose the tolerance.
-const LARGEST_TURN_DEGREES: f64 = 45.0;
 /// Steps along the sides of a triangle at which its distance to the exact surface is measured.
 const MEASURED_STEPS: usize = 6;
 /// Diagonal of the box around the teapot: 6.525 long, 3.15 high, 4 wide.
@@ -26,6 +26,12 @@ pub enum ShapeError {
     /// The surface cannot be approximated to the tolerance.
     #[error(transparent)]
     Tessellation(#[from] TessellationError),
+    /// The sculptured surface cannot be made.
+    #[error(transparent)]
+    Sculpture(#[from] SculptureError),
+    /// The polyhedron cannot be divided.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
     /// There is no such solid.
     #[error(transparent)]
     Primitive(#[from] PrimitiveError),
@@ -61,11 +67,15 @@ pub enum Shape {
         /// Its side.
         size: f64,
     },
-    /// A mesh from an OBJ, STL or PLY file.
+    /// A mesh from an OBJ, STL, PLY or glTF file.
     Mesh {
         /// The file.
         path: PathBuf,
     },
+    /// Sculptured surfaces, open or closed.
+    Sculpture(Box<Sculpture>),
+    /// The smooth limit of a polyhedron.
+    Subdivision(Box<Cage>),
     /// A solid made of other objects.
     Composite(Box<Composite>),
 }
@@ -92,6 +102,8 @@ impl Shape {
             Shape::HalfSpace { .. } => "half_space",
             Shape::Ground { .. } => "ground",
             Shape::Mesh { .. } => "mesh",
+            Shape::Sculpture(_) => "surface",
+            Shape::Subdivision(_) => "subdivision",
             Shape::Composite(composite) => composite.operation.word(),
         }
     }
@@ -99,7 +111,9 @@ impl Shape {
     /// Checks the measures; the problem in words.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
-            Shape::Teapot | Shape::Bunny | Shape::Mesh { .. } => Ok(()),
+            // What sculptured surfaces are made of was checked; whether they can be tessellated is seen then.
+            Shape::Teapot | Shape::Bunny | Shape::Mesh { .. } | Shape::Sculpture(_) => Ok(()),
+            Shape::Subdivision(cage) => cage.polyhedron().map(|_| ()).map_err(|error| error.to_string()),
             Shape::Solid(primitive) => primitive.body().map(|_| ()).map_err(|error| error.to_string()),
             Shape::HalfSpace { normal, .. } if normal.try_normalize().is_some() => Ok(()),
             Shape::HalfSpace { normal, .. } => Err(format!("normal {normal} has no length")),
@@ -127,23 +141,33 @@ impl Shape {
         match self {
             Shape::Teapot => Some(TEAPOT_DIAGONAL),
             Shape::Solid(primitive) => primitive.body().ok()?.curved_extent(),
+            Shape::Sculpture(sculpture) => Some(sculpture.extent()),
+            Shape::Subdivision(cage) => Some(cage.extent()),
             Shape::Composite(composite) => composite.extent(),
             Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => None,
         }
     }
 
-    /// Triangles within `chord` of the shape and the exact surfaces that they stand for, in own coordinates.
+    /// Triangles within `tolerance` of the shape and the exact surfaces that they stand for, in own coordinates. Limits
+    /// of subdivision take the chord only.
     ///
     /// # Errors
     /// [`ShapeError`] if the file cannot be read, the tolerance asks for too many triangles, or there is no such solid.
-    pub fn made(&self, chord: f64) -> Result<Made, ShapeError> {
-        let tolerance = Tolerance::new(chord, LARGEST_TURN_DEGREES);
+    pub fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
         let known = |mesh: Mesh, surfaces: Vec<Box<dyn Surface>>| {
             let surfaces = surfaces.into_iter().map(|surface| Some(Arc::from(surface))).collect();
             Made { mesh, surfaces, operand_of: Vec::new() }
         };
         match self {
-            Shape::Composite(composite) => composite.made(chord),
+            Shape::Composite(composite) => composite.made(tolerance),
+            Shape::Sculpture(sculpture) => {
+                let (mesh, surfaces) = sculpture.tessellated(tolerance)?;
+                Ok(Made { mesh, surfaces: surfaces.into_iter().map(Some).collect(), ..Made::default() })
+            }
+            Shape::Subdivision(cage) => {
+                let mesh = cage.polyhedron()?.tessellated(tolerance.chord)?;
+                Ok(Made { mesh, ..Made::default() })
+            }
             Shape::Bunny => Ok(Made { mesh: mesh::bunny(), ..Made::default() }),
             Shape::Mesh { path } => Ok(Made { mesh: mesh::read(path)?, ..Made::default() }),
             Shape::HalfSpace { .. } => Err(PrimitiveError::Endless.into()),

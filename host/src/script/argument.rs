@@ -2,11 +2,16 @@
 
 use super::builder::Handle;
 use super::function::{Default, Function, Kind, Parameter};
+use super::lists::{contours, curve, indices, loops, numbers, objects, points, sides, vector};
+use super::spline::ControlMeaning;
+use crate::curve::SplineCurve;
+use crate::solid::primitive::path;
+use crate::surface::SurfaceSide;
 use glam::DVec3;
-use rhai::{Array, Dynamic, Map};
+use rhai::{Dynamic, Map};
 
 /// A checked value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 enum Argument {
     Object(Handle),
     Number(f64),
@@ -14,7 +19,15 @@ enum Argument {
     Vector(DVec3),
     Text(String),
     Flag(bool),
+    Scalar(Dynamic),
     Contours(Vec<Vec<DVec3>>),
+    Numbers(Vec<Vec<f64>>),
+    Indices(Vec<Vec<u32>>),
+    Objects(Vec<Handle>),
+    Sides(Vec<(Handle, SurfaceSide)>),
+    Spline(ControlMeaning),
+    Curve(SplineCurve),
+    Loops(Vec<Vec<SplineCurve>>),
 }
 
 /// The checked values of a call, by parameter.
@@ -77,41 +90,6 @@ impl Bound {
         self.values.iter().find(|(n, _)| *n == name).map(|(_, value)| value)
     }
 
-    pub(super) fn object(&self, name: &str) -> Option<Handle> {
-        match self.get(name)? {
-            Argument::Object(handle) => Some(*handle),
-            _ => None,
-        }
-    }
-
-    pub(super) fn number(&self, name: &str) -> Option<f64> {
-        match self.get(name)? {
-            Argument::Number(number) => Some(*number),
-            _ => None,
-        }
-    }
-
-    pub(super) fn integer(&self, name: &str) -> Option<i64> {
-        match self.get(name)? {
-            Argument::Integer(number) => Some(*number),
-            _ => None,
-        }
-    }
-
-    pub(super) fn vector(&self, name: &str) -> Option<DVec3> {
-        match self.get(name)? {
-            Argument::Vector(vector) => Some(*vector),
-            _ => None,
-        }
-    }
-
-    pub(super) fn flag(&self, name: &str) -> Option<bool> {
-        match self.get(name)? {
-            Argument::Flag(flag) => Some(*flag),
-            _ => None,
-        }
-    }
-
     /// Lists of points; a third coordinate that was not given is 0.
     pub(super) fn contours(&self, name: &str) -> Vec<Vec<DVec3>> {
         match self.get(name) {
@@ -126,35 +104,51 @@ impl Bound {
             _ => None,
         }
     }
-}
 
-fn number(value: &Dynamic) -> Option<f64> {
-    value.as_float().ok().or_else(|| value.as_int().ok().map(|i| i as f64)).filter(|x| x.is_finite())
-}
-
-fn vector(value: &Dynamic) -> Option<DVec3> {
-    let array = value.read_lock::<Array>()?;
-    match array.as_slice() {
-        [x, y, z] => Some(DVec3::new(number(x)?, number(y)?, number(z)?)),
-        _ => None,
+    /// A curve; where points were given, the one of a path.
+    pub(super) fn curve(&self, name: &str, is_closed: bool) -> Result<Option<SplineCurve>, String> {
+        match self.get(name) {
+            Some(Argument::Curve(curve)) => Ok(Some(curve.clone())),
+            Some(Argument::Contours(points)) => {
+                path(&points.concat(), is_closed).map(Some).map_err(|error| error.to_string())
+            }
+            _ => Ok(None),
+        }
     }
 }
 
-/// Points with two or three coordinates.
-fn points(value: &Dynamic) -> Option<Vec<DVec3>> {
-    let point = |value: &Dynamic| {
-        let array = value.read_lock::<Array>()?;
-        match array.as_slice() {
-            [x, y] => Some(DVec3::new(number(x)?, number(y)?, 0.0)),
-            _ => vector(value),
+/// Values of a kind by the name of their parameter; none where none was given.
+macro_rules! values {
+    ($($name:ident: $variant:ident -> $of:ty),* $(,)?) => {
+        impl Bound {
+            $(pub(super) fn $name(&self, name: &str) -> Option<$of> {
+                match self.get(name)? {
+                    Argument::$variant(value) => Some(value.clone()),
+                    _ => None,
+                }
+            })*
         }
     };
-    value.read_lock::<Array>()?.iter().map(point).collect()
 }
 
-/// One list of points or several.
-fn contours(value: &Dynamic) -> Option<Vec<Vec<DVec3>>> {
-    points(value).map(|one| vec![one]).or_else(|| value.read_lock::<Array>()?.iter().map(points).collect())
+values! {
+    object: Object -> Handle,
+    number: Number -> f64,
+    integer: Integer -> i64,
+    vector: Vector -> DVec3,
+    scalar: Scalar -> Dynamic,
+    flag: Flag -> bool,
+    numbers: Numbers -> Vec<Vec<f64>>,
+    indices: Indices -> Vec<Vec<u32>>,
+    objects: Objects -> Vec<Handle>,
+    sides: Sides -> Vec<(Handle, SurfaceSide)>,
+    spline: Spline -> ControlMeaning,
+    loops: Loops -> Vec<Vec<SplineCurve>>,
+}
+
+/// A finite number.
+pub(super) fn number(value: &Dynamic) -> Option<f64> {
+    value.as_float().ok().or_else(|| value.as_int().ok().map(|i| i as f64)).filter(|x| x.is_finite())
 }
 
 /// A vector, or one number for all three components.
@@ -187,8 +181,26 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
             named.or_else(|| vector(value)?.try_normalize()).map(Argument::Vector)
         }
         Kind::Flag => value.as_bool().ok().map(Argument::Flag),
+        Kind::Scalar => {
+            let is_scalar = value.is_bool() || value.is_string() || number(value).is_some();
+            is_scalar.then(|| Argument::Scalar(value.clone()))
+        }
         Kind::Points => points(value).map(|points| Argument::Contours(vec![points])),
         Kind::Contours => contours(value).map(Argument::Contours),
+        Kind::Numbers => numbers(value).map(Argument::Numbers),
+        Kind::Indices => indices(value).map(Argument::Indices),
+        Kind::Objects => objects(value).map(Argument::Objects),
+        Kind::Sides => sides(value).map(Argument::Sides),
+        Kind::Spline => value.read_lock::<ControlMeaning>().map(|spline| Argument::Spline(spline.clone())),
+        Kind::Curve => {
+            let control = || points(value).map(|points| Argument::Contours(vec![points]));
+            curve(value).map(Argument::Curve).or_else(control)
+        }
+        Kind::Loops => loops(value).map(Argument::Loops),
+        Kind::Word(words) => {
+            let text = value.read_lock::<rhai::ImmutableString>()?.to_string();
+            words.contains(&text.as_str()).then_some(Argument::Text(text))
+        }
         Kind::Text => value.read_lock::<rhai::ImmutableString>().map(|s| Argument::Text(s.to_string())),
     }
 }
@@ -196,8 +208,14 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
 /// The value as messages show it: short.
 fn shown(value: &Dynamic) -> String {
     const LONGEST: usize = 60;
-    if value.is::<Handle>() {
-        return "an object".into();
+    for (is_one, words) in [
+        (value.is::<Handle>(), "an object"),
+        (value.is::<SplineCurve>(), "a curve"),
+        (value.is::<ControlMeaning>(), "a kind of spline"),
+    ] {
+        if is_one {
+            return words.into();
+        }
     }
     let text = format!("{value:?}");
     match text.char_indices().nth(LONGEST) {

@@ -1,7 +1,10 @@
 //! The scene while a script builds it.
 
+use super::definition::{Definition, Definitions};
+use super::function::Done;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Object, Operation, Scene, Shape};
 use glam::{DMat4, DVec3};
+use rhai::Dynamic;
 use std::path::PathBuf;
 
 /// What a script holds of an object.
@@ -15,12 +18,14 @@ pub(super) struct Builder {
     objects: Vec<Option<Object>>,
     /// Where relative paths begin.
     pub(super) folder: PathBuf,
+    /// Values of parameters.
+    pub(super) definitions: Definitions,
 }
 
 impl Builder {
     /// An empty scene.
-    pub(super) fn new(folder: PathBuf) -> Builder {
-        Builder { scene: Scene::default(), objects: Vec::new(), folder }
+    pub(super) fn new(folder: PathBuf, given: &[Definition]) -> Builder {
+        Builder { scene: Scene::default(), objects: Vec::new(), folder, definitions: Definitions::new(given) }
     }
 
     /// The scene as it stands.
@@ -59,12 +64,7 @@ impl Builder {
     }
 
     /// Makes one solid of two objects, which are no objects of their own any more.
-    pub(super) fn combine(
-        &mut self,
-        operation: Operation,
-        one: Option<Handle>,
-        two: Option<Handle>,
-    ) -> Result<Option<Handle>, String> {
+    pub(super) fn combine(&mut self, operation: Operation, one: Option<Handle>, two: Option<Handle>) -> Done {
         if one == two {
             return Err("an object cannot be combined with itself; copy() it before".into());
         }
@@ -87,17 +87,22 @@ impl Builder {
             }
         };
         check_nesting(composite.nesting)?;
-        for handle in [one, two].into_iter().flatten() {
-            self.objects[handle.0] = None;
-        }
+        [one, two].into_iter().flatten().for_each(|handle| self.use_up(handle));
         let whole = self.add(Shape::Composite(composite), None)?;
         self.object(Some(whole))?.material = material;
-        Ok(Some(whole))
+        Ok(Dynamic::from(whole))
+    }
+
+    /// Notes that an object became part of another.
+    pub(super) fn use_up(&mut self, handle: Handle) {
+        if let Some(object) = self.objects.get_mut(handle.0) {
+            *object = None;
+        }
     }
 
     /// Divides a solid by the plane through `at`: what is behind stays, what is in front, where `normal` points, becomes
     /// another object.
-    pub(super) fn split(&mut self, handle: Option<Handle>, normal: DVec3, at: DVec3) -> Result<Option<Handle>, String> {
+    pub(super) fn split(&mut self, handle: Option<Handle>, normal: DVec3, at: DVec3) -> Done {
         let whole = self.object(handle)?.clone();
         let half = Object {
             name: "plane".into(),
@@ -120,19 +125,24 @@ impl Builder {
             material: None,
             tolerance: None,
         };
-        Ok(Some(front))
+        Ok(Dynamic::from(front))
     }
 
     /// Moves an object by a further transformation, after those before.
-    pub(super) fn transform(&mut self, handle: Option<Handle>, by: DMat4) -> Result<Option<Handle>, String> {
+    pub(super) fn transform(&mut self, handle: Option<Handle>, by: DMat4) -> Done {
         let object = self.object(handle)?;
         let placed = by * object.transform;
         if !placed.is_finite() {
             return Err(format!("{} would be moved out of all bounds", object.name));
         }
         object.transform = placed;
-        Ok(handle)
+        Ok(value(handle))
     }
+}
+
+/// What a script gets of an object.
+pub(super) fn value(handle: Option<Handle>) -> Dynamic {
+    handle.map_or(Dynamic::UNIT, Dynamic::from)
 }
 
 /// How deep composites are nested in an object.

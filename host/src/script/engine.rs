@@ -2,9 +2,12 @@
 
 use super::argument::Bound;
 use super::builder::{Builder, Handle};
+use super::definition::Definition;
 use super::error::{self, ScriptError};
 use super::function::Function;
+use super::spline::ControlMeaning;
 use super::{Evaluated, functions};
+use crate::curve::SplineCurve;
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, NativeCallContext};
 use std::cell::RefCell;
@@ -48,8 +51,8 @@ pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
 }
 
 /// Runs a script.
-pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluated, ScriptError> {
-    let state: State = Rc::new(RefCell::new(Builder::new(folder.into())));
+pub(super) fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
+    let state: State = Rc::new(RefCell::new(Builder::new(folder.into(), given)));
     let printed = Rc::new(RefCell::new(Vec::new()));
     let mut engine = limited();
     let lines = Rc::clone(&printed);
@@ -61,6 +64,8 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluate
     });
     engine.on_debug(|_, _, _| {});
     engine.register_type_with_name::<Handle>("object");
+    engine.register_type_with_name::<ControlMeaning>("spline");
+    engine.register_type_with_name::<SplineCurve>("curve");
     for function in functions() {
         bind(&mut engine, function, &state);
         if let Some((symbol, _)) = OPERATORS.iter().find(|(_, name)| *name == function.name) {
@@ -73,6 +78,10 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluate
     let outcome = engine.run(text);
     drop(engine);
     outcome.map_err(|e| error::place(&e, text, name))?;
+    if let Some(Definition { name: parameter, value }) = state.borrow().definitions.unknown() {
+        let (parameter, value, known) = (parameter.clone(), value.clone(), state.borrow().definitions.list());
+        return Err(ScriptError::Definition { file: name.to_owned(), parameter, value, known });
+    }
     let scene = state.borrow().finish();
     scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
     let printed = printed.borrow().clone();
@@ -138,6 +147,5 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
         Box::new(EvalAltResult::ErrorRuntime(message.into(), context.call_position()))
     };
     let bound = Bound::new(function, values).map_err(failed)?;
-    let object = (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)?;
-    Ok(object.map_or(Dynamic::UNIT, Dynamic::from))
+    (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)
 }

@@ -26,6 +26,18 @@ pub enum ScriptError {
     /// The script is wrong at a place.
     #[error("{0}")]
     Place(Box<Place>),
+    /// A value was given for a parameter that the script does not ask for.
+    #[error("-D {parameter}={value}: {file} has no parameter {parameter}; {known}")]
+    Definition {
+        /// The script.
+        file: String,
+        /// The parameter.
+        parameter: String,
+        /// The value that was given.
+        value: String,
+        /// What the script asks for, in words.
+        known: String,
+    },
     /// The script runs, but what it builds is no scene.
     #[error("{file}: {source}")]
     Scene {

@@ -1,7 +1,11 @@
 //! A row of the function table: name, parameters, help, example, action.
 
 use super::argument::Bound;
-use super::builder::{Builder, Handle};
+use super::builder::Builder;
+use rhai::Dynamic;
+
+/// The value of a call, or what was wrong with it.
+pub(super) type Done = Result<Dynamic, String>;
 
 /// A function that scripts may call.
 pub struct Function {
@@ -13,8 +17,8 @@ pub struct Function {
     pub parameters: &'static [Parameter],
     /// A line of script that uses it.
     pub example: &'static str,
-    /// What it does to the scene; returns the object that it made or changed.
-    pub(super) action: fn(&mut Builder, &Bound) -> Result<Option<Handle>, String>,
+    /// What it does to the scene; returns the value of the call: the object that it made or changed, if there is one.
+    pub(super) action: fn(&mut Builder, &Bound) -> Done,
 }
 
 /// What a function takes.
@@ -66,10 +70,28 @@ pub enum Kind {
     Text,
     /// true or false.
     Flag,
+    /// A number, a whole number, true or false, or a string.
+    Scalar,
     /// A list of points [x, y] or [x, y, z].
     Points,
     /// A list of points, or of several such lists.
     Contours,
+    /// A number, a list of numbers, or several such lists.
+    Numbers,
+    /// A list of whole numbers from 0, or several such lists.
+    Indices,
+    /// A list of objects.
+    Objects,
+    /// A list of objects, each with the name of a side.
+    Sides,
+    /// What control points mean in one direction.
+    Spline,
+    /// A curve, or the control points of a path.
+    Curve,
+    /// A closed loop of curves, or several.
+    Loops,
+    /// One of some words.
+    Word(&'static [&'static str]),
 }
 
 /// How closely the triangles of a curved object follow it.
@@ -107,8 +129,21 @@ impl Kind {
             Kind::Axis => "\"x\", \"y\", \"z\" or a vector [x, y, z]".into(),
             Kind::Text => "a string".into(),
             Kind::Flag => "true or false".into(),
+            Kind::Scalar => "a number, true or false, or a string".into(),
             Kind::Points => "a list of points [[x, y], ...], with a third number where it is used".into(),
             Kind::Contours => "a list of points [[x, y], ...] or a list of such lists".into(),
+            Kind::Numbers => "a number or a list of numbers, or several lists of them".into(),
+            Kind::Indices => "a list of whole numbers from 0, or several such lists".into(),
+            Kind::Objects => "a list of objects".into(),
+            Kind::Sides => {
+                "a list of pairs of an object and one of \"low u\", \"high u\", \"low v\", \"high v\"".into()
+            }
+            Kind::Spline => "what bezier(), b_spline(), beta_spline() or bbb_spline() return".into(),
+            Kind::Curve => "a curve, or a list of points [[x, y, z], ...]".into(),
+            Kind::Loops => {
+                "a list of loops, each a closed curve, a list of curves, or a list of corners [[u, v], ...]".into()
+            }
+            Kind::Word(words) => words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(" or "),
         }
     }
 }

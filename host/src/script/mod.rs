@@ -5,15 +5,24 @@
 
 mod argument;
 mod builder;
+mod definition;
 mod engine;
 mod error;
 mod function;
+mod lists;
+mod sculpting;
 mod solids;
+mod spline;
+mod subdividing;
+mod surfaces;
 mod table;
 
 #[cfg(test)]
+mod surface_tests;
+#[cfg(test)]
 mod tests;
 
+pub use definition::Definition;
 pub use engine::{MAX_OPERATIONS, MAX_SCRIPT_BYTES};
 pub use error::ScriptError;
 pub use function::{Function, Kind, Parameter};
@@ -23,7 +32,7 @@ use std::path::Path;
 
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
-    solids::FUNCTIONS.iter().chain(table::FUNCTIONS)
+    [solids::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS, table::FUNCTIONS].into_iter().flatten()
 }
 
 /// A scene that ships with the program.
@@ -38,7 +47,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 4] = [
+pub const EMBEDDED: [Embedded; 6] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -59,6 +68,16 @@ pub const EMBEDDED: [Embedded; 4] = [
         summary: "a game of chess: revolved profiles, swept polygons, and what is cut out of them",
         text: include_str!("../../scenes/chess.rhai"),
     },
+    Embedded {
+        name: "car",
+        summary: "a car of sculptured surfaces that are joined smoothly, closed, cut and trimmed",
+        text: include_str!("../../scenes/car.rhai"),
+    },
+    Embedded {
+        name: "crystal",
+        summary: "polyhedra between sharp and smooth, by subdivision with creases",
+        text: include_str!("../../scenes/crystal.rhai"),
+    },
 ];
 
 /// What a script made.
@@ -74,22 +93,24 @@ pub struct Evaluated {
 
 /// Runs the embedded scene of this name, or else the script in the file of this name.
 ///
+/// - `given`: values for parameters that the script asks for.
+///
 /// # Errors
-/// [`ScriptError`] if the file cannot be read or the script is wrong.
-pub fn load(name: &str) -> Result<Evaluated, ScriptError> {
+/// [`ScriptError`] if the file cannot be read, the script is wrong, or it does not ask for what is given.
+pub fn load(name: &str, given: &[Definition]) -> Result<Evaluated, ScriptError> {
     match EMBEDDED.iter().find(|e| e.name == name) {
-        Some(embedded) => evaluate(embedded.text, embedded.name, Path::new("")),
-        None => load_file(Path::new(name)),
+        Some(embedded) => evaluate(embedded.text, embedded.name, Path::new(""), given),
+        None => load_file(Path::new(name), given),
     }
 }
 
 /// Runs the script in a file; the paths in it are relative to its folder.
 ///
 /// # Errors
-/// [`ScriptError`] if the file cannot be read or the script is wrong.
-pub fn load_file(path: &Path) -> Result<Evaluated, ScriptError> {
+/// As [`load`].
+pub fn load_file(path: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
     let text = engine::read(path)?;
-    evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")))
+    evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")), given)
 }
 
 /// Runs a script.
@@ -97,11 +118,12 @@ pub fn load_file(path: &Path) -> Result<Evaluated, ScriptError> {
 /// - `text`: the script.
 /// - `name`: what messages call it.
 /// - `folder`: where the relative paths in it begin.
+/// - `given`: values for parameters that it asks for.
 ///
 /// # Errors
 /// [`ScriptError`], with line and column where there are any.
-pub fn evaluate(text: &str, name: &str, folder: &Path) -> Result<Evaluated, ScriptError> {
-    engine::evaluate(text, name, folder)
+pub fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
+    engine::evaluate(text, name, folder, given)
 }
 
 /// The reference of all functions, as Markdown.

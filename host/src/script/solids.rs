@@ -1,14 +1,13 @@
 //! Functions of the scene language that make solids and combine them, one row each.
 
 use super::argument::Bound;
-use super::builder::{Builder, Handle};
+use super::builder::Builder;
 use super::function::Default::{Is, Required};
-use super::function::{Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
+use super::function::{Done, Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
 use crate::scene::{Operation, Shape};
 use crate::solid::Primitive;
 use glam::{DVec2, DVec3};
-
-type Done = Result<Option<Handle>, String>;
+use rhai::Dynamic;
 
 const OTHER: Parameter = parameter("other", Kind::Object, Required, "the other object; both must be closed");
 const CONTOURS: Parameter = parameter(
@@ -234,21 +233,21 @@ pub(super) const FUNCTIONS: &[Function] = &[
             CONTOURS,
             parameter(
                 "path",
-                Kind::Points,
+                Kind::Curve,
                 Required,
-                "control points [x, y, z] of a cubic B-spline; it begins in the first and ends in the last",
+                "the curve, or control points of the cubic B-spline that begins in the first and ends in the last",
             ),
-            parameter("closed", Kind::Flag, Is("false"), "whether the curve is closed"),
+            parameter("closed", Kind::Flag, Is("false"), "whether the curve of control points is closed"),
             parameter("twist", ANY, Is("0"), "how far the polygon turns about the curve, degrees"),
             parameter("taper", Kind::Number(0.0, 1e6), Is("1"), "how much wider the polygon is at the end"),
             TOLERANCE,
         ],
         example: "let horn = sweep(#{ contours: [[-1, -1], [1, -1], [0, 1]], path: [[0, 0, 0], [0, 5, 0], [5, 5, 0]], taper: 0.2 });",
         action: |builder, bound| {
+            let path = bound.curve("path", bound.flag("closed").unwrap_or(false))?.ok_or("path is missing")?;
             let sweep = Primitive::Sweep {
                 contours: flat(bound),
-                path: bound.contours("path").concat(),
-                is_closed: bound.flag("closed").unwrap_or(false),
+                path: Box::new(path),
                 twist: bound.number("twist").unwrap_or(0.0) / 360.0,
                 taper: bound.number("taper").unwrap_or(1.0),
             };
@@ -265,7 +264,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "let dome = sphere(1) - half_space(\"y\");",
         action: |builder, bound| {
             let (normal, at) = (bound.vector("normal").unwrap_or(DVec3::Y), bound.vector("at").unwrap_or_default());
-            builder.add(Shape::HalfSpace { normal, at }, None).map(Some)
+            builder.add(Shape::HalfSpace { normal, at }, None).map(Dynamic::from)
         },
     },
     Function {
@@ -319,7 +318,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
 /// Adds a solid if there is one of these measures.
 fn add(builder: &mut Builder, bound: &Bound, primitive: Primitive) -> Done {
     primitive.body().map_err(|error| error.to_string())?;
-    builder.add(Shape::Solid(primitive), bound.number("tolerance")).map(Some)
+    builder.add(Shape::Solid(primitive), bound.number("tolerance")).map(Dynamic::from)
 }
 
 fn add_box(builder: &mut Builder, bound: &Bound) -> Done {

@@ -1,16 +1,15 @@
 //! Functions of the scene language, one row each: objects from data, placing, materials, lights, camera, settings.
 
 use super::argument::Bound;
-use super::builder::{Builder, Handle};
+use super::builder::{Builder, value};
 use super::function::Default::{Is, Required};
-use super::function::{Function, Kind, OBJECT, TOLERANCE, parameter};
+use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
 use crate::illumination::{Light, Material};
 use crate::picture::MAX_PIXELS;
 use crate::scene::{Camera, MAX_LIGHTS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Shape};
 use glam::{DMat3, DMat4, DVec3};
+use rhai::Dynamic;
 use std::f64::consts::PI;
-
-type Done = Result<Option<Handle>, String>;
 
 const ANY: Kind = Kind::Number(f64::NEG_INFINITY, f64::INFINITY);
 
@@ -21,14 +20,14 @@ pub(super) const FUNCTIONS: &[Function] = &[
         summary: "Adds the Utah teapot, standing on y = 0, its spout towards +x; 6.525 long and 3.15 high.",
         parameters: &[TOLERANCE],
         example: "let pot = teapot(#{ tolerance: 0.002 });",
-        action: |builder, bound| builder.add(Shape::Teapot, bound.number("tolerance")).map(Some),
+        action: |builder, bound| builder.add(Shape::Teapot, bound.number("tolerance")).map(Dynamic::from),
     },
     Function {
         name: "bunny",
         summary: "Adds the Stanford bunny, about 2 high, facing the viewer; 69,666 triangles.",
         parameters: &[],
         example: "bunny().translate(0, 1, 0);",
-        action: |builder, _| builder.add(Shape::Bunny, None).map(Some),
+        action: |builder, _| builder.add(Shape::Bunny, None).map(Dynamic::from),
     },
     Function {
         name: "ground",
@@ -46,7 +45,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     Function {
         name: "mesh",
-        summary: "Adds a mesh from an OBJ, STL or PLY file.",
+        summary: "Adds a mesh from an OBJ, STL, PLY or glTF file.",
         parameters: &[parameter("file", Kind::Text, Required, "its path; relative to the folder of the script")],
         example: "let bunny = mesh(\"bunny.ply\");",
         action: add_mesh,
@@ -56,7 +55,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         summary: "Adds a copy of an object, as combined objects are used up.",
         parameters: &[OBJECT],
         example: "let second = pot.copy().translate(8, 0, 0);",
-        action: |builder, bound| builder.copy(bound.object("object")).map(Some),
+        action: |builder, bound| builder.copy(bound.object("object")).map(Dynamic::from),
     },
     Function {
         name: "material",
@@ -130,7 +129,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "pot.name(\"pot\");",
         action: |builder, bound| {
             builder.object(bound.object("object"))?.name = bound.text("text").unwrap_or_default().to_owned();
-            Ok(bound.object("object"))
+            Ok(value(bound.object("object")))
         },
     },
     Function {
@@ -168,7 +167,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "ambient(0.05);",
         action: |builder, bound| {
             builder.scene.ambient = bound.vector("radiance").unwrap_or_default();
-            Ok(None)
+            Ok(Dynamic::UNIT)
         },
     },
     Function {
@@ -178,7 +177,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "background([0.2, 0.3, 0.5]);",
         action: |builder, bound| {
             builder.scene.background = bound.vector("radiance").unwrap_or_default();
-            Ok(None)
+            Ok(Dynamic::UNIT)
         },
     },
     Function {
@@ -201,6 +200,20 @@ pub(super) const FUNCTIONS: &[Function] = &[
         action: set_camera,
     },
     Function {
+        name: "parameter",
+        summary: "Gives the value that the command line sets with -D NAME=VALUE, of the kind of the default; without one, the default.",
+        parameters: &[
+            parameter("name", Kind::Text, Required, "letters, digits and underscores"),
+            parameter("default", Kind::Scalar, Required, "the value when none is given"),
+            parameter("meaning", Kind::Text, Is("none"), "what it means, for those who look for it"),
+        ],
+        example: "let count = parameter(\"count\", 6, \"how many there are\");",
+        action: |builder, bound| {
+            let (name, meaning) = (bound.text("name").unwrap_or_default(), bound.text("meaning").unwrap_or_default());
+            builder.definitions.value(name, bound.scalar("default").unwrap_or_default(), meaning)
+        },
+    },
+    Function {
         name: "image",
         summary: "Sets the size of the picture.",
         parameters: &[
@@ -216,7 +229,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             }
             builder.scene.settings.width = width;
             builder.scene.settings.height = height;
-            Ok(None)
+            Ok(Dynamic::UNIT)
         },
     },
     Function {
@@ -226,7 +239,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "samples(16);",
         action: |builder, bound| {
             builder.scene.settings.samples = bound.integer("count").and_then(|i| u32::try_from(i).ok()).unwrap_or(1);
-            Ok(None)
+            Ok(Dynamic::UNIT)
         },
     },
     Function {
@@ -236,7 +249,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "seed(7);",
         action: |builder, bound| {
             builder.scene.settings.seed = bound.integer("number").unwrap_or_default().unsigned_abs();
-            Ok(None)
+            Ok(Dynamic::UNIT)
         },
     },
     Function {
@@ -247,17 +260,26 @@ pub(super) const FUNCTIONS: &[Function] = &[
         action: |builder, bound| {
             let depth = bound.integer("depth").and_then(|i| u32::try_from(i).ok());
             builder.scene.settings.reflection_depth = depth.unwrap_or_default();
-            Ok(None)
+            Ok(Dynamic::UNIT)
         },
     },
     Function {
         name: "tolerance",
         summary: "Sets how closely triangles follow the surfaces of all objects that have no tolerance of their own.",
-        parameters: &[parameter("length", Kind::Length, Required, "largest distance, scene units")],
-        example: "tolerance(0.001);",
+        parameters: &[
+            parameter("length", Kind::Length, Required, "largest distance, scene units"),
+            parameter(
+                "angle",
+                Kind::Number(0.01, 180.0),
+                Is("45"),
+                "largest turn of the normal along a triangle, degrees",
+            ),
+        ],
+        example: "tolerance(0.001, 20);",
         action: |builder, bound| {
             builder.scene.settings.tolerance = bound.number("length");
-            Ok(None)
+            builder.scene.settings.angle = bound.number("angle").unwrap_or(builder.scene.settings.angle);
+            Ok(Dynamic::UNIT)
         },
     },
 ];
@@ -267,7 +289,7 @@ fn add_mesh(builder: &mut Builder, bound: &Bound) -> Done {
     if !path.is_file() {
         return Err(format!("there is no file {}", path.display()));
     }
-    builder.add(Shape::Mesh { path }, None).map(Some)
+    builder.add(Shape::Mesh { path }, None).map(Dynamic::from)
 }
 
 fn set_material(builder: &mut Builder, bound: &Bound) -> Done {
@@ -279,7 +301,7 @@ fn set_material(builder: &mut Builder, bound: &Bound) -> Done {
         mirror: bound.vector("mirror").unwrap_or(mirror),
     };
     builder.object(bound.object("object"))?.material = Some(material);
-    Ok(bound.object("object"))
+    Ok(value(bound.object("object")))
 }
 
 fn add_point_light(builder: &mut Builder, bound: &Bound) -> Done {
@@ -297,7 +319,7 @@ fn add_light(builder: &mut Builder, light: Light) -> Done {
         return Err(format!("more than {MAX_LIGHTS} lights"));
     }
     builder.scene.lights.push(light);
-    Ok(None)
+    Ok(Dynamic::UNIT)
 }
 
 fn set_camera(builder: &mut Builder, bound: &Bound) -> Done {
@@ -312,5 +334,5 @@ fn set_camera(builder: &mut Builder, bound: &Bound) -> Done {
     // The message names the function already.
     camera.check().map_err(|e| e.to_string().trim_start_matches("camera: ").to_string())?;
     builder.scene.camera = Some(camera);
-    Ok(None)
+    Ok(Dynamic::UNIT)
 }

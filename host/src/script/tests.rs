@@ -6,12 +6,12 @@ use crate::scene::Shape;
 use crate::solid::Primitive;
 use glam::DVec3;
 
-fn run(text: &str) -> Evaluated {
-    evaluate(text, "test.rhai", Path::new("")).unwrap_or_else(|e| panic!("{e}"))
+pub(super) fn run(text: &str) -> Evaluated {
+    evaluate(text, "test.rhai", Path::new(""), &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn problem(text: &str) -> (usize, usize, String) {
-    match evaluate(text, "test.rhai", Path::new("")) {
+pub(super) fn problem(text: &str) -> (usize, usize, String) {
+    match evaluate(text, "test.rhai", Path::new(""), &[]) {
         Err(ScriptError::Place(place)) => (place.line, place.column, place.message),
         other => panic!("{text}: no error with a place, but {other:?}"),
     }
@@ -133,15 +133,15 @@ fn no_script_runs_forever_or_eats_the_memory() {
     assert!(problem("let s = \"x\"; loop { s += s; }").2.contains("too large"));
     assert!(problem("let a = [0]; loop { a += a; }").2.contains("too large"));
     for forbidden in ["sleep(10);", "timestamp();", "eval(\"1\");", "import \"x\" as y;"] {
-        assert!(evaluate(forbidden, "t", Path::new("")).is_err(), "{forbidden}");
+        assert!(evaluate(forbidden, "t", Path::new(""), &[]).is_err(), "{forbidden}");
     }
     let deep = "(".repeat(5000);
-    assert!(evaluate(&deep, "t", Path::new("")).is_err());
+    assert!(evaluate(&deep, "t", Path::new(""), &[]).is_err());
 }
 
 #[test]
 fn a_message_shows_the_line_and_points_at_the_column() {
-    let error = evaluate("cube(1);\n  cube(0);", "a.rhai", Path::new("")).expect_err("wrong");
+    let error = evaluate("cube(1);\n  cube(0);", "a.rhai", Path::new(""), &[]).expect_err("wrong");
     let shown = error.to_string();
     assert!(shown.starts_with("a.rhai:2:3: cube: size must be"), "{shown}");
     assert!(shown.ends_with("2 |   cube(0);\n  |   ^"), "{shown}");
@@ -153,15 +153,39 @@ fn a_script_finds_meshes_beside_itself() {
     std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
     let script = folder.path().join("s.rhai");
     std::fs::write(&script, "mesh(\"a.obj\");").expect("written");
-    let made = load_file(&script).expect("a scene");
+    let made = load_file(&script, &[]).expect("a scene");
     assert_eq!(made.scene.objects[0].shape, Shape::Mesh { path: folder.path().join("a.obj") });
-    assert!(matches!(load("no such file.rhai"), Err(ScriptError::Read { .. })));
+    assert!(matches!(load("no such file.rhai", &[]), Err(ScriptError::Read { .. })));
 }
 
 #[test]
 fn the_embedded_scenes_are_right() {
     for embedded in EMBEDDED {
-        let made = load(embedded.name).unwrap_or_else(|e| panic!("{e}"));
+        let made = load(embedded.name, &[]).unwrap_or_else(|e| panic!("{e}"));
         assert!(!made.scene.objects.is_empty() && !made.scene.lights.is_empty());
     }
+}
+
+#[test]
+fn parameters_take_the_kind_of_their_default() {
+    let script = "
+        print(parameter(\"count\", 3)); print(parameter(\"width\", 2.5, \"of the door\"));
+        print(parameter(\"open\", false)); print(parameter(\"title\", \"none\"));
+    ";
+    let with = |given: &[&str]| {
+        let given: Vec<Definition> = given.iter().map(|text| text.parse().expect("a definition")).collect();
+        evaluate(script, "door.rhai", Path::new(""), &given)
+    };
+    assert_eq!(with(&[]).expect("defaults").printed, ["3", "2.5", "false", "none"]);
+    let given = ["count=1", "count=-4", "width=1e3", "open=true", "title=a = b"];
+    assert_eq!(with(&given).expect("values").printed, ["-4", "1000.0", "true", "a = b"]);
+    let refused = |text: &str| with(&[text]).expect_err("wrong").to_string();
+    assert!(refused("count=2.5").contains("door.rhai:2:15: parameter: count must be a whole number, not 2.5"));
+    assert!(refused("width=wide").contains("must be a number") && refused("width=inf").contains("must be a number"));
+    assert!(refused("open=yes").contains("must be true or false"));
+    let unknown = refused("widht=3");
+    assert!(unknown.starts_with("-D widht=3: door.rhai has no parameter widht; the script asks for"), "{unknown}");
+    assert!(unknown.contains("\n  width=2.5  a number: of the door") && unknown.contains("\n  title=none  a text"));
+    assert!(problem("parameter(\"a b\", 1);").2.contains("letters, digits"));
+    assert!(problem("parameter(\"a\", [1]);").2.contains("default must be a number, true or false, or a string"));
 }

@@ -5,6 +5,7 @@ use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene, Shape};
+use crate::surface::Tolerance;
 use std::time::Instant;
 
 /// The coarsest tolerance, as a part of the diagonal of the scene.
@@ -16,6 +17,7 @@ const STEP: f64 = 3.0;
 struct Composites<'a> {
     shapes: Vec<&'a Shape>,
     coarsest: f64,
+    angle: f64,
     settings: u32,
 }
 
@@ -27,7 +29,8 @@ pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Resu
         return Err(StudyError::Nothing("no object of the scene is made of others"));
     }
     let coarsest = Prepared::new(scene)?.bounds.diagonal() * COARSEST;
-    sweep(&Composites { shapes, coarsest, settings: options.settings.clamp(1, 9) }, watch)
+    let (angle, settings) = (scene.settings.angle, options.settings.clamp(1, 9));
+    sweep(&Composites { shapes, coarsest, angle, settings }, watch)
 }
 
 impl Knob for Composites<'_> {
@@ -45,7 +48,8 @@ impl Knob for Composites<'_> {
 
     fn run(&self, setting: f64, _: &Watch<'_>) -> Result<Trial<Vec<Mesh>>, StudyError> {
         let start = Instant::now();
-        let made: Result<Vec<Mesh>, StudyError> = self.shapes.iter().map(|s| Ok(s.made(setting)?.mesh)).collect();
+        let made: Result<Vec<Mesh>, StudyError> =
+            self.shapes.iter().map(|s| Ok(s.made(Tolerance::new(setting, self.angle))?.mesh)).collect();
         let (answer, seconds) = (made?, start.elapsed().as_secs_f64());
         let triangles = answer.iter().map(|mesh| mesh.triangles.len()).sum::<usize>() as f64;
         Ok(Trial { answer, seconds, counts: vec![("triangles", triangles)] })

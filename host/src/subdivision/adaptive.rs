@@ -6,9 +6,10 @@
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, TAU};
 use std::rc::Rc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::error::SubdivisionError;
 use super::limit::{Limit, Limits, Rim, distinct};
@@ -92,10 +93,28 @@ struct Patch {
     fan: Vec<Place>,
     /// Whether the faces go all around the vertex; else the last side lies on a crease or a border.
     is_closed: bool,
-    /// The limit points: vertices of the surface, and the normals there on this side of a crease.
-    points: Vec<(u32, DVec3)>,
+    /// The limit points: vertices of the surface, the normals there on this side of a crease, and the parameters.
+    points: Vec<Point>,
     /// The sides from each limit point to the next.
     sides: Vec<u32>,
+    /// Which of the first patches it is a part of.
+    whole: u32,
+}
+
+/// A point of a patch: the vertex, the normal on this side of a crease, and its place in a regular polygon.
+type Point = (u32, DVec3, DVec2);
+
+/// The corners of the regular polygon that is the domain of a patch with so many; the unit square for four.
+fn domain(count: usize) -> impl Iterator<Item = DVec2> {
+    let angle = move |k: usize| (k as f64 - 0.5) * TAU / count as f64 - FRAC_PI_2;
+    let on_circle = move |k: usize| DVec2::from_angle(angle(k)) * FRAC_1_SQRT_2 + 0.5;
+    let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+    (0..count).map(move |k| if count == 4 { square[k] } else { on_circle(k) })
+}
+
+/// The mean of the parameters of some points.
+fn mean(points: &[Point]) -> DVec2 {
+    points.iter().map(|point| point.2).sum::<DVec2>() / points.len() as f64
 }
 
 /// A side of one or two patches.
@@ -134,10 +153,12 @@ impl Surface {
         let mut patches = Vec::new();
         let mut add = |run: Vec<(u32, u32)>, fan: Vec<Place>, is_closed| {
             let normal = |owner: u32| limits.of_corners[owner as usize].normal;
-            let points: Vec<(u32, DVec3)> = run.into_iter().map(|(name, owner)| (name, normal(owner))).collect();
+            let points = run.iter().zip(domain(run.len())).map(|(&(name, owner), uv)| (name, normal(owner), uv));
+            let points: Vec<Point> = points.collect();
             let following = points.iter().skip(1).chain(&points[..1]);
             let sides = points.iter().zip(following).map(|(a, b)| self.side([a.0, b.0], &mut known)).collect();
-            patches.push(Patch { fan, is_closed, points, sides });
+            let whole = patches.len() as u32;
+            patches.push(Patch { fan, is_closed, points, sides, whole });
         };
         creases.each_inner_face(|run, owners| {
             let run = distinct(run, owners, &limits.names);
@@ -254,22 +275,25 @@ impl Surface {
         if outer.is_none() {
             self.vertices.push(division.center);
         }
+        let halfway = |k: usize| (patch.points[k].2 + patch.points[(k + 1) % count].2) * 0.5;
+        // At an open fan the last side has its middle where the others have their common one.
+        let in_the_middle = if patch.is_closed { mean(&patch.points) } else { halfway(count - 1) };
         let inner: Vec<u32> = middles.iter().map(|middle| self.new_side([middle.0, center], false)).collect();
         for k in 0..count {
             let end = patch.points[k].0;
             let own = (Place::new(&division.refined[k], patch.fan[k].corner), patch.points[k], 0);
-            let vertex = (Place::new(&division.vertex, k), (center, division.center.normal), 0);
+            let vertex = (Place::new(&division.vertex, k), (center, division.center.normal, in_the_middle), 0);
             let side_part = |this: &Surface, edge: usize| this.half(patch.sides[edge], middles[edge].1, end);
             // Face, its limit point, and the side from there to the next.
             let behind = (k < edges).then(|| {
                 let place = Place::new(&division.edges[k], 0);
-                (place, (middles[k].0, division.middles[k].normal), inner[k])
+                (place, (middles[k].0, division.middles[k].normal, halfway(k)), inner[k])
             });
             let before = (k > 0 || patch.is_closed).then(|| {
                 let edge = (k + count - 1) % count;
                 let face = &division.edges[edge];
                 let place = Place::new(face, face.corners.len() - 1);
-                (place, (middles[edge].0, division.middles[edge].normal), side_part(self, edge))
+                (place, (middles[edge].0, division.middles[edge].normal, halfway(edge)), side_part(self, edge))
             });
             let run = match (behind, before, outer) {
                 (Some(behind), Some(before), _) => {
@@ -287,7 +311,8 @@ impl Surface {
                 _ => continue,
             };
             let is_closed = run.len() == 4;
-            let mut part = Patch { fan: Vec::new(), is_closed, points: Vec::new(), sides: Vec::new() };
+            let mut part =
+                Patch { fan: Vec::new(), is_closed, points: Vec::new(), sides: Vec::new(), whole: patch.whole };
             for (place, point, side) in run {
                 part.fan.push(place);
                 part.points.push(point);
@@ -325,9 +350,9 @@ impl Surface {
         let mut outline = Vec::new();
         for patch in leaves {
             outline.clear();
-            for (&point, &side) in patch.points.iter().zip(&patch.sides) {
+            for (k, (&point, &side)) in patch.points.iter().zip(&patch.sides).enumerate() {
                 outline.push(point);
-                self.push_between(side, point, &mut outline);
+                self.push_between(side, point, patch.points[(k + 1) % patch.points.len()].2, &mut outline);
             }
             outline.dedup_by_key(|point| point.0);
             while outline.len() > 1 && outline[0].0 == outline[outline.len() - 1].0 {
@@ -340,6 +365,8 @@ impl Surface {
                 let triangle = [outline[0], pair[0], pair[1]];
                 mesh.triangles.push(triangle.map(|point| point.0));
                 mesh.corner_normals.push(triangle.map(|point| point.1));
+                mesh.corner_parameters.push(triangle.map(|point| point.2));
+                mesh.surfaces.push(patch.whole);
             }
         }
         mesh.vertices = self.vertices.iter().map(|limit| limit.point).collect();
@@ -347,21 +374,24 @@ impl Surface {
     }
 
     /// Adds the points that divide a side, beginning at `from`, without its ends.
-    fn push_between(&self, side: u32, from: (u32, DVec3), outline: &mut Vec<(u32, DVec3)>) {
+    ///
+    /// - `to`: the parameters at its other end.
+    fn push_between(&self, side: u32, from: Point, to: DVec2, outline: &mut Vec<Point>) {
         let Side { ends, is_crease, halves: Some((middle, [first, second])) } = self.sides[side as usize] else {
             return;
         };
         let [near, far] = if ends[0] == from.0 { [first, second] } else { [second, first] };
-        self.push_between(near, from, outline);
+        let uv = (from.2 + to) * 0.5;
+        self.push_between(near, from, uv, outline);
         // Beyond a crease the normal is another one.
         let normal = if is_crease { from.1 } else { self.vertices[middle as usize].normal };
-        outline.push((middle, normal));
-        self.push_between(far, (middle, normal), outline);
+        outline.push((middle, normal, uv));
+        self.push_between(far, (middle, normal, uv), to, outline);
     }
 
     /// Makes an outline ready for triangles from its first point: the better diagonal of four points, else a new point in
     /// the middle of the patch.
-    fn lead(&mut self, patch: &Patch, outline: &mut Vec<(u32, DVec3)>) {
+    fn lead(&mut self, patch: &Patch, outline: &mut Vec<Point>) {
         let (_, center) = middles(patch);
         let at = |k: usize| self.vertices[outline[k].0 as usize].point;
         if outline.len() == 4 {
@@ -372,7 +402,7 @@ impl Surface {
         } else if patch.is_closed {
             let center = Division::of(patch).center;
             let first = outline[0];
-            outline.insert(0, (self.vertices.len() as u32, center.normal));
+            outline.insert(0, (self.vertices.len() as u32, center.normal, mean(&patch.points)));
             outline.push(first);
             self.vertices.push(center);
         }

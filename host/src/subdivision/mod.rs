@@ -66,7 +66,8 @@ impl Polyhedron {
     /// Triangles of the limit surface that are small only where it is curved, with its normals at their corners.
     ///
     /// All vertices lie on the limit surface, and there are no cracks. Faces that several creases or borders hold apart,
-    /// such as a strip one face wide or a flat cap, are not divided, but follow the curves around them.
+    /// such as a strip one face wide or a flat cap, are not divided, but follow the curves around them. Surfaces of the
+    /// mesh are the patches that one step leaves around each vertex; parameters are places in a regular polygon.
     ///
     /// - `tolerance`: how far the middle of a triangle or side may be from the surface, in units of the positions.
     ///

@@ -14,9 +14,9 @@ const SILL: f64 = 0.22;
 
 /// From the bumper to the windscreen.
 const FRONT: [Section; 8] = [
-    [-2.20, 0.680, 0.240, 0.640, 0.240],
-    [-2.24, 0.720, 0.340, 0.670, 0.360],
-    [-2.25, 0.770, 0.500, 0.720, 0.530],
+    [-2.25, 0.680, SILL, 0.640, SILL],
+    [-2.25, 0.720, 0.340, 0.670, 0.360],
+    [-2.245, 0.770, 0.500, 0.720, 0.530],
     [-2.16, 0.830, 0.640, 0.740, 0.680],
     [-1.75, 0.870, 0.740, 0.750, 0.790],
     [-1.30, 0.885, 0.800, 0.750, 0.855],
@@ -44,14 +44,14 @@ const BOOT: [Section; 7] = [
     [1.90, 0.885, 0.920, 0.735, 0.955],
     [2.00, 0.880, 0.915, 0.735, 0.950],
     [2.12, 0.875, 0.910, 0.735, 0.945],
-    [2.26, 0.850, 0.850, 0.730, 0.885],
-    [2.29, 0.800, 0.600, 0.720, 0.630],
-    [2.26, 0.720, 0.360, 0.680, 0.380],
-    [2.22, 0.700, 0.240, 0.660, 0.240],
+    [2.25, 0.850, 0.850, 0.730, 0.885],
+    [2.275, 0.800, 0.600, 0.720, 0.630],
+    [2.28, 0.720, 0.360, 0.680, 0.380],
+    [2.28, 0.700, SILL, 0.660, SILL],
 ];
 
 /// The body of a saloon: front with hood, cabin, boot; metres. The car drives towards -x, y is up, and it stands over
-/// y = 0; outside out. It is open below.
+/// y = 0; outside out. It is open below, where its border lies in a plane and nothing else does.
 ///
 /// Each surface has a continuous curvature in itself. At the windscreen line hood and cabin have a common tangent plane, at
 /// the edge of the boot lid cabin and boot have a common curvature.
@@ -75,8 +75,11 @@ fn skin(sections: &[Section]) -> Result<SplineSurface, JoinError> {
     Ok(SplineSurface::new(basis(net.len())?, basis(net[0].len())?, &net, &[])?)
 }
 
-/// The control points of a section, from one sill to the other.
+/// The control points of a section, from one sill to the other. One without height is a straight line.
 fn row(&[x, width, belt, top_width, top]: &Section) -> Vec<DVec3> {
+    if top <= SILL {
+        return (0..=14).map(|k| DVec3::new(x, SILL, 0.9 * width * (1.0 - f64::from(k) / 7.0))).collect();
+    }
     // Above the belt line sides lean in where there are windows, and are rounded where there is a lid.
     let (shoulder, edge) = if top - belt > 0.2 { (0.45, 0.25) } else { (1.0, 0.2) };
     let half = [

@@ -1,5 +1,7 @@
 //! Curvature of surfaces.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::Surface;
@@ -8,6 +10,12 @@ use super::Surface;
 pub trait Curved: Surface {
     /// The derivatives of the point by uu, uv and vv.
     fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3];
+}
+
+impl<S: Curved + ?Sized> Curved for Arc<S> {
+    fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        (**self).second_derivatives(uv)
+    }
 }
 
 /// The curvature of the section of `surface` by the plane of its normal and `direction`, a vector in the tangent plane;

@@ -1,10 +1,11 @@
 //! Spline surfaces of every kind over rectangular control meshes.
 
 use glam::{DAffine3, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 
 use super::curvature::Curved;
 use super::{Surface, TensorPatch, nearest_from};
-use crate::curve::{Basis, ControlPoint, Refinement, SplineError, apply, control_net};
+use crate::curve::{Basis, ControlPoint, Refinement, SplineError, apply, check_control, control_net};
 
 /// One of the two directions of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,13 +31,40 @@ impl Direction {
 ///
 /// A parameter of one direction holds along the whole joint, from side to side; it changes the surface in the strip of
 /// patches beside that joint and nowhere else.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Plain", into = "Plain")]
 pub struct SplineSurface {
     bases: [Basis; 2],
     /// Row by row; v changes within a row.
     control: Vec<ControlPoint>,
     /// As the control points: v changes first.
     patches: Vec<TensorPatch>,
+}
+
+/// What a surface is made of.
+#[derive(Serialize, Deserialize)]
+struct Plain {
+    bases: [Basis; 2],
+    control: Vec<ControlPoint>,
+}
+
+impl TryFrom<Plain> for SplineSurface {
+    type Error = SplineError;
+
+    fn try_from(Plain { bases, control }: Plain) -> Result<SplineSurface, SplineError> {
+        let needed = bases.iter().map(Basis::control_count).product();
+        if control.len() != needed {
+            return Err(SplineError::Count { what: "control points", found: control.len(), needed });
+        }
+        check_control(&control)?;
+        Ok(SplineSurface::of(bases, control))
+    }
+}
+
+impl From<SplineSurface> for Plain {
+    fn from(surface: SplineSurface) -> Plain {
+        Plain { bases: surface.bases, control: surface.control }
+    }
 }
 
 impl SplineSurface {

@@ -12,6 +12,7 @@ use crate::{
     mesh::{Eye, Mesh, Selection, polylines},
     numeric::bounds::Bounds,
     scene::{Camera, Object, Scene, Settings},
+    surface::Tolerance,
 };
 use glam::{DAffine3, DVec3};
 use protocol::{
@@ -95,8 +96,11 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
     camera.check().map_err(|e| failed(e.to_string()))?;
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
     shown.commands.push(Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())]));
-    let objects: Result<Vec<Node>, WorkstationError> =
-        (1..).zip(&scene.objects).map(|(number, object)| data(number, object, camera, drawing, &mut shown)).collect();
+    let angle = scene.settings.angle;
+    let objects: Result<Vec<Node>, WorkstationError> = (1..)
+        .zip(&scene.objects)
+        .map(|(number, object)| data(number, object, angle, camera, drawing, &mut shown))
+        .collect();
     if drawing.facets {
         let bytes = u32::try_from(shown.points as u64 * BYTES_PER_VERTEX).unwrap_or(u32::MAX);
         shown.commands.push(Command::ReserveWorkingStorage(bytes));
@@ -181,15 +185,14 @@ fn boundaries(camera: &Camera, depth: f64, radius: f64) -> Boundaries {
 fn data(
     number: usize,
     object: &Object,
+    angle: f64,
     camera: &Camera,
     drawing: &Drawing,
     shown: &mut Shown,
 ) -> Result<Node, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
-    let coarse = object
-        .shape
-        .made(drawing.tolerance * object.shape.extent().unwrap_or(1.0))
-        .map_err(|e| failed(e.to_string()))?;
+    let chord = drawing.tolerance * object.shape.extent().unwrap_or(1.0);
+    let coarse = object.shape.made(Tolerance::new(chord, angle)).map_err(|e| failed(e.to_string()))?;
     let mesh = coarse.mesh.transformed(&DAffine3::from_mat4(object.transform));
     let selection = match drawing.lines {
         Lines::Grid => Selection::grid(drawing.crease_degrees),

@@ -15,6 +15,8 @@ pub(super) struct Header {
     pub bytes: usize,
     /// Lines of the header.
     pub lines: usize,
+    /// Names of surfaces.
+    pub surfaces: Vec<String>,
 }
 
 /// A table.
@@ -34,7 +36,8 @@ pub(super) struct Property {
 
 /// Reads the header at the beginning of `bytes`.
 pub(super) fn parse(bytes: &[u8]) -> Result<Header, Fault> {
-    let mut header = Header { encoding: Encoding::Text, elements: Vec::new(), bytes: 0, lines: 0 };
+    let mut header =
+        Header { encoding: Encoding::Text, elements: Vec::new(), bytes: 0, lines: 0, surfaces: Vec::new() };
     let mut has_format = false;
     while header.bytes < bytes.len() {
         let rest = &bytes[header.bytes..];
@@ -67,6 +70,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Fault> {
                 let property = property(declaration).map_err(|problem| place.fault(problem))?;
                 let element = header.elements.last_mut().ok_or_else(|| expected("element before property"))?;
                 element.properties.push(property);
+            }
+            ["comment", "surface", number, ref name @ ..] => {
+                if number.parse() == Ok(header.surfaces.len()) {
+                    header.surfaces.push(name.join(" "));
+                }
             }
             [] | ["comment" | "obj_info", ..] => {}
             _ => return Err(expected("format, element, property, comment or end_header")),

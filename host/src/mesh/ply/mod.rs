@@ -1,7 +1,8 @@
 //! Stanford polygon files: a header that describes tables, then the tables as text or binary.
 //!
 //! Read are the elements `vertex` (x y z; nx ny nz; s t, u v or texture_u texture_v) and `face` (vertex_indices or
-//! vertex_index); all others are skipped.
+//! vertex_index); all others are skipped. The property `surface` of a face is the number of its group; comments
+//! `surface NUMBER NAME` name the groups, in order from 0.
 //!
 //! Not modelled: triangle strips, colours, materials.
 //!
@@ -16,6 +17,7 @@ use glam::{DVec2, DVec3};
 use self::header::{Element, Header, Property};
 use self::table::{Binary, Table, Text};
 use super::file::{MAX_COUNT, fan};
+use super::groups::{Grouped, has_groups, name_of};
 use super::{Fault, Mesh, Problem};
 
 /// The encoding of the tables.
@@ -40,7 +42,7 @@ enum Scalar {
 }
 
 /// Understands a PLY file.
-pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+pub(super) fn parse(bytes: &[u8]) -> Result<Grouped, Fault> {
     let header = header::parse(bytes)?;
     let body = &bytes[header.bytes..];
     match header.encoding {
@@ -50,7 +52,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     }
 }
 
-fn tables<T: Table>(header: &Header, mut table: T) -> Result<Mesh, Fault> {
+fn tables<T: Table>(header: &Header, mut table: T) -> Result<Grouped, Fault> {
     let mut content = Content::default();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         check_count(element, &table)?;
@@ -60,7 +62,9 @@ fn tables<T: Table>(header: &Header, mut table: T) -> Result<Mesh, Fault> {
             _ => skip(element, &mut table)?,
         }
     }
-    content.into_mesh(&table)
+    let mesh = content.into_mesh(&table)?;
+    let names = if mesh.surfaces.is_empty() { Vec::new() } else { header.surfaces.clone() };
+    Ok(Grouped { mesh, names })
 }
 
 /// Refuses a count that the rest of the file cannot hold, before anything is reserved for it.
@@ -89,6 +93,8 @@ struct Content {
     normals: Vec<DVec3>,
     parameters: Vec<DVec2>,
     triangles: Vec<[u32; 3]>,
+    /// The group of each triangle, if faces tell.
+    surfaces: Vec<u32>,
 }
 
 impl Content {
@@ -127,7 +133,12 @@ impl Content {
         let is_indices = |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
         let mut polygon: Vec<u32> = Vec::new();
         for _ in 0..element.count {
+            let (first, mut surface) = (self.triangles.len(), None);
             for property in &element.properties {
+                if property.name == "surface" && property.length.is_none() {
+                    surface = Some(index(table, property, u32::MAX as usize, "surfaces")?);
+                    continue;
+                }
                 let (true, Some(length)) = (is_indices(property), property.length) else {
                     table.skip(property)?;
                     continue;
@@ -139,16 +150,13 @@ impl Content {
                 }
                 polygon.clear();
                 for _ in 0..corners {
-                    let place = table.place();
-                    let index = table.number(property.scalar)?;
-                    if !(0.0..=f64::from(u32::MAX)).contains(&index) || index.fract() != 0.0 {
-                        let problem =
-                            Problem::Index { index: index as i64, count: self.positions.len(), table: "vertices" };
-                        return Err(place.fault(problem));
-                    }
-                    polygon.push(index as u32);
+                    polygon.push(index(table, property, self.positions.len(), "vertices")?);
                 }
                 self.triangles.extend(fan(&polygon));
+            }
+            if let Some(surface) = surface {
+                self.surfaces.resize(first, 0);
+                self.surfaces.resize(self.triangles.len(), surface);
             }
         }
         Ok(())
@@ -167,9 +175,19 @@ impl Content {
             corner_parameters: per_corner(&self.triangles, &parameters, count),
             vertices: self.positions,
             triangles: self.triangles,
-            surfaces: Vec::new(),
+            surfaces: self.surfaces,
         })
     }
+}
+
+/// A whole number from 0; `count` entries of `what` are known for the message.
+fn index<T: Table>(table: &mut T, property: &Property, count: usize, what: &'static str) -> Result<u32, Fault> {
+    let place = table.place();
+    let index = table.number(property.scalar)?;
+    if !(0.0..=f64::from(u32::MAX)).contains(&index) || index.fract() != 0.0 {
+        return Err(place.fault(Problem::Index { index: index as i64, count, table: what }));
+    }
+    Ok(index as u32)
 }
 
 /// A table per vertex as a table per corner; empty unless all `vertices` have an entry.
@@ -180,22 +198,27 @@ fn per_corner<T: Copy>(triangles: &[[u32; 3]], per_vertex: &[T], vertices: usize
     triangles.iter().map(|triangle| triangle.map(|vertex| per_vertex[vertex as usize])).collect()
 }
 
-/// The little-endian form of the positions and triangles of `mesh`, in double precision.
-pub(super) fn print(mesh: &Mesh) -> Vec<u8> {
+/// The little-endian form of the positions, triangles and surfaces of `mesh`, in double precision.
+pub(super) fn print(mesh: &Mesh, names: &[String]) -> Vec<u8> {
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    let surfaces = if has_groups(mesh, names) { mesh.surfaces.as_slice() } else { &[] };
+    let count = surfaces.iter().max().map_or(0, |last| (*last as usize + 1).min(names.len()) as u32);
+    let comments: String = (0..count).map(|k| format!("comment surface {k} {}\n", name_of(names, k))).collect();
+    let property = if surfaces.is_empty() { "" } else { "property uint surface\n" };
     let header = format!(
-        "ply\nformat binary_little_endian 1.0\ncomment by PERIS\n\
+        "ply\nformat binary_little_endian 1.0\ncomment by PERIS\n{comments}\
          element vertex {vertices}\nproperty double x\nproperty double y\nproperty double z\n\
-         element face {triangles}\nproperty list uchar uint vertex_indices\nend_header\n"
+         element face {triangles}\nproperty list uchar uint vertex_indices\n{property}end_header\n"
     );
     let mut bytes = header.into_bytes();
     bytes.reserve(vertices * 24 + triangles * 13);
     for value in mesh.vertices.iter().flat_map(|position| position.to_array()) {
         bytes.extend_from_slice(&value.to_le_bytes());
     }
-    for triangle in &mesh.triangles {
+    for (k, triangle) in mesh.triangles.iter().enumerate() {
         bytes.push(3);
         triangle.iter().for_each(|vertex| bytes.extend_from_slice(&vertex.to_le_bytes()));
+        bytes.extend(surfaces.get(k).iter().flat_map(|surface| surface.to_le_bytes()));
     }
     bytes
 }
@@ -212,14 +235,14 @@ mod tests {
 
     #[test]
     fn text_with_lists_polygons_and_foreign_elements_is_read() {
-        let mesh = parse(TEXT.as_bytes()).unwrap();
+        let mesh = parse(TEXT.as_bytes()).unwrap().mesh;
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
         assert_eq!(mesh.vertices[2], DVec3::new(1.0, 1.0, 0.0));
     }
 
     #[test]
     fn both_byte_orders_give_the_same_mesh() {
-        let little = print(&tetrahedron());
+        let little = print(&tetrahedron(), &[]);
         let header = little.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
         let mut big = String::from_utf8(little[..header].to_vec()).unwrap().replace("little", "big").into_bytes();
         for value in little[header..header + 96].chunks(8) {
@@ -229,8 +252,8 @@ mod tests {
             big.push(face[0]);
             face[1..].chunks(4).for_each(|index| big.extend(index.iter().rev()));
         }
-        assert_eq!(parse(&little).unwrap(), tetrahedron());
-        assert_eq!(parse(&big).unwrap(), tetrahedron());
+        assert_eq!(parse(&little).unwrap().mesh, tetrahedron());
+        assert_eq!(parse(&big).unwrap().mesh, tetrahedron());
     }
 
     #[test]
@@ -238,9 +261,23 @@ mod tests {
         let text = "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nproperty float nx\r\n\
             property float ny\r\nproperty float nz\r\nproperty float s\r\nproperty float t\r\nelement face 1\r\n\
             property list uchar int vertex_index\r\nend_header\r\n0 0 0 0 0 2 0 0\r\n1 0 0 0 0 1 1 0\r\n0 1 0 0 0 1 0 1\r\n3 0 1 2\r\n";
-        let mesh = parse(text.as_bytes()).unwrap();
+        let mesh = parse(text.as_bytes()).unwrap().mesh;
         assert_eq!(mesh.corner_normals, [[DVec3::Z; 3]]);
         assert_eq!(mesh.corner_parameters, [[DVec2::ZERO, DVec2::X, DVec2::Y]]);
+    }
+
+    #[test]
+    fn surfaces_of_faces_come_back_with_their_names() {
+        let mesh = Mesh { surfaces: vec![0, 2, 2, 1], ..tetrahedron() };
+        let names = ["lid", "the  side\n", ""].map(String::from);
+        let back = parse(&print(&mesh, &names)).unwrap();
+        assert_eq!(
+            (&back.mesh, back.names.as_slice()),
+            (&mesh, ["lid", "the side", "surface 2"].map(String::from).as_slice())
+        );
+        let absurd = TEXT.replace("comment c", "comment surface 4000000000 x").replace("uchar flags", "uchar surface");
+        let read = parse(absurd.as_bytes()).unwrap();
+        assert_eq!((read.mesh.surfaces, read.names.len()), (vec![1, 1, 1], 0));
     }
 
     #[test]
@@ -262,7 +299,7 @@ mod tests {
         );
         assert_eq!(fault(&TEXT.replace("1 3 0 1 2\n", "1 3 0 1 -2\n")), "line 21: index -2 is outside the 4 vertices");
         assert_eq!(fault("ply\nformat ascii 1.0\nelement vertex 3\n"), "line 4: ends where end_header is expected");
-        let short = print(&tetrahedron());
+        let short = print(&tetrahedron(), &[]);
         let fault = parse(&short[..short.len() - 1]).unwrap_err();
         assert_eq!(fault.to_string(), format!("byte {}: ends where a number is expected", short.len() - 4));
     }

@@ -1,6 +1,7 @@
 //! The solids of the book as data.
 
 use super::*;
+use crate::curve::SplineCurve;
 use crate::solid::Body;
 use crate::surface::Widening;
 use glam::{DVec2, DVec3};
@@ -113,14 +114,12 @@ pub enum Primitive {
         /// How far it turned; turns.
         turn: f64,
     },
-    /// A polygon that went along a curve; see [`sweep`] and [`path`].
+    /// A polygon that went along a curve; see [`sweep`].
     Sweep {
         /// Corners of the polygon.
         contours: Vec<Vec<DVec2>>,
-        /// Control points of the curve.
-        path: Vec<DVec3>,
-        /// Whether the curve is closed.
-        is_closed: bool,
+        /// The curve.
+        path: Box<SplineCurve>,
         /// How far the polygon turned about the curve; turns.
         twist: f64,
         /// How much wider it was at the end.
@@ -172,8 +171,8 @@ impl Primitive {
             Primitive::Revolution { profile } => revolution(profile),
             Primitive::Lathe { profile } => smooth_revolution(profile),
             Primitive::Turning { contours, turn } => turned_polygon(contours, *turn),
-            Primitive::Sweep { contours, path: control, is_closed, twist, taper } => {
-                sweep(contours, path(control, *is_closed)?, Widening { turns: *twist, scale: *taper })
+            Primitive::Sweep { contours, path, twist, taper } => {
+                sweep(contours, SplineCurve::clone(path), Widening { turns: *twist, scale: *taper })
             }
         }
     }

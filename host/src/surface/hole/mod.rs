@@ -14,7 +14,8 @@ mod tests;
 pub use around_vertex::{FourSidedPatch, patches_around_vertex};
 pub use n_sided::{NSidedPatch, n_sided_patch};
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 
 use super::{BezierPatch, SurfaceSide};
 
@@ -25,7 +26,7 @@ pub const MAX_SIDES: usize = 256;
 const COPLANAR: f64 = 1e-9;
 
 /// A side of a hole: a cubic curve, run through with the hole on the left seen from outside, and what is beyond it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HoleSide {
     curve: [DVec3; 4],
     /// Bezier points of the derivative across the curve, into the hole.
@@ -49,6 +50,24 @@ impl HoleSide {
             inner.reverse();
         }
         HoleSide { curve, across: [0, 1, 2, 3].map(|k| (curve[k] - inner[k]) * 3.0) }
+    }
+
+    /// The sides of a hole moved by `placement`. A reflection reverses their order and directions, so that outside stays
+    /// outside.
+    pub fn transformed(sides: &[HoleSide], placement: &DAffine3) -> Vec<HoleSide> {
+        let moved = |side: &HoleSide| HoleSide {
+            curve: side.curve.map(|point| placement.transform_point3(point)),
+            across: side.across.map(|vector| placement.transform_vector3(vector)),
+        };
+        let mut sides: Vec<HoleSide> = sides.iter().map(moved).collect();
+        if placement.matrix3.determinant() < 0.0 {
+            sides.reverse();
+            for side in &mut sides {
+                side.curve.reverse();
+                side.across.reverse();
+            }
+        }
+        sides
     }
 
     /// The four control points of the curve.

@@ -1,0 +1,27 @@
+//! glTF 2.0: triangles of meshes that nodes place, as JSON (.gltf) or binary (.glb); lengths are metres.
+//!
+//! Read are triangles, strips and fans with positions, normals and the first texture coordinates, of all component types,
+//! interleaved and sparse, in the default scene, else in the first one. Vertices at the same position become one. Written
+//! is one mesh with a primitive for each surface, which a material names.
+//!
+//! Not modelled: textures, colours, skins, morph targets, animations, cameras, lights; compressed meshes are refused.
+//!
+//! # Source
+//! Khronos Group, glTF 2.0 Specification, 2021 (ISO/IEC 12113:2022).
+
+mod accessor;
+mod base64;
+mod document;
+mod read;
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub(super) use read::parse;
+pub(super) use write::{print_binary, print_text};
+
+/// The first bytes of a binary file.
+const MAGIC: &[u8; 4] = b"glTF";
+/// Kinds of chunks of a binary file.
+const JSON_CHUNK: u32 = 0x4E4F_534A;
+const BINARY_CHUNK: u32 = 0x004E_4942;

@@ -1,0 +1,174 @@
+//! A mesh as a glTF file.
+
+use std::collections::HashMap;
+
+use glam::{DVec2, DVec3};
+use serde_json::{Value, json};
+
+use super::super::groups::{has_groups, name_of};
+use super::super::{Fault, Mesh, Place, Problem};
+use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
+
+/// Types of components.
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+/// What buffer views are for.
+const VERTICES: u32 = 34962;
+const INDICES: u32 = 34963;
+
+/// The text form, with its buffer in itself.
+///
+/// # Errors
+/// If a coordinate is too large for single precision.
+pub fn print_text(mesh: &Mesh, names: &[String]) -> Result<Vec<u8>, Fault> {
+    let (mut document, binary) = document(mesh, names)?;
+    let uri = format!("data:application/octet-stream;base64,{}", base64::encode(&binary));
+    document["buffers"][0]["uri"] = Value::from(uri);
+    Ok(format!("{document:#}\n").into_bytes())
+}
+
+/// The binary form.
+///
+/// # Errors
+/// If a coordinate is too large for single precision, or the file would be too long.
+pub fn print_binary(mesh: &Mesh, names: &[String]) -> Result<Vec<u8>, Fault> {
+    let (document, mut binary) = document(mesh, names)?;
+    let mut json = document.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let whole = 12 + 8 + json.len() + 8 + binary.len();
+    let length = |length: usize| {
+        let too_long =
+            || Place::Mesh.fault(Problem::TooMany { what: "bytes", count: whole as u64, limit: u32::MAX.into() });
+        u32::try_from(length).map_err(|_| too_long())
+    };
+    let mut bytes = MAGIC.to_vec();
+    for word in [2, length(whole)?, length(json.len())?, JSON_CHUNK] {
+        bytes.extend_from_slice(&word.to_le_bytes());
+    }
+    bytes.extend_from_slice(&json);
+    for word in [length(binary.len())?, BINARY_CHUNK] {
+        bytes.extend_from_slice(&word.to_le_bytes());
+    }
+    bytes.extend_from_slice(&binary);
+    Ok(bytes)
+}
+
+/// What is different at a corner: position, normal and parameters, in single precision.
+type Corner = ([u32; 3], [u32; 3], [u32; 2]);
+
+/// The document without its buffer, and the buffer.
+fn document(mesh: &Mesh, names: &[String]) -> Result<(Value, Vec<u8>), Fault> {
+    for (vertex, position) in mesh.vertices.iter().enumerate() {
+        if let Some(&value) = position.to_array().iter().find(|value| !(**value as f32).is_finite()) {
+            return Err(Place::Vertex(vertex).fault(Problem::Range { value }));
+        }
+    }
+    let (corners, indices) = corners(mesh);
+    let count = corners.len();
+    let mut file = File { binary: Vec::new(), views: Vec::new(), accessors: Vec::new() };
+    let view = file.view(corners.iter().flat_map(|corner| corner.0), VERTICES);
+    let position = file.accessor(view, 0, "VEC3", F32, count);
+    let (low, high) = range(&corners);
+    (file.accessors[position]["min"], file.accessors[position]["max"]) = (json!(low), json!(high));
+    let mut attributes = json!({ "POSITION": position });
+    if !mesh.corner_normals.is_empty() {
+        let view = file.view(corners.iter().flat_map(|corner| corner.1), VERTICES);
+        attributes["NORMAL"] = json!(file.accessor(view, 0, "VEC3", F32, count));
+    }
+    if !mesh.corner_parameters.is_empty() {
+        let view = file.view(corners.iter().flat_map(|corner| corner.2), VERTICES);
+        attributes["TEXCOORD_0"] = json!(file.accessor(view, 0, "VEC2", F32, count));
+    }
+    // The triangles of a surface stand together; within it they keep their order.
+    let mut order: Vec<usize> = (0..indices.len()).collect();
+    let surface = |triangle: &usize| mesh.surfaces.get(*triangle).copied().unwrap_or(0);
+    order.sort_by_key(surface);
+    let view = file.view(order.iter().flat_map(|triangle| indices[*triangle]), INDICES);
+    let (mut primitives, mut materials, mut first) = (Vec::new(), Vec::new(), 0);
+    for part in order.chunk_by(|a, b| surface(a) == surface(b)) {
+        let indices = file.accessor(view, 12 * first, "SCALAR", U32, 3 * part.len());
+        let mut primitive = json!({ "attributes": attributes, "indices": indices, "mode": 4 });
+        if has_groups(mesh, names) {
+            primitive["material"] = json!(materials.len());
+            materials.push(json!({ "name": name_of(names, surface(&part[0])) }));
+        }
+        primitives.push(primitive);
+        first += part.len();
+    }
+    let mut document = json!({
+        "asset": { "version": "2.0", "generator": "PERIS" },
+        "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": primitives }],
+        "accessors": file.accessors, "bufferViews": file.views, "buffers": [{ "byteLength": file.binary.len() }],
+    });
+    if !materials.is_empty() {
+        document["materials"] = Value::from(materials);
+    }
+    if mesh.triangles.is_empty() {
+        return Err(Place::Mesh.fault(Problem::NoTriangles));
+    }
+    Ok((document, file.binary))
+}
+
+/// The different corners, in order of their first use, and those of each triangle.
+fn corners(mesh: &Mesh) -> (Vec<Corner>, Vec<[u32; 3]>) {
+    let bits3 = |p: DVec3| p.as_vec3().to_array().map(f32::to_bits);
+    let bits2 = |p: DVec2| p.as_vec2().to_array().map(f32::to_bits);
+    let mut number_of: HashMap<Corner, u32> = HashMap::new();
+    let mut corners = Vec::new();
+    let mut triangles = Vec::with_capacity(mesh.triangles.len());
+    for (triangle, points) in (0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle)).enumerate() {
+        let face = mesh.face_normal(triangle).unwrap_or(DVec3::Z);
+        triangles.push([0, 1, 2].map(|k| {
+            let normal = mesh.corner_normals.get(triangle).map_or(DVec3::ZERO, |normals| {
+                // A corner without a normal, as at a pole, takes that of its triangle: files need one.
+                normals[k].try_normalize().unwrap_or(face)
+            });
+            let uv = mesh.corner_parameters.get(triangle).map_or(DVec2::ZERO, |parameters| parameters[k]);
+            let corner = (bits3(points[k]), bits3(normal), bits2(uv));
+            *number_of.entry(corner).or_insert_with(|| {
+                corners.push(corner);
+                corners.len() as u32 - 1
+            })
+        }));
+    }
+    (corners, triangles)
+}
+
+/// The least and the greatest coordinates.
+fn range(corners: &[Corner]) -> ([f32; 3], [f32; 3]) {
+    let mut range = ([f32::MAX; 3], [f32::MIN; 3]);
+    for corner in corners {
+        for k in 0..3 {
+            let x = f32::from_bits(corner.0[k]);
+            (range.0[k], range.1[k]) = (range.0[k].min(x), range.1[k].max(x));
+        }
+    }
+    range
+}
+
+/// A file in the making.
+struct File {
+    binary: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl File {
+    /// Adds a table of words of four bytes; returns the number of its view.
+    fn view(&mut self, words: impl Iterator<Item = u32>, target: u32) -> usize {
+        let begin = self.binary.len();
+        words.for_each(|word| self.binary.extend_from_slice(&word.to_le_bytes()));
+        let length = self.binary.len() - begin;
+        self.views.push(json!({ "buffer": 0, "byteOffset": begin, "byteLength": length, "target": target }));
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, view: usize, offset: usize, kind: &str, component: u32, count: usize) -> usize {
+        self.accessors.push(json!({
+            "bufferView": view, "byteOffset": offset, "componentType": component, "count": count, "type": kind,
+        }));
+        self.accessors.len() - 1
+    }
+}

@@ -1,0 +1,64 @@
+//! Names of the surfaces of a mesh: the groups of files.
+
+use super::Mesh;
+
+/// A mesh and what its surfaces are called.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Grouped {
+    /// The mesh; its `surfaces` are numbers of groups.
+    pub mesh: Mesh,
+    /// What the surfaces are called, by their numbers. There may be fewer names than surfaces.
+    pub names: Vec<String>,
+}
+
+impl From<Mesh> for Grouped {
+    fn from(mesh: Mesh) -> Grouped {
+        Grouped { mesh, names: Vec::new() }
+    }
+}
+
+/// Whether a mesh falls into groups that a file should tell.
+pub(super) fn has_groups(mesh: &Mesh, names: &[String]) -> bool {
+    let first = mesh.surfaces.first();
+    !mesh.surfaces.is_empty() && (!names.is_empty() || mesh.surfaces.iter().any(|surface| Some(surface) != first))
+}
+
+/// What a surface is called, on one line.
+pub(super) fn name_of(names: &[String], surface: u32) -> String {
+    match names.get(surface as usize).filter(|name| !name.trim().is_empty()) {
+        Some(name) => name.split_whitespace().collect::<Vec<_>>().join(" "),
+        None => format!("surface {surface}"),
+    }
+}
+
+/// The group of each triangle while a file is read: groups by name, in order of their first triangle.
+#[derive(Default)]
+pub(super) struct Groups {
+    names: Vec<String>,
+    number_of: std::collections::HashMap<String, u32>,
+    of_triangles: Vec<u32>,
+}
+
+impl Groups {
+    /// Notes that the triangles from the last noted one up to `count` are of the group `name`.
+    pub fn extend(&mut self, name: &str, count: usize) {
+        if count <= self.of_triangles.len() {
+            return;
+        }
+        let number = self.number_of.get(name).copied().unwrap_or_else(|| {
+            self.number_of.insert(name.to_owned(), self.names.len() as u32);
+            self.names.push(name.to_owned());
+            self.names.len() as u32 - 1
+        });
+        self.of_triangles.resize(count, number);
+    }
+
+    /// Puts the groups on a mesh; one group without a name is none.
+    pub fn on(self, mut mesh: Mesh) -> Grouped {
+        if self.names.iter().all(String::is_empty) {
+            return Grouped::from(mesh);
+        }
+        mesh.surfaces = self.of_triangles;
+        Grouped { mesh, names: self.names }
+    }
+}
