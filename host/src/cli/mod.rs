@@ -7,6 +7,7 @@ mod check;
 mod convert;
 mod exit;
 mod functions;
+mod intersect;
 mod job;
 mod measure;
 mod octree;
@@ -53,6 +54,7 @@ pub const COMMANDS: &[Row] = &[
     study::ROW,
     convert::ROW,
     boolean::ROW,
+    intersect::ROW,
     check::ROW,
     measure::ROW,
     functions::ROW,

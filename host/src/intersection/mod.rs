@@ -24,6 +24,7 @@
 //! The classification is that of Markot and Magedson 1989 and Hoschek and Lasser 1993, chapter 12; the rest is ours.
 
 mod critical;
+mod file;
 mod follow;
 mod join;
 mod newton;
@@ -33,6 +34,7 @@ mod refine;
 mod sheet;
 mod zone;
 
+pub use file::{csv, obj};
 pub use point::{Branch, CurvePoint, Failure, Intersection, Mark, Place, Precision, Work};
 pub use sheet::Sheet;
 

@@ -4,14 +4,16 @@
 
 mod composite;
 mod error;
+mod meeting;
 mod prepared;
 mod shape;
 mod view;
 
 pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
+pub use meeting::{Meeting, meetings};
 pub use prepared::{Prepared, PreparedObject};
-pub use shape::{Made, Shape, ShapeError};
+pub use shape::{Made, Rounded, Shape, ShapeError};
 pub use view::{Camera, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};
@@ -136,6 +138,7 @@ impl Object {
     fn own_material(&self) -> Option<Material> {
         match &self.shape {
             Shape::Composite(composite) => self.material.or_else(|| composite.first_material()),
+            Shape::Rounded(rounded) => self.material.or_else(|| rounded.object.own_material()),
             _ => self.material,
         }
     }

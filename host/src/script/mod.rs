@@ -8,6 +8,7 @@ mod builder;
 mod engine;
 mod error;
 mod function;
+mod shaping;
 mod solids;
 mod table;
 
@@ -23,7 +24,7 @@ use std::path::Path;
 
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
-    solids::FUNCTIONS.iter().chain(table::FUNCTIONS)
+    solids::FUNCTIONS.iter().chain(shaping::FUNCTIONS).chain(table::FUNCTIONS)
 }
 
 /// A scene that ships with the program.

@@ -139,8 +139,8 @@ impl ExactSolid {
     }
 }
 
-/// A mesh with all tables, and its surfaces, in another place.
-fn moved(
+/// A mesh, and the surfaces that its triangles name, in another place.
+pub fn moved(
     mesh: &Mesh,
     surfaces: &[Option<Arc<dyn Surface>>],
     placement: &DAffine3,
@@ -149,7 +149,7 @@ fn moved(
     if placement.matrix3.determinant() < 0.0 {
         // A mirrored surface is run through with u reversed.
         for (corners, surface) in mesh.corner_parameters.iter_mut().zip(&mesh.surfaces) {
-            let Some(surface) = &surfaces[*surface as usize] else { continue };
+            let Some(surface) = surfaces.get(*surface as usize).and_then(Option::as_ref) else { continue };
             let [low, high] = surface.domain();
             corners.iter_mut().for_each(|uv| uv.x = low.x + (high.x - uv.x));
         }
