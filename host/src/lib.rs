@@ -11,6 +11,7 @@ pub mod octree;
 pub mod subdivision;
 pub mod surface;
 pub mod solid;
+pub mod intersection;
 pub mod illumination;
 pub mod scene;
 pub mod plan;

@@ -8,6 +8,7 @@ mod continuity;
 mod convert;
 mod exit;
 mod functions;
+mod intersect;
 mod job;
 mod measure;
 mod octree;
@@ -56,6 +57,7 @@ pub const COMMANDS: &[Row] = &[
     tessellate::ROW,
     convert::ROW,
     boolean::ROW,
+    intersect::ROW,
     check::ROW,
     measure::ROW,
     continuity::ROW,

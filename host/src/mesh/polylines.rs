@@ -21,6 +21,13 @@ impl Polylines {
         self.starts.iter().zip(ends).map(|(&start, end)| &self.points[start..end])
     }
 
+    /// Adds further runs.
+    pub fn extend(&mut self, other: Polylines) {
+        let count = self.points.len();
+        self.starts.extend(other.starts.iter().map(|start| start + count));
+        self.points.extend(other.points);
+    }
+
     /// Number of lines.
     pub fn lines(&self) -> usize {
         self.points.len() - self.starts.len()

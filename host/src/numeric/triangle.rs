@@ -1,4 +1,4 @@
-//! Where a ray hits a triangle, decided exactly on the sheared plane.
+//! Triangles: where a ray hits one, decided exactly on the sheared plane, and the weights of its corners.
 
 use glam::DVec3;
 
@@ -129,6 +129,17 @@ impl Shear {
         let z = (first * a[2] + second * b[2] + third * c[2]) / whole;
         Some(Crossing { t: z * self.unscale / self.length_z, u, v })
     }
+}
+
+/// Weights of the corners of a triangle that give a point of it, each 0..=1 and their sum 1. For a point off its plane they
+/// are those of the nearest point of the plane, held within the triangle.
+pub fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let part =
+        |p: DVec3, q: DVec3| ((p - point).cross(q - point).dot(normal) / normal.length_squared()).clamp(0.0, 1.0);
+    let (u, v) = (part(c, a), part(a, b));
+    let v = v.min(1.0 - u);
+    [1.0 - u - v, u, v]
 }
 
 #[cfg(test)]

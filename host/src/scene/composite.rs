@@ -89,7 +89,7 @@ impl Composite {
             return Err(PrimitiveError::Endless.into());
         }
         let operand_of = outcome.sources.iter().map(|[operand, _]| *operand).collect();
-        Ok(Made { mesh, surfaces, operand_of })
+        Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
     }
 
     /// The materials of the operands that are no composites, in the order in which triangles name them.
@@ -108,8 +108,7 @@ impl Composite {
 
     /// The greatest of its operands.
     pub(super) fn extent(&self) -> Option<f64> {
-        let extent = |o: &Object| Some(o.shape.extent()? * largest_stretch(&o.transform));
-        self.operands.iter().filter_map(extent).reduce(f64::max)
+        self.operands.iter().filter_map(Object::extent).reduce(f64::max)
     }
 
     fn collect<'a>(
@@ -235,7 +234,7 @@ mod tests {
             ..solid(Primitive::Cylinder { radius: 0.4, height: 4.0 })
         };
         let made = composite(Operation::Difference, vec![solid(Primitive::Sphere { radius: 1.0 }), drill]);
-        let Made { mesh, surfaces, operand_of } = made.made(within(1e-3)).unwrap();
+        let Made { mesh, surfaces, operand_of, .. } = made.made(within(1e-3)).unwrap();
         assert_eq!((surfaces.len(), operand_of.len()), (4, mesh.triangles.len()));
         for triangle in 0..mesh.triangles.len() {
             let surface = surfaces[mesh.surfaces[triangle] as usize].as_ref().unwrap();

@@ -5,6 +5,7 @@
 mod cage;
 mod composite;
 mod error;
+mod meeting;
 mod prepared;
 mod sculpture;
 mod shape;
@@ -14,9 +15,10 @@ mod view;
 pub use cage::{Cage, Sharp, Sharpening};
 pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
+pub use meeting::{Meeting, meetings};
 pub use prepared::{Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, Sheet};
-pub use shape::{Made, Shape, ShapeError};
+pub use shape::{Made, Rounded, Shape, ShapeError};
 pub use view::{Camera, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};
@@ -144,6 +146,7 @@ impl Object {
     fn own_material(&self) -> Option<Material> {
         match &self.shape {
             Shape::Composite(composite) => self.material.or_else(|| composite.first_material()),
+            Shape::Rounded(rounded) => self.material.or_else(|| rounded.object.own_material()),
             _ => self.material,
         }
     }

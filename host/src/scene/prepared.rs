@@ -103,7 +103,8 @@ impl Prepared {
 
     fn add(&mut self, object: &Object) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let (Made { mesh, operand_of, .. }, tolerance) = object.made(self.settings.tolerance, self.settings.angle)?;
+        let (Made { mesh, operand_of, lines, .. }, tolerance) =
+            object.made(self.settings.tolerance, self.settings.angle)?;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
         }
@@ -117,7 +118,8 @@ impl Prepared {
         if let Some(v) = placed.iter().find(|v| !v.is_finite()) {
             return Err(failed(format!("a vertex is placed at {v}")));
         }
-        let bounds = Bounds::of(placed.iter().copied());
+        let lines = lines.points.iter().map(|point| object.transform.transform_point3(*point));
+        let bounds = Bounds::of(placed.iter().copied().chain(lines));
         let first = self.triangles.len() as u32;
         self.triangles.extend(mesh.triangles.iter().map(|&[a, b, c]| {
             let [b, c] = if mirrored { [c, b] } else { [b, c] };
@@ -242,6 +244,11 @@ pub(super) fn largest_stretch(m: &DMat4) -> f64 {
 }
 
 impl Object {
+    /// Length of the diagonal of a curved shape of known size, as it is placed.
+    pub(super) fn extent(&self) -> Option<f64> {
+        Some(self.shape.extent()? * largest_stretch(&self.transform))
+    }
+
     /// The triangles in own coordinates, and the tolerance in scene units that they were made for (0 for flat shapes).
     pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<(Made, f64), SceneError> {
         let stretch = largest_stretch(&self.transform);
@@ -273,7 +280,7 @@ impl Object {
         Ok(error * stretch)
     }
 
-    fn failed(&self, source: ShapeError) -> SceneError {
+    pub(super) fn failed(&self, source: ShapeError) -> SceneError {
         SceneError::Shape { object: self.name.clone(), source: Box::new(source) }
     }
 }

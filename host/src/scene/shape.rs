@@ -1,10 +1,14 @@
 //! Shapes in their own coordinates, and their triangles.
 
+use super::Object;
 use super::cage::Cage;
 use super::composite::{Composite, MAX_NESTING};
+use super::meeting::meet;
+use super::prepared::largest_stretch;
 use super::sculpture::{Sculpture, SculptureError};
-use crate::mesh::{self, Mesh, MeshError};
-use crate::solid::{Primitive, PrimitiveError, SolidError};
+use crate::intersection::Precision;
+use crate::mesh::{self, Mesh, MeshError, Polylines};
+use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError};
 use crate::subdivision::SubdivisionError;
 use crate::surface::{self, Surface, TessellationError, Tolerance, chord_error, ground, tessellate};
 use glam::DVec3;
@@ -43,6 +47,14 @@ pub enum ShapeError {
         /// Why.
         source: SolidError,
     },
+    /// Its edges cannot be rounded.
+    #[error("{object} cannot be rounded: {source}")]
+    Rounding {
+        /// Name of the object.
+        object: String,
+        /// Why.
+        source: RoundingError,
+    },
 }
 
 /// The form of an object in its own coordinates.
@@ -78,6 +90,21 @@ pub enum Shape {
     Subdivision(Box<Cage>),
     /// A solid made of other objects.
     Composite(Box<Composite>),
+    /// The curves in which two objects meet; lines without triangles.
+    Curve(Box<[Object; 2]>),
+    /// A solid with rounded edges.
+    Rounded(Box<Rounded>),
+}
+
+/// A solid of flat faces, edges of which are rounded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rounded {
+    /// The solid.
+    pub object: Object,
+    /// Points; for each the edge that is nearest to it is rounded. Without any, all edges are.
+    pub edges: Vec<DVec3>,
+    /// Radius of a ball that touches the faces where the rounding begins.
+    pub radius: f64,
 }
 
 /// Triangles of a shape, and what they belong to.
@@ -90,6 +117,8 @@ pub struct Made {
     /// For each triangle of a composite its innermost operand, counted through in the order of the script; empty for
     /// other shapes.
     pub operand_of: Vec<u32>,
+    /// Lines, in own coordinates.
+    pub lines: Polylines,
 }
 
 impl Shape {
@@ -105,6 +134,8 @@ impl Shape {
             Shape::Sculpture(_) => "surface",
             Shape::Subdivision(_) => "subdivision",
             Shape::Composite(composite) => composite.operation.word(),
+            Shape::Curve(_) => "curve",
+            Shape::Rounded(rounded) => rounded.object.shape.word(),
         }
     }
 
@@ -125,6 +156,8 @@ impl Shape {
             Shape::Composite(composite) => {
                 composite.operands.iter().try_for_each(|o| o.check().map_err(|error| error.to_string()))
             }
+            Shape::Curve(objects) => objects.iter().try_for_each(|o| o.check().map_err(|error| error.to_string())),
+            Shape::Rounded(rounded) => rounded.object.check().map_err(|error| error.to_string()),
         }
     }
 
@@ -132,6 +165,7 @@ impl Shape {
     pub fn is_exact_and_curved(&self) -> bool {
         match self {
             Shape::Composite(composite) => composite.operands.iter().any(|o| o.shape.is_exact_and_curved()),
+            Shape::Curve(_) | Shape::Rounded(_) => false,
             _ => self.extent().is_some(),
         }
     }
@@ -144,6 +178,12 @@ impl Shape {
             Shape::Sculpture(sculpture) => Some(sculpture.extent()),
             Shape::Subdivision(cage) => Some(cage.extent()),
             Shape::Composite(composite) => composite.extent(),
+            Shape::Curve(objects) => objects.iter().filter_map(Object::extent).reduce(f64::max),
+            Shape::Rounded(rounded) => {
+                let extent =
+                    || Some(rounded.object.shape.made(Tolerance::new(f64::MAX, 180.0)).ok()?.mesh.bounds()?.diagonal());
+                rounded.object.extent().or_else(|| Some(extent()? * largest_stretch(&rounded.object.transform)))
+            }
             Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => None,
         }
     }
@@ -156,7 +196,7 @@ impl Shape {
     pub fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
         let known = |mesh: Mesh, surfaces: Vec<Box<dyn Surface>>| {
             let surfaces = surfaces.into_iter().map(|surface| Some(Arc::from(surface))).collect();
-            Made { mesh, surfaces, operand_of: Vec::new() }
+            Made { mesh, surfaces, ..Made::default() }
         };
         match self {
             Shape::Composite(composite) => composite.made(tolerance),
@@ -168,6 +208,12 @@ impl Shape {
                 let mesh = cage.polyhedron()?.tessellated(tolerance.chord)?;
                 Ok(Made { mesh, ..Made::default() })
             }
+            Shape::Curve(objects) => {
+                let precision = Precision { chord: Some(tolerance.chord), ..Precision::default() };
+                let lines = meet([&objects[0], &objects[1]], tolerance, &precision)?.polylines();
+                Ok(Made { lines, ..Made::default() })
+            }
+            Shape::Rounded(rounded) => rounded.made(tolerance),
             Shape::Bunny => Ok(Made { mesh: mesh::bunny(), ..Made::default() }),
             Shape::Mesh { path } => Ok(Made { mesh: mesh::read(path)?, ..Made::default() }),
             Shape::HalfSpace { .. } => Err(PrimitiveError::Endless.into()),
@@ -185,6 +231,22 @@ impl Shape {
                 Ok(known(tessellate(&square, tolerance)?, square))
             }
         }
+    }
+}
+
+impl Rounded {
+    fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
+        let Rounded { object, edges, radius } = self;
+        let chord = tolerance.chord / largest_stretch(&object.transform);
+        let Made { mesh, surfaces, .. } = object.placed(object.shape.made(Tolerance { chord, ..tolerance })?);
+        let solid = ExactSolid::new(mesh, surfaces)
+            .map_err(|source| ShapeError::Solid { object: object.name.clone(), source })?;
+        let choice = if edges.is_empty() { EdgeChoice::All } else { EdgeChoice::Nearest(edges.clone()) };
+        let rounded = solid
+            .rounded(&choice, *radius, tolerance.chord)
+            .map_err(|source| ShapeError::Rounding { object: object.name.clone(), source })?;
+        let (mesh, surfaces) = rounded.into_parts();
+        Ok(Made { mesh, surfaces, ..Made::default() })
     }
 }
 

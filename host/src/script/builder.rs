@@ -71,6 +71,7 @@ impl Builder {
         self.object(two)?;
         let first = self.object(one)?.clone();
         let second = self.object(two)?.clone();
+        check_bounding(&first).and(check_bounding(&second))?;
         let material = first.material;
         let composite = match first {
             // A chain of the same operation is one.
@@ -104,6 +105,7 @@ impl Builder {
     /// another object.
     pub(super) fn split(&mut self, handle: Option<Handle>, normal: DVec3, at: DVec3) -> Done {
         let whole = self.object(handle)?.clone();
+        check_bounding(&whole)?;
         let half = Object {
             name: "plane".into(),
             shape: Shape::HalfSpace { normal, at },
@@ -145,11 +147,24 @@ pub(super) fn value(handle: Option<Handle>) -> Dynamic {
     handle.map_or(Dynamic::UNIT, Dynamic::from)
 }
 
-/// How deep composites are nested in an object.
-fn nesting_of(object: &Object) -> u32 {
-    if let Shape::Composite(composite) = &object.shape { composite.nesting } else { 0 }
+/// How deep objects are nested in an object.
+pub(super) fn nesting_of(object: &Object) -> u32 {
+    match &object.shape {
+        Shape::Composite(composite) => composite.nesting,
+        Shape::Rounded(rounded) => nesting_of(&rounded.object) + 1,
+        Shape::Curve(objects) => objects.iter().map(nesting_of).max().unwrap_or(0) + 1,
+        _ => 0,
+    }
 }
 
-fn check_nesting(nesting: u32) -> Result<(), String> {
+/// Refuses lines, which bound nothing.
+pub(super) fn check_bounding(object: &Object) -> Result<(), String> {
+    match object.shape {
+        Shape::Curve(_) => Err(format!("{} is a curve and bounds nothing", object.name)),
+        _ => Ok(()),
+    }
+}
+
+pub(super) fn check_nesting(nesting: u32) -> Result<(), String> {
     if nesting > MAX_NESTING { Err(format!("solids are nested more than {MAX_NESTING} deep")) } else { Ok(()) }
 }

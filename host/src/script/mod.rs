@@ -11,6 +11,7 @@ mod error;
 mod function;
 mod lists;
 mod sculpting;
+mod shaping;
 mod solids;
 mod spline;
 mod subdividing;
@@ -32,7 +33,9 @@ use std::path::Path;
 
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
-    [solids::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS, table::FUNCTIONS].into_iter().flatten()
+    [solids::FUNCTIONS, shaping::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS, table::FUNCTIONS]
+        .into_iter()
+        .flatten()
 }
 
 /// A scene that ships with the program.

@@ -4,6 +4,7 @@ use super::*;
 use crate::illumination::Light;
 use crate::scene::Shape;
 use crate::solid::Primitive;
+use crate::surface::Tolerance;
 use glam::DVec3;
 
 pub(super) fn run(text: &str) -> Evaluated {
@@ -188,4 +189,36 @@ fn parameters_take_the_kind_of_their_default() {
     assert!(unknown.contains("\n  width=2.5  a number: of the door") && unknown.contains("\n  title=none  a text"));
     assert!(problem("parameter(\"a b\", 1);").2.contains("letters, digits"));
     assert!(problem("parameter(\"a\", [1]);").2.contains("default must be a number, true or false, or a string"));
+}
+
+#[test]
+fn curves_are_lines_and_bound_nothing() {
+    let made = run("let a = sphere(1); let b = box(4, 1, 4); a.curve(b).translate(0, 0, 7).name(\"edge\");");
+    let edge = &made.scene.objects[2];
+    let made = edge.shape.made(Tolerance::new(1e-3, 90.0)).unwrap();
+    assert!(made.mesh.triangles.is_empty() && made.lines.starts.len() == 2);
+    let off = |p: &DVec3| (p.length() - 1.0).abs().max((p.y.abs() - 0.5).abs());
+    assert!(made.lines.points.iter().all(|p| off(p) < 1e-14));
+    let (.., message) = problem("let a = sphere(1); let b = sphere(2); a.curve(b) - a;");
+    assert!(message.contains("bounds nothing"), "{message}");
+    let (.., message) = problem("half_space(\"y\").curve(sphere(1));");
+    assert!(message.contains("has no end"), "{message}");
+}
+
+#[test]
+fn rounded_objects_stay_where_they_are_and_lose_their_corners() {
+    let made = run("cube(2).translate(5, 0, 0).round_edges(0.2, #{ tolerance: 0.01 }).rotate(\"z\", 90);");
+    let object = &made.scene.objects[0];
+    let mesh = object.shape.made(Tolerance::new(0.01, 90.0)).unwrap().mesh;
+    let bounds = mesh.bounds().unwrap();
+    assert!(
+        (bounds.center() - DVec3::X * 5.0).length() < 1e-12 && (bounds.size() - DVec3::splat(2.0)).length() < 1e-12
+    );
+    assert!(mesh.is_closed() && mesh.signed_volume() < 7.95 && mesh.signed_volume() > 7.5);
+    let wide = run("cube(2).round_edges(0.6);");
+    let error = wide.scene.objects[0].shape.made(Tolerance::new(0.01, 90.0)).err().unwrap().to_string();
+    assert!(
+        error.starts_with("cube cannot be rounded: radius 0.6 is too large") || error.starts_with("box"),
+        "{error}"
+    );
 }

@@ -2,6 +2,7 @@
 
 use super::{Expression, Outcome, Solid, SolidError};
 use crate::mesh::Mesh;
+use crate::numeric::triangle::weights;
 use crate::surface::{Placed, Surface};
 use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
@@ -138,8 +139,8 @@ impl ExactSolid {
     }
 }
 
-/// A mesh with all tables, and its surfaces, in another place.
-fn moved(
+/// A mesh, and the surfaces that its triangles name, in another place.
+pub fn moved(
     mesh: &Mesh,
     surfaces: &[Option<Arc<dyn Surface>>],
     placement: &DAffine3,
@@ -148,7 +149,7 @@ fn moved(
     if placement.matrix3.determinant() < 0.0 {
         // A mirrored surface is run through with u reversed.
         for (corners, surface) in mesh.corner_parameters.iter_mut().zip(&mesh.surfaces) {
-            let Some(surface) = &surfaces[*surface as usize] else { continue };
+            let Some(surface) = surfaces.get(*surface as usize).and_then(Option::as_ref) else { continue };
             let [low, high] = surface.domain();
             corners.iter_mut().for_each(|uv| uv.x = low.x + (high.x - uv.x));
         }
@@ -157,16 +158,6 @@ fn moved(
         surface.clone().map(|surface| Arc::new(Placed::new(surface, *placement)) as Arc<dyn Surface>)
     };
     (mesh, surfaces.iter().map(moved).collect())
-}
-
-/// Weights of the corners of a triangle that give a point of it, each 0..=1.
-fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
-    let normal = (b - a).cross(c - a);
-    let part =
-        |p: DVec3, q: DVec3| ((p - point).cross(q - point).dot(normal) / normal.length_squared()).clamp(0.0, 1.0);
-    let (u, v) = (part(c, a), part(a, b));
-    let v = v.min(1.0 - u);
-    [1.0 - u - v, u, v]
 }
 
 #[cfg(test)]

@@ -8,15 +8,17 @@ mod exact;
 mod glue;
 mod body;
 pub mod primitive;
+mod rounded;
 
 pub use body::{Body, Face, Measures};
 pub use boolean::{Counts, Expression, Outcome};
-pub use exact::ExactSolid;
+pub use exact::{ExactSolid, moved};
 pub use glue::GlueError;
 pub use import::SolidError;
 pub use mass::Mass;
 pub use primitive::{Primitive, PrimitiveError};
 pub use repair::Repair;
+pub use rounded::{EdgeChoice, RoundingError};
 
 use crate::mesh::Mesh;
 use crate::octree::Sorted;

@@ -4,6 +4,7 @@
 
 mod composite;
 mod division;
+mod meeting;
 mod octree;
 mod plot;
 mod residual;
@@ -93,6 +94,18 @@ pub const KNOBS: &[KnobRow] = &[
         summary: "tolerance of adaptive triangles against the exact surfaces",
         options: Options { width: 160, samples: 1, settings: 8, threads: None },
         run: residual::study,
+    },
+    KnobRow {
+        name: "intersect",
+        summary: "tolerance of the triangles of objects that meet; their exact curves, and how near lines between the points are",
+        options: Options { width: 160, samples: 1, settings: 6, threads: None },
+        run: meeting::triangles,
+    },
+    KnobRow {
+        name: "newton",
+        summary: "tolerance of the iteration for exact curves in which objects meet",
+        options: Options { width: 160, samples: 1, settings: 7, threads: None },
+        run: meeting::newton,
     },
 ];
 

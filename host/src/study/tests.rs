@@ -118,3 +118,26 @@ fn a_drilled_ball_loses_error_as_its_tolerance_falls() {
     let error = (row("boolean").run)(&sphere(), &options, &Watch::NOBODY).expect_err("no composite");
     assert!(error.to_string().contains("made of others"));
 }
+
+#[test]
+fn finer_triangles_bring_lines_nearer_to_the_curve_and_a_finer_iteration_the_points() {
+    let mut scene = sphere();
+    let tube = Shape::Solid(Primitive::Cylinder { radius: 0.5, height: 4.0 });
+    let transform = DMat4::from_rotation_x(0.3);
+    scene.objects.push(Object { name: "tube".into(), shape: tube, transform, material: None, tolerance: None });
+    let run = |name: &str| {
+        let options = Options { settings: 4, ..row(name).options };
+        (row(name).run)(&scene, &options, &Watch::NOBODY).expect("a study")
+    };
+    let study = run("intersect");
+    assert!(study.rows.iter().all(|row| row.errors[0] < 1e-13 && row.counts[1] == 0.0));
+    assert!(
+        study.rows[0].errors[1] > 5.0 * study.rows[3].errors[1] && study.rows[0].counts[0] < study.rows[3].counts[0]
+    );
+    let study = run("newton");
+    assert!(study.rows[0].errors[0] > 1e-6 && study.rows[3].errors[0] < 1e-6 * 4.0);
+    assert!(matches!(
+        (row("newton").run)(&sphere(), &row("newton").options, &Watch::NOBODY),
+        Err(StudyError::Nothing(_))
+    ));
+}

@@ -227,7 +227,16 @@ impl Surface {
         let count = patch.points.len();
         let point = |k: usize| self.vertices[patch.points[k % count].0 as usize].point;
         let (middles, center) = middles(patch);
-        let chord = |(k, middle): (usize, &DVec3)| distance(*middle, [point(k), point(k + 1), point(k + 1)]);
+        let chord = |(k, middle): (usize, &DVec3)| {
+            let distance = distance(*middle, [point(k), point(k + 1), point(k + 1)]);
+            if distance <= self.tolerance || self.sides[patch.sides[k] as usize].is_crease {
+                return distance;
+            }
+            // Along the surface, a side that both neighbours have may lie anywhere.
+            let off = *middle - point(k).midpoint(point(k + 1));
+            let normals = [k, k + 1].map(|k| patch.points[k % count].1.normalize_or_zero());
+            normals.into_iter().map(|n| if n == DVec3::ZERO { distance } else { off.dot(n).abs() }).fold(0.0, f64::max)
+        };
         let sides = middles.iter().enumerate().map(chord).fold(0.0, f64::max);
         let from_fan = |first: usize| {
             let triangles = (1..count - 1).map(|k| [first, first + k, first + k + 1].map(point));

@@ -1,5 +1,7 @@
 //! Polyhedral meshes of faces with any number of corners, and which sides meet.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -110,13 +112,24 @@ impl Polyhedron {
     /// # Errors
     /// No such edge, or a sharpness below zero.
     pub fn sharpen_edge(&mut self, ends: [u32; 2], sharpness: f64) -> Result<(), SubdivisionError> {
+        self.sharpen_edges(&[ends], sharpness)
+    }
+
+    /// Makes some edges sharp at once.
+    ///
+    /// - `sharpness`: as of [`Polyhedron::sharpen_edge`].
+    ///
+    /// # Errors
+    /// The first edge that there is not, or a sharpness below zero.
+    pub fn sharpen_edges(&mut self, edges: &[[u32; 2]], sharpness: f64) -> Result<(), SubdivisionError> {
         check_sharpness(sharpness)?;
-        let joins = |h: usize| {
-            let [a, b] = [self.corners[h], self.corners[self.next[h] as usize]];
-            [a, b] == ends || [b, a] == ends
-        };
-        let sides: Vec<usize> = (0..self.corners.len()).into_par_iter().filter(|&h| joins(h)).collect();
-        if sides.is_empty() {
+        let named = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let wanted: HashSet<[u32; 2]> = edges.iter().copied().map(named).collect();
+        let edge = |h: usize| named([self.corners[h], self.corners[self.next[h] as usize]]);
+        let sides: Vec<usize> =
+            (0..self.corners.len()).into_par_iter().filter(|&h| wanted.contains(&edge(h))).collect();
+        let found: HashSet<[u32; 2]> = sides.iter().map(|&h| edge(h)).collect();
+        if let Some(&ends) = edges.iter().find(|ends| !found.contains(&named(**ends))) {
             return Err(SubdivisionError::NoSuchEdge { ends });
         }
         self.edge_sharpness.resize(self.corners.len(), 0.0);

@@ -9,7 +9,7 @@ use super::{
     network::name,
 };
 use crate::{
-    mesh::{Eye, Mesh, Selection, polylines},
+    mesh::{Eye, Polylines, Selection, polylines},
     numeric::bounds::Bounds,
     scene::{Camera, Object, Scene, Settings},
     surface::Tolerance,
@@ -201,8 +201,12 @@ fn data(
         Lines::Outline => Selection::drawing(drawing.crease_degrees, Eye::Point(camera.from)),
         Lines::All => Selection::ALL,
     };
-    if !drawing.facets {
-        return vectors(&mesh, &selection, shown).map(Node::VectorList).map_err(failed);
+    let mut runs = coarse.lines;
+    if !drawing.facets || !runs.points.is_empty() {
+        let to_scene = |point: &mut DVec3| *point = object.transform.transform_point3(*point);
+        runs.points.iter_mut().for_each(to_scene);
+        runs.extend(polylines(&mesh, &selection));
+        return vectors(&runs, shown).map(Node::VectorList).map_err(failed);
     }
     let surface = format!("{ROOT}_A{number}");
     let polygons = facets::polygons(&mesh, &selection, &surface).map_err(failed)?;
@@ -213,9 +217,8 @@ fn data(
     Ok(Node::Polygons(polygons))
 }
 
-/// The selected edges of a mesh.
-fn vectors(mesh: &Mesh, selection: &Selection, shown: &mut Shown) -> Result<VectorList, String> {
-    let runs = polylines(mesh, selection);
+/// Runs of lines in scene coordinates.
+fn vectors(runs: &Polylines, shown: &mut Shown) -> Result<VectorList, String> {
     let mut list = VectorList {
         block_normalized: false,
         fourth: protocol::command::Fourth::Intensity,

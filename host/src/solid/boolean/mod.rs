@@ -33,6 +33,7 @@ mod union_find;
 mod winding;
 
 pub use arrangement::Counts;
+pub(crate) use contact::{Contact, Face, Key};
 pub(super) use operand::overlaps;
 pub use result::Outcome;
 pub(super) use simple::{Resolution, resolve};

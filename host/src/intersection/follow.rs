@@ -1,0 +1,104 @@
+//! Following exact curves step by step.
+
+use glam::DVec3;
+
+use super::critical::Critical;
+use super::newton::{Met, Solver};
+
+/// Steps at most.
+const MOST_STEPS: usize = 20_000;
+/// The cosine of the most that a curve may turn in a step.
+const SHARP: f64 = 0.97;
+/// The cosine of a turn after which steps grow.
+const STRAIGHT: f64 = 0.995;
+/// The shortest step, as a part of the longest.
+const SHORTEST: f64 = 1e-6;
+
+/// How following a curve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Where it began.
+    Closed,
+    /// Where it was to end.
+    Left,
+    /// Where no step was possible any more.
+    Lost,
+}
+
+/// Follows the curve from a point in a direction.
+///
+/// - `longest`: the longest step from a point on, model units.
+/// - `goes_on`: whether to go on from a point.
+/// - Returns the points behind the first, and how it ended.
+pub fn follow(
+    solver: &Solver<'_>,
+    start: &Met,
+    direction: DVec3,
+    longest: impl Fn(DVec3) -> f64,
+    mut goes_on: impl FnMut(&Met) -> bool,
+) -> (Vec<Met>, End) {
+    let mut points = Vec::new();
+    let (mut last, mut heading, mut step) = (*start, direction, 0.25 * longest(start.at));
+    while points.len() < MOST_STEPS {
+        let most = longest(last.at);
+        step = step.min(most);
+        let met = solver.meet(last.places, last.at + heading * step, Some(heading), step);
+        let tangent = met.tangent();
+        let tangent = if tangent.dot(heading) < 0.0 { -tangent } else { tangent };
+        if met.failure.is_some() || tangent.dot(heading) < SHARP {
+            step *= 0.5;
+            if step < SHORTEST * most {
+                return (points, End::Lost);
+            }
+            continue;
+        }
+        let ahead = |at: DVec3| (at - start.at).dot(direction);
+        if points.len() > 2 && ahead(last.at) < 0.0 && ahead(met.at) >= 0.0 && met.at.distance(start.at) < 2.0 * step {
+            return (points, End::Closed);
+        }
+        if !goes_on(&met) {
+            return (points, End::Left);
+        }
+        points.push(met);
+        if tangent.dot(heading) > STRAIGHT {
+            step *= 1.5;
+        }
+        (last, heading) = (met, tangent);
+    }
+    (points, End::Lost)
+}
+
+/// Follows the curve along which two surfaces are at a level distance, both ways from one of its points.
+///
+/// - `step`: from point to point, model units.
+/// - Returns the points in order, and whether the last is joined to the first.
+pub fn along_valley(solver: &Solver<'_>, start: &Critical, step: f64) -> (Vec<Critical>, bool) {
+    let ahead = one_way(solver, start, start.directions[1], step);
+    if let (points, true) = ahead {
+        return (points, true);
+    }
+    let (mut points, _) = one_way(solver, start, -start.directions[1], step);
+    points.reverse();
+    points.extend(ahead.0.into_iter().skip(1));
+    (points, false)
+}
+
+fn one_way(solver: &Solver<'_>, start: &Critical, direction: DVec3, step: f64) -> (Vec<Critical>, bool) {
+    let (mut points, mut heading) = (vec![*start], direction);
+    while points.len() < MOST_STEPS {
+        let last = points[points.len() - 1];
+        let Some(next) = solver.critical(last.places, last.at + heading * step, step) else { break };
+        let way = next.at - last.at;
+        if !next.is_flat() || way.dot(heading) < 0.5 * step {
+            break;
+        }
+        let ahead = |at: DVec3| (at - start.at).dot(direction);
+        if points.len() > 2 && ahead(last.at) < 0.0 && ahead(next.at) >= 0.0 && next.at.distance(start.at) < 2.0 * step
+        {
+            return (points, true);
+        }
+        heading = if next.directions[1].dot(way) < 0.0 { -next.directions[1] } else { next.directions[1] };
+        points.push(next);
+    }
+    (points, false)
+}

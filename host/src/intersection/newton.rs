@@ -1,0 +1,252 @@
+//! Newton's method for points on two or three surfaces.
+
+use glam::DVec3;
+
+use super::point::{CurvePoint, Failure, Mark, Place, Precision};
+use super::sheet::{Foot, Ground};
+
+/// Steps at most; five are usual.
+const MOST_STEPS: usize = 40;
+/// Steps without a residual of half the size, after which no better one is expected.
+const MOST_STALE: usize = 3;
+/// Steps end at residuals of this part of the tolerance: the last one squares what is left.
+const ENOUGH: f64 = 1e-3;
+/// The sine of the angle below which surfaces count as touching, where no more accurate answer was found.
+const NEARLY_PARALLEL: f64 = 1e-5;
+/// The determinant of three unit normals from which on they determine a point well.
+const INDEPENDENT: f64 = 1e-3;
+/// Residuals this many roundings of the coordinates high cannot be avoided.
+const ROUNDINGS: f64 = 16.0;
+/// What a foot is beside its point, along the surface, as a part of the reach, where it lies on a border.
+const BESIDE: f64 = 1e-9;
+
+/// Finds points on the surfaces of two sheets.
+pub struct Solver<'a> {
+    pub grounds: &'a [Ground<'a>; 2],
+    /// The residual at which a point counts as found, model units.
+    pub tolerance: f64,
+}
+
+/// A point that was found, or at which an iteration ended.
+#[derive(Clone, Copy, Debug)]
+pub struct Met {
+    pub at: DVec3,
+    pub places: [Place; 2],
+    pub normals: [DVec3; 2],
+    pub residual: f64,
+    pub failure: Option<Failure>,
+}
+
+impl Met {
+    /// Along the curve; zero where the surfaces touch.
+    pub fn tangent(&self) -> DVec3 {
+        self.normals[0].cross(self.normals[1]).normalize_or_zero()
+    }
+
+    /// The point of a curve, whose direction is not known yet.
+    pub fn point(&self, mark: Mark) -> CurvePoint {
+        let [n, m] = self.normals;
+        CurvePoint {
+            position: self.at,
+            places: self.places,
+            residual: self.residual,
+            tangent: self.tangent(),
+            angle: n.cross(m).length().atan2(n.dot(m).abs()).to_degrees(),
+            mark,
+            failure: self.failure,
+        }
+    }
+}
+
+impl<'a> Solver<'a> {
+    /// Prepares for the sheets of `grounds`.
+    pub fn new(grounds: &'a [Ground<'a>; 2], precision: &Precision) -> Solver<'a> {
+        let bounds = grounds.each_ref().map(|ground| ground.sheet.mesh.bounds());
+        let size = bounds.iter().flatten().map(|bounds| bounds.diagonal()).fold(0.0, f64::max);
+        let farthest = bounds.iter().flatten().map(|b| b.min.abs().max(b.max.abs()).max_element()).fold(0.0, f64::max);
+        let newton = if precision.newton > 0.0 { precision.newton } else { 0.0 };
+        Solver { grounds, tolerance: (newton * size).max(ROUNDINGS * f64::EPSILON * farthest) }
+    }
+
+    /// The foot of a point on a sheet, and its place there: beyond the border of the surface if a neighbour is nearer.
+    pub fn foot(&self, side: usize, place: Place, at: DVec3, reach: f64) -> (Place, Foot) {
+        let ground = &self.grounds[side];
+        let foot = ground.foot(&place, at);
+        if beside(&foot, at) > BESIDE * reach
+            && let Some(next) = ground.beyond(&place, at)
+        {
+            let other = ground.foot(&next, at);
+            // On the neighbour, it need not only be nearer, but lie within.
+            if other.point.distance(at) < foot.point.distance(at) && beside(&other, at) < 0.5 * beside(&foot, at) {
+                return (Place { uv: other.uv, ..next }, other);
+            }
+        }
+        (Place { uv: foot.uv, ..place }, foot)
+    }
+
+    /// The point near `start` on both surfaces.
+    ///
+    /// - `across`: a direction in which the point stays level; without one, each step is the shortest.
+    /// - `reach`: how far the point may be, model units.
+    pub fn meet(&self, places: [Place; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> Met {
+        let met = self.iterate(places, start, across, reach);
+        if met.failure != Some(Failure::Beyond) {
+            return met;
+        }
+        // The other surface may meet what lies behind the border, even if that bends away.
+        let mut best = met;
+        for side in [0, 1] {
+            let Some(next) = self.grounds[side].beyond(&met.places[side], met.at) else { continue };
+            let mut places = met.places;
+            places[side] = next;
+            let other = self.iterate(places, start, across, reach);
+            if other.residual < best.residual {
+                best = other;
+            }
+        }
+        best
+    }
+
+    fn iterate(&self, mut places: [Place; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> Met {
+        let mut at = start;
+        let mut best: Option<Met> = None;
+        let (mut stale, mut is_beside) = (0, false);
+        for _ in 0..MOST_STEPS {
+            let feet = [0, 1].map(|side| self.foot(side, places[side], at, reach));
+            places = feet.map(|(place, _)| place);
+            let [(_, one), (_, two)] = feet;
+            let residual = one.point.distance(two.point);
+            let last = best.map_or(f64::INFINITY, |met| met.residual);
+            if residual < last {
+                is_beside = feet.iter().any(|(_, foot)| beside(foot, at) > self.tolerance);
+                let middle = one.point.midpoint(two.point);
+                best = Some(Met { at: middle, places, normals: [one.normal, two.normal], residual, failure: None });
+            }
+            stale = if residual < 0.5 * last { 0 } else { stale + 1 };
+            if residual <= ENOUGH * self.tolerance || stale > 0 && last <= self.tolerance || stale >= MOST_STALE {
+                break;
+            }
+            let (n, m) = (one.normal, two.normal);
+            let third = across.unwrap_or(n.cross(m).normalize_or_zero());
+            let level = across.map_or(0.0, |across| across.dot(start - at));
+            let heights = [n.dot(one.point - at), m.dot(two.point - at), level];
+            let Some(step) = meeting([n, m, third], heights) else { break };
+            at += step.clamp_length_max(0.5 * reach);
+            if !at.is_finite() {
+                break;
+            }
+        }
+        self.judged(best, places, start, reach, is_beside)
+    }
+
+    /// Says what is wrong with a point, if anything is.
+    fn judged(&self, best: Option<Met>, places: [Place; 2], start: DVec3, reach: f64, is_beside: bool) -> Met {
+        let nowhere = Met { at: start, places, normals: [DVec3::ZERO; 2], residual: f64::MAX, failure: None };
+        let mut met = best.filter(|met| met.residual.is_finite()).unwrap_or(nowhere);
+        met.failure = if met.residual > self.tolerance {
+            let sine = met.normals[0].cross(met.normals[1]).length();
+            Some(match () {
+                () if is_beside => Failure::Beyond,
+                () if sine < NEARLY_PARALLEL => Failure::Parallel,
+                () => Failure::Slow,
+            })
+        } else if met.at.distance(start) > reach {
+            Some(Failure::Astray)
+        } else {
+            None
+        };
+        met
+    }
+
+    /// The point near `start` where two surfaces of one sheet and one of the other meet; none if they touch there, or do
+    /// not meet.
+    ///
+    /// - `places`: on the first sheet before and behind the border, on the second before and behind.
+    /// - Returns what was found before and behind.
+    pub fn corner(&self, places: [[Place; 2]; 2], start: DVec3, reach: f64) -> Option<[Met; 2]> {
+        let [before, behind] = [0, 1].map(|k| [places[0][k], places[1][k]]);
+        let side = usize::from(before[0].is_beside(&behind[0]));
+        let mut three = [(side, before[side]), (side, behind[side]), (1 - side, before[1 - side])];
+        let mut at = start;
+        let mut smallest = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let feet = three.each_ref().map(|(side, place)| self.grounds[*side].foot(place, at));
+            three.iter_mut().zip(&feet).for_each(|((_, place), foot)| place.uv = foot.uv);
+            let normals = feet.map(|foot| foot.normal);
+            let [a, b, c] = normals;
+            if a.dot(b.cross(c)).abs() < INDEPENDENT {
+                return None;
+            }
+            let step = meeting(normals, feet.map(|foot| foot.normal.dot(foot.point - at)))?;
+            if step.length() >= smallest {
+                break;
+            }
+            smallest = step.length();
+            at += step;
+            if at.distance(start) > reach || !at.is_finite() {
+                return None;
+            }
+        }
+        let ends = [before, behind].map(|places| self.standing(places, at));
+        ends.iter().all(|met| met.failure.is_none()).then_some(ends)
+    }
+
+    /// The point near `start` at which a surface ends on the other surface; none if neither ends there.
+    pub fn border(&self, mut places: [Place; 2], start: DVec3, reach: f64) -> Option<Met> {
+        let mut at = start;
+        let mut outwards = None;
+        let mut smallest = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let feet = [0, 1].map(|side| self.grounds[side].foot(&places[side], at));
+            (0..2).for_each(|side| places[side].uv = feet[side].uv);
+            let side = usize::from(beside(&feet[0], at) < beside(&feet[1], at));
+            let offset = at - feet[side].point;
+            // From a border, the nearest point inside is straight across it.
+            if beside(&feet[side], at) > BESIDE * reach {
+                outwards = Some((side, offset.reject_from_normalized(feet[side].normal).normalize_or_zero()));
+            }
+            let (side, outwards) = outwards?;
+            let [n, m] = feet.map(|foot| foot.normal);
+            let heights = [n.dot(feet[0].point - at), m.dot(feet[1].point - at), outwards.dot(feet[side].point - at)];
+            let step = meeting([n, m, outwards], heights)?;
+            if step.length() >= smallest {
+                break;
+            }
+            smallest = step.length();
+            at += step;
+            if at.distance(start) > reach {
+                return None;
+            }
+        }
+        Some(self.standing(places, at)).filter(|met| met.failure.is_none())
+    }
+
+    /// The point as it stands: how far its feet are apart.
+    fn standing(&self, places: [Place; 2], at: DVec3) -> Met {
+        let feet = [0, 1].map(|side| self.grounds[side].foot(&places[side], at));
+        let [one, two] = feet;
+        let places = [Place { uv: one.uv, ..places[0] }, Place { uv: two.uv, ..places[1] }];
+        let residual = one.point.distance(two.point).max(one.point.distance(at)).max(two.point.distance(at));
+        let failure = (residual > self.tolerance).then_some(Failure::Slow);
+        Met { at, places, normals: [one.normal, two.normal], residual, failure }
+    }
+
+    /// How far a point near two triangles may be from where the triangles meet.
+    pub fn reach(&self, triangles: [u32; 2]) -> f64 {
+        2.0 * self.grounds[0].reach(triangles[0]).max(self.grounds[1].reach(triangles[1]))
+    }
+}
+
+/// How far a foot is beside its point, along the surface.
+pub fn beside(foot: &Foot, at: DVec3) -> f64 {
+    let offset = at - foot.point;
+    (offset - foot.normal * offset.dot(foot.normal)).length()
+}
+
+/// The vector with given heights over three planes through the origin, of unit normals; none if they do not determine it.
+fn meeting([a, b, c]: [DVec3; 3], heights: [f64; 3]) -> Option<DVec3> {
+    let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
+    let determinant = a.dot(bc);
+    let step = (bc * heights[0] + ca * heights[1] + ab * heights[2]) / determinant;
+    step.is_finite().then_some(step)
+}

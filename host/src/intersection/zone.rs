@@ -1,0 +1,188 @@
+//! Places where surfaces touch, or nearly do, and what they are.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::critical::Critical;
+use super::follow::along_valley;
+use super::newton::{Met, Solver};
+use super::point::{CurvePoint, Failure, Mark};
+use super::polyline::Raw;
+
+/// Triangles are trusted from where the surfaces part by so many times what the triangles are away from them.
+const TRUST: f64 = 16.0;
+/// Below this times what the reach makes of it, a curvature is none: the surfaces coincide.
+const COINCIDENT: f64 = 1e-7;
+/// Critical points nearer to each other than this part of the reach are one.
+const SAME: f64 = 1e-3;
+
+/// What a critical point of the distance is for the curves around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The surfaces touch, and part all around.
+    Touching,
+    /// The surfaces touch, and two curves cross.
+    Branching,
+    /// The surfaces do not touch: a small curve goes around it, or they part.
+    Around,
+    /// The surfaces do not touch: two curves pass it.
+    Passing,
+    /// A part of a curve along which the distance does not change.
+    Valley,
+}
+
+/// A critical point, and how far around it triangles are not trusted.
+#[derive(Clone, Debug)]
+pub struct Zone {
+    pub center: Critical,
+    pub kind: Kind,
+    /// Where the surfaces are farther apart than half of this, model units, triangles are trusted.
+    level: f64,
+    /// How far it reaches at most.
+    pub extent: f64,
+    /// Of the triangles.
+    pub reach: f64,
+}
+
+/// A curve along which the distance does not change.
+#[derive(Clone, Debug)]
+pub struct Valley {
+    pub points: Vec<Critical>,
+    pub is_closed: bool,
+    pub reach: f64,
+}
+
+/// All places where surfaces touch, or nearly do.
+#[derive(Clone, Debug, Default)]
+pub struct Zones {
+    pub all: Vec<Zone>,
+    pub valleys: Vec<Valley>,
+}
+
+impl Zone {
+    fn new(found: &Found, kind: Kind, tolerance: f64) -> Zone {
+        let level = TRUST * found.error.max(found.critical.gap.abs()).max(100.0 * tolerance);
+        Zone { center: found.critical, kind, level, extent: 4.0 * found.reach, reach: found.reach }
+    }
+
+    /// Whether it holds a point.
+    pub fn contains(&self, point: DVec3) -> bool {
+        let offset = point - self.center.at;
+        let [a, b] = self.center.curvatures.map(f64::abs);
+        let [x, y] = self.center.directions.map(|direction| direction.dot(offset).powi(2));
+        let rise = a * x + b * y + a * (offset.length_squared() - x - y).max(0.0);
+        rise <= self.level && offset.length() <= self.extent
+    }
+
+    /// How far it goes along a direction of the tangent plane.
+    pub fn radius(&self, direction: DVec3) -> f64 {
+        let rise = |k: usize| self.center.curvatures[k].abs() * self.center.directions[k].dot(direction).powi(2);
+        (self.level / (rise(0) + rise(1))).sqrt().min(self.extent)
+    }
+
+    /// The directions of the four curves that begin in a branching point; the third and fourth are opposite to the first
+    /// and second.
+    pub fn branches(&self) -> [DVec3; 4] {
+        let [a, b] = self.center.curvatures.map(|curvature| curvature.abs().sqrt());
+        let [x, y] = self.center.directions;
+        let [one, two] = [x * b + y * a, x * b - y * a].map(DVec3::normalize_or_zero);
+        [one, two, -one, -two]
+    }
+}
+
+impl Critical {
+    /// The point of a curve.
+    pub fn point(&self, mark: Mark, tangent: DVec3, tolerance: f64) -> CurvePoint {
+        let residual = self.gap.abs();
+        let failure = (residual > tolerance).then_some(Failure::Parallel);
+        CurvePoint { tangent, ..Met { failure, residual, ..self.met() }.point(mark) }
+    }
+
+    /// As a beginning of other points.
+    pub fn met(&self) -> Met {
+        Met { at: self.at, places: self.places, normals: self.normals, residual: self.gap.abs(), failure: None }
+    }
+
+    /// The distances from it along the direction of the greater curvature at which the surfaces cross; none if they do not.
+    pub fn crossing(&self) -> Option<f64> {
+        let square = -2.0 * self.gap / self.curvatures[0];
+        (square > 0.0).then(|| square.sqrt())
+    }
+}
+
+/// A critical point, with what its triangles are.
+struct Found {
+    critical: Critical,
+    /// What the triangles are away from the surfaces.
+    error: f64,
+    reach: f64,
+}
+
+/// Finds them from pairs of triangles.
+pub fn find(solver: &Solver<'_>, raw: &Raw) -> Zones {
+    let search = |pair: &[u32; 2]| {
+        let [one, two] = [0, 1].map(|k| solver.grounds[k].reach(pair[k]));
+        let small = usize::from(one > two);
+        let corners = solver.grounds[small].sheet.mesh.corners(pair[small] as usize);
+        let start = corners.iter().sum::<DVec3>() / 3.0;
+        let places = [0, 1].map(|k| solver.grounds[k].place(pair[k], start));
+        let (reach, error) =
+            (3.0 * one.min(two), solver.grounds[0].sagitta(pair[0]) + solver.grounds[1].sagitta(pair[1]));
+        let critical = solver.critical(places, start, reach)?;
+        let is_near = critical.gap.abs() <= 2.0 * error + solver.tolerance;
+        let is_bent = critical.curvatures[0].abs() * reach > COINCIDENT;
+        (is_near && is_bent).then_some(Found { critical, error, reach })
+    };
+    let found: Vec<Found> = raw.near.par_iter().filter_map(search).collect();
+    let mut zones = Zones::default();
+    for found in &found {
+        zones.add(solver, found);
+    }
+    zones.part();
+    zones
+}
+
+impl Zones {
+    fn add(&mut self, solver: &Solver<'_>, found: &Found) {
+        let Found { critical, reach, .. } = found;
+        let near = |at: DVec3, part: f64| at.distance(critical.at) <= part * reach;
+        let is_known =
+            self.all.iter().any(|zone| near(zone.center.at, if zone.kind == Kind::Valley { 0.3 } else { SAME }));
+        if is_known {
+            return;
+        }
+        if critical.is_flat() {
+            let (points, is_closed) = along_valley(solver, critical, reach / 6.0);
+            let zone = |critical: &Critical| {
+                Zone::new(&Found { critical: *critical, ..*found }, Kind::Valley, solver.tolerance)
+            };
+            self.all.extend(points.iter().map(zone));
+            self.valleys.push(Valley { points, is_closed, reach: *reach });
+            return;
+        }
+        let touches = critical.gap.abs() <= solver.tolerance;
+        let kind = match (critical.curvatures[0] * critical.curvatures[1] > 0.0, touches) {
+            (true, true) => Kind::Touching,
+            (true, false) => Kind::Around,
+            (false, true) => Kind::Branching,
+            (false, false) => Kind::Passing,
+        };
+        self.all.push(Zone::new(found, kind, solver.tolerance));
+    }
+
+    /// Keeps zones apart.
+    fn part(&mut self) {
+        let centers: Vec<(DVec3, bool)> =
+            self.all.iter().map(|zone| (zone.center.at, zone.kind == Kind::Valley)).collect();
+        for (index, zone) in self.all.iter_mut().enumerate().filter(|(_, zone)| zone.kind != Kind::Valley) {
+            let others = centers.iter().enumerate().filter(|(other, (_, in_valley))| *other != index && !in_valley);
+            let nearest = others.map(|(_, (at, _))| at.distance(zone.center.at)).fold(f64::INFINITY, f64::min);
+            zone.extent = zone.extent.min(0.45 * nearest);
+        }
+    }
+
+    /// The zone that holds a point, if any.
+    pub fn holding(&self, point: DVec3) -> Option<usize> {
+        self.all.iter().position(|zone| zone.contains(point))
+    }
+}

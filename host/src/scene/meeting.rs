@@ -1,0 +1,70 @@
+//! Curves in which objects meet.
+
+use super::prepared::largest_stretch;
+use super::shape::Made;
+use super::{Object, Scene, SceneError, ShapeError};
+use crate::intersection::{Intersection, Precision, Sheet, intersect};
+use crate::numeric::bounds::Bounds;
+use crate::solid::moved;
+use crate::surface::Tolerance;
+use glam::DAffine3;
+
+/// The curves in which two objects of a scene meet.
+#[derive(Clone, Debug)]
+pub struct Meeting {
+    /// The numbers of the objects in the scene, the lower first.
+    pub objects: [usize; 2],
+    /// The curves, in scene coordinates.
+    pub intersection: Intersection,
+}
+
+/// The curves in which each two objects of a scene meet; pairs whose boxes do not touch are left out.
+///
+/// # Errors
+/// [`SceneError`] if an object has no triangles.
+pub fn meetings(scene: &Scene, precision: &Precision) -> Result<Vec<Meeting>, SceneError> {
+    scene.check()?;
+    let placed = |object: &Object| {
+        let (made, _) = object.made(scene.settings.tolerance, scene.settings.angle)?;
+        Ok(object.placed(made))
+    };
+    let placed: Vec<Made> = scene.objects.iter().map(placed).collect::<Result<_, SceneError>>()?;
+    let bounds: Vec<Bounds> = placed.iter().map(|made| made.mesh.bounds().unwrap_or(Bounds::EMPTY)).collect();
+    let mut meetings = Vec::new();
+    for (two, behind) in placed.iter().enumerate() {
+        for (one, before) in placed[..two].iter().enumerate().filter(|(one, _)| bounds[*one].touches(bounds[two])) {
+            meetings.push(Meeting { objects: [one, two], intersection: between(before, behind, precision) });
+        }
+    }
+    meetings.sort_by_key(|meeting| meeting.objects);
+    Ok(meetings)
+}
+
+/// The curves in which two objects meet, in the coordinates that the objects are placed in.
+///
+/// - `tolerance`: of the triangles, in these coordinates.
+pub(super) fn meet(
+    objects: [&Object; 2],
+    tolerance: Tolerance,
+    precision: &Precision,
+) -> Result<Intersection, ShapeError> {
+    let made = |object: &Object| {
+        let chord = object.tolerance.unwrap_or(tolerance.chord) / largest_stretch(&object.transform);
+        Ok::<_, ShapeError>(object.placed(object.shape.made(Tolerance { chord, ..tolerance })?))
+    };
+    let [one, two] = objects;
+    Ok(between(&made(one)?, &made(two)?, precision))
+}
+
+fn between(one: &Made, two: &Made, precision: &Precision) -> Intersection {
+    let [one, two] = [one, two].map(|made| Sheet::new(&made.mesh, &made.surfaces));
+    intersect(one, two, precision)
+}
+
+impl Object {
+    /// What its shape was made of, where it is placed.
+    pub(super) fn placed(&self, made: Made) -> Made {
+        let (mesh, surfaces) = moved(&made.mesh, &made.surfaces, &DAffine3::from_mat4(self.transform));
+        Made { mesh, surfaces, ..made }
+    }
+}

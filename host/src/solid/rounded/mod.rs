@@ -1,0 +1,164 @@
+//! Edges of polyhedral solids, rounded by cutting and grinding.
+//!
+//! Every face beside a rounded edge is divided by a strip along it, and what then has corners there is cut and ground again
+//! and again; all other edges stay sharp. The limit is a quadratic B-spline across each edge.
+//!
+//! # Shape
+//! Where an edge turns by the angle t (the interior angle is pi - t), the rounding begins at the distance
+//! d = r tan(t / 2) from the edge on either face: where a ball of the radius r that rolls along it would touch. With x and y
+//! the distances from the edge along the faces, the section is the parabola sqrt(x / d) + sqrt(y / d) = 1. It takes
+//! d^2 sin(t) / 6 off the section of the solid, or adds it where the solid is hollow; a ball takes
+//! r^2 (tan(t / 2) - t / 2). At its middle the radius of curvature is d cos(t / 2)^2 / sin(t / 2), which is r cos(t / 2).
+//!
+//! Near the ends of the edge, within 2 d of a corner where several rounded edges meet, the surface is that of the cutting
+//! scheme: smooth, and tangent to the faces. An edge that stays sharp between two that are rounded fades out.
+//!
+//! # Limits
+//! A strip is twice as wide as its half of the rounding, so that a face must be wider than 4 d between two rounded edges.
+//!
+//! # Source
+//! Quadratic B-splines as limits of corner cutting: Chaikin 1974, Riesenfeld 1975; faces of any number of sides: Doo and
+//! Sabin 1978. The strips are ours.
+
+mod faces;
+mod net;
+
+use faces::Faces;
+use glam::DVec3;
+use net::Net;
+
+use super::{ExactSolid, SolidError};
+use crate::polygon::PolygonError;
+use crate::subdivision::SubdivisionError;
+
+/// The most that an edge may turn, degrees: at 180 a face would lie on the other.
+const SHARPEST: f64 = 179.0;
+
+/// Why edges cannot be rounded.
+#[derive(Debug, thiserror::Error)]
+pub enum RoundingError {
+    /// A radius that is no length.
+    #[error("radius {radius} is not a length above 0")]
+    Radius {
+        /// The radius.
+        radius: f64,
+    },
+    /// There is nothing to round.
+    #[error("the solid has no edges")]
+    NoEdges,
+    /// A face is curved.
+    #[error("the edge from {from} to {to} is not between two flat faces")]
+    Curved {
+        /// Where the edge begins.
+        from: DVec3,
+        /// Where it ends.
+        to: DVec3,
+    },
+    /// A face is too narrow.
+    #[error(
+        "radius {radius} is too large beside the edge from {from} to {to}: four times the setback must fit on a face"
+    )]
+    TooWide {
+        /// Where the edge begins.
+        from: DVec3,
+        /// Where it ends.
+        to: DVec3,
+        /// The radius.
+        radius: f64,
+    },
+    /// Only one of two edges is rounded where a face has a hollow corner.
+    #[error("at {at} a face has a hollow or a straight corner; round both of its edges there, or none")]
+    Hollow {
+        /// The corner.
+        at: DVec3,
+    },
+    /// Faces touch in a vertex.
+    #[error("a face touches itself at {at}")]
+    Touching {
+        /// Where.
+        at: DVec3,
+    },
+    /// An edge turns back.
+    #[error("the edge from {from} to {to} turns by {degrees} degrees; the limit is 179")]
+    Sharp {
+        /// Where the edge begins.
+        from: DVec3,
+        /// Where it ends.
+        to: DVec3,
+        /// How far it turns.
+        degrees: f64,
+    },
+    /// What is left of a face is no polygon.
+    #[error("a face has no place for the rounding: {0}")]
+    Polygon(#[from] PolygonError),
+    /// The polyhedron cannot be subdivided.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
+    /// The result is no solid.
+    #[error("the rounded surface bounds no solid: {0}")]
+    Solid(#[from] SolidError),
+}
+
+/// Which edges are to be rounded.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EdgeChoice {
+    /// All.
+    All,
+    /// For each of these points the edge that is nearest to it.
+    Nearest(Vec<DVec3>),
+}
+
+impl ExactSolid {
+    /// The solid with some edges rounded.
+    ///
+    /// - `radius`: of the ball that would touch the faces where the rounding begins, model units.
+    /// - `tolerance`: how far the triangles may be from the rounded surface, model units.
+    ///
+    /// # Errors
+    /// [`RoundingError`] if an edge is not between flat faces, or the rounding has no place.
+    pub fn rounded(&self, choice: &EdgeChoice, radius: f64, tolerance: f64) -> Result<ExactSolid, RoundingError> {
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(RoundingError::Radius { radius });
+        }
+        let mesh = self.solid().mesh();
+        let faces = Faces::of(mesh)?;
+        let points = &mesh.vertices;
+        let ends = |edge: usize| faces.edges[edge].ends.map(|vertex| points[vertex as usize]);
+        let chosen: Vec<usize> = match choice {
+            EdgeChoice::All => (0..faces.edges.len()).collect(),
+            EdgeChoice::Nearest(near) => {
+                let distance = |edge: &usize, at: DVec3| to_segment(ends(*edge), at);
+                let nearest =
+                    |at: &DVec3| (0..faces.edges.len()).min_by(|a, b| distance(a, *at).total_cmp(&distance(b, *at)));
+                near.iter().map(nearest).collect::<Option<_>>().ok_or(RoundingError::NoEdges)?
+            }
+        };
+        if chosen.is_empty() {
+            return Err(RoundingError::NoEdges);
+        }
+        let mut setbacks = vec![None; faces.edges.len()];
+        for edge in chosen {
+            let [from, to] = ends(edge);
+            if faces.edges[edge].faces.iter().any(|face| faces.faces[*face].is_curved) {
+                return Err(RoundingError::Curved { from, to });
+            }
+            let turn = faces.turn(edge, points).abs();
+            if turn.to_degrees() > SHARPEST {
+                return Err(RoundingError::Sharp { from, to, degrees: turn.to_degrees() });
+            }
+            setbacks[edge] = Some(radius * (0.5 * turn).tan());
+        }
+        let polyhedron = Net::polyhedron(&faces, points, &setbacks, radius)?;
+        Ok(ExactSolid::new(polyhedron.tessellated(tolerance)?, Vec::new())?)
+    }
+}
+
+/// The distance of a point from a line between two others.
+fn to_segment([from, to]: [DVec3; 2], at: DVec3) -> f64 {
+    let along = to - from;
+    let part = ((at - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+    at.distance(from + along * part)
+}
+
+#[cfg(test)]
+mod tests;
