@@ -31,12 +31,12 @@ fn quoted(name: &str) -> String {
 fn row(point: &CurvePoint) -> String {
     let [one, two] = point.places.map(|place| {
         let surface = place.surface.map_or(String::new(), |surface| surface.to_string());
-        format!("{surface},{},{}", place.uv.x, place.uv.y)
+        format!("{surface},{:?},{:?}", place.uv.x, place.uv.y)
     });
     let (p, t) = (point.position, point.tangent);
     let failure = point.failure.map_or(String::new(), |failure| failure.to_string());
     format!(
-        "{},{},{},{one},{two},{},{},{},{},{},{},{failure}\n",
+        "{:?},{:?},{:?},{one},{two},{:?},{:?},{:?},{:?},{:?},{},{failure}\n",
         p.x,
         p.y,
         p.z,
@@ -61,7 +61,7 @@ pub fn obj(intersections: &[([String; 2], &Intersection)]) -> String {
             for point in &branch.points {
                 let p = point.position;
                 count += 1;
-                text.push_str(&format!("v {} {} {}\n", p.x, p.y, p.z));
+                text.push_str(&format!("v {:?} {:?} {:?}\n", p.x, p.y, p.z));
                 indices.push_str(&format!(" {count}"));
             }
             if branch.is_closed {

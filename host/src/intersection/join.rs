@@ -10,6 +10,7 @@ use super::follow::{End, follow};
 use super::newton::{Met, Solver};
 use super::point::{Branch, CurvePoint, Intersection, Mark, Work};
 use super::polyline::{Chain, Raw};
+use super::refine::between;
 use super::zone::{Kind, Valley, Zone, Zones};
 
 /// A curve that comes into a branching point leaves along one of its directions within this cosine.
@@ -124,8 +125,15 @@ impl Joiner<'_> {
             if cosine > ALIKE && slots[slot].is_none() && !slots.contains(&Some(tip)) {
                 slots[slot] = Some(tip);
                 let point = zone.center.point(Mark::Branching, directions[slot], self.solver.tolerance);
+                // Lines are as near to the curve here as where triangles tell.
+                let mut inner = between(self.solver, zone.error, [&point, self.tip(tip)]);
                 let points = &mut self.arcs[tip.0].points;
-                if tip.1 == 0 { points.insert(0, point) } else { points.push(point) }
+                inner.insert(0, point);
+                if tip.1 == 0 {
+                    points.splice(0..0, inner);
+                } else {
+                    points.extend(inner.into_iter().rev());
+                }
             }
         }
         for slot in 0..2 {

@@ -112,6 +112,18 @@ fn fill(solver: &Solver<'_>, chord: f64, branch: Branch) -> (Branch, [usize; 2])
     (Branch { points: all, is_closed }, counts)
 }
 
+/// The points between two of which the tangents may point either way.
+pub fn between(solver: &Solver<'_>, chord: f64, ends: [&CurvePoint; 2]) -> Vec<CurvePoint> {
+    let way = ends[1].position - ends[0].position;
+    let [from, to] = ends.map(|point| {
+        let tangent = if point.tangent.dot(way) < 0.0 { -point.tangent } else { point.tangent };
+        CurvePoint { tangent, ..*point }
+    });
+    let mut inner = Vec::new();
+    divide(solver, chord, [&from, &to], MOST_HALVINGS, &mut inner);
+    inner
+}
+
 /// Adds the points between two; how many gaps got none.
 fn divide(
     solver: &Solver<'_>,

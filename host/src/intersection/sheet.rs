@@ -135,9 +135,10 @@ impl<'a> Ground<'a> {
             return 0.0;
         };
         let corners = mesh.corners(triangle as usize);
+        // An arc is as high as an eighth of what its direction turns towards its chord, times the chord.
         let of_side = |k: usize| {
             let (i, j) = (k, (k + 1) % 3);
-            corners[i].distance(corners[j]) * (normals[i] - normals[j]).length() / 8.0
+            (corners[i] - corners[j]).dot(normals[i] - normals[j]).abs() / 8.0
         };
         SAGITTA_MARGIN * (0..3).map(of_side).fold(0.0, f64::max)
     }

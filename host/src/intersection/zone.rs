@@ -38,6 +38,8 @@ pub struct Zone {
     pub kind: Kind,
     /// Where the surfaces are farther apart than half of this, model units, triangles are trusted.
     level: f64,
+    /// What the triangles are away from the surfaces, or the surfaces from each other.
+    pub error: f64,
     /// How far it reaches at most.
     pub extent: f64,
     /// Of the triangles.
@@ -61,8 +63,9 @@ pub struct Zones {
 
 impl Zone {
     fn new(found: &Found, kind: Kind, tolerance: f64) -> Zone {
-        let level = TRUST * found.error.max(found.critical.gap.abs()).max(100.0 * tolerance);
-        Zone { center: found.critical, kind, level, extent: 4.0 * found.reach, reach: found.reach }
+        let error = found.error.max(found.critical.gap.abs()).max(100.0 * tolerance);
+        let (level, extent) = (TRUST * error, 4.0 * found.reach);
+        Zone { center: found.critical, kind, level, error, extent, reach: found.reach }
     }
 
     /// Whether it holds a point.

@@ -94,8 +94,8 @@ impl Faces {
         let is_corner = |vertex: u32| around[&vertex].len() > 2;
         let mut result = Faces { faces, edges: Vec::new() };
         let mut known: HashMap<[u32; 2], usize> = HashMap::new();
-        for face in 0..result.faces.len() {
-            for run in loops(&next[face]) {
+        for (face, next) in next.iter().enumerate() {
+            for run in loops(next) {
                 let corners: Vec<u32> = run.into_iter().filter(|vertex| is_corner(*vertex)).collect();
                 if corners.len() < 2 {
                     return Err(RoundingError::Touching { at: DVec3::ZERO });
