@@ -11,10 +11,10 @@ use rhai::Dynamic;
 /// The functions.
 pub(super) const FUNCTIONS: &[Function] = &[
     Function {
-        name: "curve",
+        name: "meeting",
         summary: "Adds the curves in which two objects meet, accurate on their exact surfaces, as lines; both objects stay.",
         parameters: &[OBJECT, parameter("other", Kind::Object, Required, "the other object"), TOLERANCE],
-        example: "let edge = ball.curve(pot);",
+        example: "let edge = ball.meeting(pot);",
         action: add_curve,
     },
     Function {

@@ -192,16 +192,16 @@ fn parameters_take_the_kind_of_their_default() {
 }
 
 #[test]
-fn curves_are_lines_and_bound_nothing() {
-    let made = run("let a = sphere(1); let b = box(4, 1, 4); a.curve(b).translate(0, 0, 7).name(\"edge\");");
+fn meetings_are_lines_and_bound_nothing() {
+    let made = run("let a = sphere(1); let b = box(4, 1, 4); a.meeting(b).translate(0, 0, 7).name(\"edge\");");
     let edge = &made.scene.objects[2];
     let made = edge.shape.made(Tolerance::new(1e-3, 90.0)).unwrap();
     assert!(made.mesh.triangles.is_empty() && made.lines.starts.len() == 2);
     let off = |p: &DVec3| (p.length() - 1.0).abs().max((p.y.abs() - 0.5).abs());
     assert!(made.lines.points.iter().all(|p| off(p) < 1e-14));
-    let (.., message) = problem("let a = sphere(1); let b = sphere(2); a.curve(b) - a;");
+    let (.., message) = problem("let a = sphere(1); let b = sphere(2); a.meeting(b) - a;");
     assert!(message.contains("bounds nothing"), "{message}");
-    let (.., message) = problem("half_space(\"y\").curve(sphere(1));");
+    let (.., message) = problem("half_space(\"y\").meeting(sphere(1));");
     assert!(message.contains("has no end"), "{message}");
 }
 
