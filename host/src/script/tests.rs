@@ -58,6 +58,13 @@ fn every_example_in_the_table_runs() {
 }
 
 #[test]
+fn no_name_is_given_to_two_functions() {
+    let mut names: Vec<&str> = functions().map(|function| function.name).collect();
+    names.sort_unstable();
+    assert_eq!(names.windows(2).find(|pair| pair[0] == pair[1]), None);
+}
+
+#[test]
 fn the_reference_names_every_function_and_parameter() {
     let text = reference();
     for function in functions() {

@@ -89,12 +89,15 @@ pub fn relevant(operands: &Operands, expression: &Expression, touching: &[[u32; 
     found.concat()
 }
 
+/// A triangle, an operand, and whether the triangle lies in it, if that is known.
+type Place = (u32, u32, Option<bool>);
+
 fn relevant_of(operands: &Operands, expression: &Expression, operand: u32, touched: &[(u32, u32, u32)]) -> Vec<bool> {
     let mesh = operands.meshes()[operand as usize];
     let bounds = operands.sorted(operand).bounds();
     let near = |other: &u32| *other != operand && operands.sorted(*other).bounds().touches(bounds);
     // By triangle, the partners that it may lie in; it is outside of all others.
-    let mut places: Vec<(u32, u32, Option<bool>)> = Vec::new();
+    let mut places: Vec<Place> = Vec::new();
     for partner in (0..operands.meshes().len() as u32).filter(near) {
         let begin = touched.partition_point(|t| t.1 < partner);
         let end = touched.partition_point(|t| t.1 <= partner);
@@ -105,7 +108,7 @@ fn relevant_of(operands: &Operands, expression: &Expression, operand: u32, touch
     let mut known = vec![Some(false); operands.meshes().len()];
     known[operand as usize] = None;
     let mut answers = vec![expression.depends_on(operand as usize, &known); mesh.triangles.len()];
-    let mut last: (&[(u32, u32, Option<bool>)], bool) = (&[], answers.first().copied().unwrap_or(true));
+    let mut last: (&[Place], bool) = (&[], answers.first().copied().unwrap_or(true));
     for group in places.chunk_by(|a, b| a.0 == b.0) {
         // Neighbours are mostly alike.
         if !group.iter().map(|&(_, partner, place)| (partner, place)).eq(last.0.iter().map(|t| (t.1, t.2))) {
