@@ -25,7 +25,7 @@ struct Arguments {
     #[arg(long, value_name = "PART", default_value_t = Precision::default().newton, value_parser = super::part)]
     newton: f64,
     /// Adds points until the lines between them are this near to the curve, scene units
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = super::length)]
     chord: Option<f64>,
     /// A file for all points (.csv) or for the curves as lines (.obj); may be given more than once
     #[arg(short, long, value_name = "FILE")]
@@ -33,12 +33,6 @@ struct Arguments {
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
-}
-
-/// Reads a length.
-fn length(text: &str) -> Result<f64, String> {
-    let length = text.parse().ok().filter(|length: &f64| *length > 0.0 && length.is_finite());
-    length.ok_or_else(|| "give a length above 0".into())
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {

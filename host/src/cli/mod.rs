@@ -123,17 +123,24 @@ fn threads(text: &str) -> Result<NonZeroUsize, String> {
     count.ok_or_else(|| format!("give 1 to {MAX_THREADS}"))
 }
 
+/// Reads a length above 0.
+fn length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| *length > 0.0 && *length < f64::INFINITY);
+    length.ok_or_else(|| "give a length above 0".to_string())
+}
+
 /// Reads a distance as a part of a diagonal.
 fn part(text: &str) -> Result<f64, String> {
     let part = text.parse().ok().filter(|part| *part > 0.0 && *part <= 1.0);
     part.ok_or_else(|| "give a part of the diagonal, above 0 and at most 1".to_string())
 }
 
-/// Log lines go to standard error, if the variable PERIS_LOG asks for them (for instance `PERIS_LOG=info`).
+/// Warnings go to standard error; the variable PERIS_LOG asks for more or less (for instance `PERIS_LOG=info`).
 fn start_log() {
-    if let Ok(filter) = tracing_subscriber::EnvFilter::try_from_env("PERIS_LOG") {
-        tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
-    }
+    let filter = tracing_subscriber::EnvFilter::try_from_env("PERIS_LOG")
+        .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("warn"));
+    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+    log.without_time().with_target(false).init();
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Largest distance between surface and triangles, scene units [default: that of the scene and its objects]
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = super::length)]
     chord: Option<f64>,
     /// Largest turn of the normal along a triangle, degrees [default: that of the scene, 45]
     #[arg(long, value_name = "DEGREES", value_parser = angle)]
@@ -65,12 +65,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         );
     }
     Ok(())
-}
-
-/// Reads a length above 0.
-fn length(text: &str) -> Result<f64, String> {
-    let length = text.parse().ok().filter(|length| *length > 0.0 && *length < f64::INFINITY);
-    length.ok_or_else(|| "give a length above 0".to_string())
 }
 
 /// Reads an angle.

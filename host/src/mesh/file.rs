@@ -153,7 +153,7 @@ pub fn print(mesh: &Mesh, format: Format) -> Result<Vec<u8>, Fault> {
 /// The bytes of a mesh file with names for its surfaces.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn print_grouped(mesh: &Mesh, names: &[String], format: Format) -> Result<Vec<u8>, Fault> {
     mesh.validate()?;
     match format {

@@ -117,7 +117,7 @@ impl Builder {
         let [first, second] = joined(&first, &second, sides, smoothness).map_err(|error| error.to_string())?;
         // The second may have been turned round.
         let at = |side| joint(&first, &second, [sides[0], side], SAMPLES);
-        let found = [at(sides[1]), at(opposite(sides[1]))];
+        let found = [at(sides[1]), at(sides[1].opposite())];
         let found = if found[0].gap <= found[1].gap { found[0] } else { found[1] };
         for (handle, surface) in handles.into_iter().zip([first, second]) {
             self.set_sheet(handle, Sheet::Spline { surface: Box::new(surface), loops: Vec::new() })?;
@@ -181,15 +181,6 @@ impl Builder {
     }
 }
 
-fn opposite(side: SurfaceSide) -> SurfaceSide {
-    match side {
-        SurfaceSide::LowV => SurfaceSide::HighV,
-        SurfaceSide::HighV => SurfaceSide::LowV,
-        SurfaceSide::LowU => SurfaceSide::HighU,
-        SurfaceSide::HighU => SurfaceSide::LowU,
-    }
-}
-
 /// The sides of a hole that a side of a surface is, one for each span, in order.
 fn hole_sides(surface: &SplineSurface, side: SurfaceSide) -> Result<Vec<HoleSide>, String> {
     let mut surface = surface.clone();
@@ -200,13 +191,12 @@ fn hole_sides(surface: &SplineSurface, side: SurfaceSide) -> Result<Vec<HoleSide
     }
     let [rows, columns] = surface.patch_counts();
     let patch = |i: usize, j: usize| bicubic(&surface.patches()[i * columns + j]);
-    let sides: Result<Vec<HoleSide>, String> = match side {
+    match side {
         SurfaceSide::LowV => (0..rows).rev().map(|i| Ok(HoleSide::of(&patch(i, 0)?, side))).collect(),
         SurfaceSide::HighV => (0..rows).map(|i| Ok(HoleSide::of(&patch(i, columns - 1)?, side))).collect(),
         SurfaceSide::LowU => (0..columns).map(|j| Ok(HoleSide::of(&patch(0, j)?, side))).collect(),
         SurfaceSide::HighU => (0..columns).rev().map(|j| Ok(HoleSide::of(&patch(rows - 1, j)?, side))).collect(),
-    };
-    sides
+    }
 }
 
 fn bicubic(patch: &TensorPatch) -> Result<BezierPatch, String> {

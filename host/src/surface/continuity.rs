@@ -24,6 +24,16 @@ impl SurfaceSide {
     pub(super) const ALL: [SurfaceSide; 4] =
         [SurfaceSide::LowV, SurfaceSide::HighV, SurfaceSide::LowU, SurfaceSide::HighU];
 
+    /// The side across.
+    pub fn opposite(self) -> SurfaceSide {
+        match self {
+            SurfaceSide::LowV => SurfaceSide::HighV,
+            SurfaceSide::HighV => SurfaceSide::LowV,
+            SurfaceSide::LowU => SurfaceSide::HighU,
+            SurfaceSide::HighU => SurfaceSide::LowU,
+        }
+    }
+
     /// Whether it lies at the high end of the direction across it.
     pub(super) fn is_high(self) -> bool {
         matches!(self, SurfaceSide::HighV | SurfaceSide::HighU)

@@ -159,7 +159,7 @@ pub fn joined(
     }
     if runs_against(&fixed.lines[0], &Rows::of(&second, side).lines[0]) {
         second = second.reversed(Direction::U).reversed(Direction::V);
-        side = opposite(side);
+        side = side.opposite();
     }
     let along = first.basis(across(sides[0]).other());
     if !along.agrees_with(second.basis(across(side).other())) {
@@ -211,15 +211,6 @@ impl Rows {
             self.set(column, &[a, b * bias, c * (bias * bias) + b * tension][..=order])?;
         }
         Ok(())
-    }
-}
-
-fn opposite(side: SurfaceSide) -> SurfaceSide {
-    match side {
-        SurfaceSide::LowV => SurfaceSide::HighV,
-        SurfaceSide::HighV => SurfaceSide::LowV,
-        SurfaceSide::LowU => SurfaceSide::HighU,
-        SurfaceSide::HighU => SurfaceSide::LowU,
     }
 }
 

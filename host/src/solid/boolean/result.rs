@@ -8,7 +8,7 @@ use super::operand::Operands;
 use super::parts::{Fate, Parts};
 use super::rounding;
 use crate::mesh::Mesh;
-use glam::DVec3;
+use crate::numeric::triangle;
 use rustc_hash::FxHashMap;
 
 /// What an operation gives.
@@ -167,7 +167,7 @@ impl Tables {
             return;
         };
         let corners = mesh.corners(triangle);
-        let weights = result.corners(last).map(|point| barycentric(corners, point));
+        let weights = result.corners(last).map(|point| triangle::weights(corners, point));
         if self.normals {
             let normals = mesh.corner_normals[triangle];
             let along = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(result.area_vector(last)) >= 0.0;
@@ -180,14 +180,4 @@ impl Tables {
             result.corner_parameters.push(weights.map(|w| uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2]));
         }
     }
-}
-
-/// Weights of the corners of a triangle that give a point of it, each 0..=1.
-fn barycentric([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
-    let normal = (b - a).cross(c - a);
-    let whole = normal.length_squared();
-    let part = |p: DVec3, q: DVec3| ((p - point).cross(q - point).dot(normal) / whole).clamp(0.0, 1.0);
-    let (u, v) = (part(c, a), part(a, b));
-    let v = v.min(1.0 - u);
-    [1.0 - u - v, u, v]
 }
