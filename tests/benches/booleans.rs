@@ -127,7 +127,7 @@ fn cases(large: bool) -> Vec<Case> {
         let meshes = (0..100).map(|_| sphere(size, DVec3::new(random(), random(), random()) * 5.0)).collect();
         cases.push(Case { name: format!("union of 100 spheres of {size}"), meshes, is_difference: false });
     }
-    for level in [1, 2, 3] {
+    for level in [1, 2, 3, 4] {
         cases.push(Case { name: format!("Menger sponge {level}"), meshes: sponge(level), is_difference: true });
     }
     cases

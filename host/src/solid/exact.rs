@@ -2,7 +2,6 @@
 
 use super::{Expression, Outcome, Solid, SolidError};
 use crate::mesh::Mesh;
-use crate::numeric::triangle::weights;
 use crate::surface::{Placed, Surface};
 use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
@@ -123,18 +122,17 @@ impl ExactSolid {
         let is_turned = mesh.area_vector(source).dot(result.area_vector(triangle)) < 0.0;
         let side = if is_turned { -1.0 } else { 1.0 };
         let surface = self.surfaces[mesh.surfaces[source] as usize].as_ref();
-        result.corners(triangle).map(|point| {
-            if let Some(same) = corners.iter().position(|corner| *corner == point) {
+        let places = result.corners(triangle);
+        [0, 1, 2].map(|k| {
+            if let Some(same) = corners.iter().position(|corner| *corner == places[k]) {
                 return (normals[same] * side, uvs[same]);
             }
-            let [a, b, c] = weights(corners, point);
-            let guess = uvs[0] * a + uvs[1] * b + uvs[2] * c;
-            let mean = (normals[0] * a + normals[1] * b + normals[2] * c).normalize_or(normals[0]);
-            let Some(surface) = surface else { return (mean * side, guess) };
-            let uv = surface.nearest(point, guess);
+            let (mean, guess) = (result.corner_normals[triangle][k], result.corner_parameters[triangle][k]);
+            let Some(surface) = surface else { return (mean, guess) };
+            let uv = surface.nearest(places[k], guess);
             let normal = surface.normal(uv);
             // The solid itself may lie on the other side of its surface.
-            (if normal.dot(mean) < 0.0 { normal * -side } else { normal * side }, uv)
+            (if normal.dot(mean) < 0.0 { -normal } else { normal }, uv)
         })
     }
 }

@@ -39,6 +39,8 @@ pub struct Solid {
     mesh: Mesh,
     /// Its triangles by place, once someone asked for them.
     sorted: OnceLock<Arc<Sorted>>,
+    /// Those that make one face with another, once an operation asked for them.
+    mates: OnceLock<Arc<Vec<u32>>>,
 }
 
 impl PartialEq for Solid {
@@ -50,7 +52,7 @@ impl PartialEq for Solid {
 impl Solid {
     /// A mesh that is known to be what a solid has.
     fn of(mesh: Mesh) -> Solid {
-        Solid { mesh, sorted: OnceLock::new() }
+        Solid { mesh, sorted: OnceLock::new(), mates: OnceLock::new() }
     }
 
     /// Takes a mesh; vertices at the same place become one, and triangles without an area are dissolved.
@@ -87,10 +89,14 @@ impl Solid {
         self.sorted.get_or_init(|| Arc::new(Sorted::new(&self.mesh.vertices, &self.mesh.triangles)))
     }
 
+    fn operand(&self) -> boolean::Operand<'_> {
+        let mates = self.mates.get_or_init(|| Arc::new(boolean::mates(&self.mesh)));
+        boolean::Operand { mesh: &self.mesh, sorted: self.sorted(), mates }
+    }
+
     /// Evaluates an expression over some solids at once. The result may be empty.
     pub fn evaluate(operands: &[&Solid], expression: &Expression) -> (Solid, Outcome) {
-        let mut outcome =
-            boolean::evaluate(operands.par_iter().map(|solid| (&solid.mesh, solid.sorted())).collect(), expression);
+        let mut outcome = boolean::evaluate(operands.par_iter().map(|solid| solid.operand()).collect(), expression);
         let mesh = std::mem::take(&mut outcome.mesh);
         (Solid::of(mesh), outcome)
     }

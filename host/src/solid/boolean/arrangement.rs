@@ -5,7 +5,7 @@
 
 use super::Expression;
 use super::contact::{Common, Contact, Edge, Face, Feature, Key, crossing};
-use super::operand::Operands;
+use super::operand::{NONE, Operands};
 use super::relevance::relevant;
 use super::union_find::UnionFind;
 use crate::numeric::implicit::{Definition, Point, coincide, compare, turn};
@@ -45,7 +45,7 @@ pub struct Content {
     /// Lines across it.
     pub segments: Vec<Segment>,
     /// Points at its corners.
-    pub corners: [u32; 3],
+    pub corners: Vec<u32>,
     is_touched: bool,
     /// The operand whose faces touch it, or [`SEVERAL`].
     partner: Option<u32>,
@@ -81,7 +81,7 @@ pub struct Counts {
 pub struct Arrangement {
     /// Faces that may touch others. Their names are their places here.
     pub faces: Vec<Face>,
-    /// The triangle, counted over all operands, of each face.
+    /// The lower triangle, counted over all operands, of each face.
     pub triangles: Vec<u32>,
     /// Contents of each face.
     pub contents: Vec<Content>,
@@ -116,39 +116,38 @@ impl Arrangement {
     ///
     /// Those that cannot matter to an expression are left out.
     pub fn new(operands: &Operands, expression: &Expression) -> Arrangement {
-        let pairs = operands.pairs();
-        let mut touching = touching(operands, &pairs);
+        let mut pairs = operands.pairs();
+        let count = pairs.len() as u64;
         if !operands.are_simple {
-            (0..operands.meshes().len() as u32).for_each(|operand| touching.extend(operands.overlaps(operand)));
+            (0..operands.meshes().len() as u32).for_each(|operand| pairs.extend(operands.overlaps(operand)));
         }
-        let is_relevant = relevant(operands, expression, &touching);
-        let matters = |pair: &&[u32; 2]| pair.iter().all(|&triangle| is_relevant[triangle as usize]);
-        let touching: Vec<[u32; 2]> = touching.iter().filter(matters).copied().collect();
-        // Names are given to what is left only: a vertex of a face that was left out is no vertex of the others.
         let mut faces = Faces::default();
-        faces.add(operands, touching.as_flattened(), true);
-        let contacts: Vec<([u32; 2], Contact)> = touching
-            .par_iter()
-            .with_min_len(256)
-            .map(|pair| {
-                let pair = pair.map(|triangle| faces.of_triangle[triangle as usize]);
-                (pair, Contact::of(&faces.faces[pair[0] as usize], &faces.faces[pair[1] as usize]))
-            })
+        faces.add(operands, pairs.as_flattened());
+        let mut contacts = contacts(&faces, &pairs);
+        let is_relevant = relevant(operands, expression, &touching(operands, &faces, &contacts));
+        // Names are given to what is left only: a vertex of a face that was left out is no vertex of the others.
+        let matters: Vec<bool> = faces
+            .triangles
+            .iter()
+            .map(|&triangle| operands.halves(triangle).any(|half| is_relevant[half as usize]))
             .collect();
+        contacts.retain(|(pair, _)| pair.iter().all(|&face| matters[face as usize]));
+        faces.name(&mut contacts);
         let divided = faces.faces.len();
         if !operands.are_simple {
             let around = faces.around(operands, contacts.iter().flat_map(|(_, contact)| &contact.points));
-            faces.add(operands, &around, true);
+            faces.add(operands, &around);
+            (divided..faces.faces.len()).for_each(|face| _ = faces.name_face(face));
         }
-        let count = faces.faces.len();
+        let all = faces.faces.len();
         let mut arrangement = Arrangement {
-            contents: vec![Content::default(); count],
+            contents: vec![Content::default(); all],
             points: Vec::new(),
             vertices: Vec::new(),
             on_other: Vec::new(),
-            sheets: UnionFind::new(count),
+            sheets: UnionFind::new(all),
             is_relevant,
-            counts: Counts { pairs: pairs.len() as u64, contacts: contacts.len() as u64, ..Counts::default() },
+            counts: Counts { pairs: count, contacts: contacts.len() as u64, ..Counts::default() },
             same: UnionFind::new(0),
             of_key: FxHashMap::default(),
             carriers: Vec::new(),
@@ -188,7 +187,7 @@ impl Arrangement {
         let mut points = self.distinct(carrier);
         let [first, last] = [0, 1].map(|i| self.of_key.get(&Key::Vertex(edge[i])).map(|&p| self.point(p)));
         points.retain(|&p| Some(p) != first && Some(p) != last);
-        let [from, to] = [k as usize, (k as usize + 1) % 3].map(|i| face.corners[i].to_array());
+        let [from, to] = face.ends(k.into()).map(|end| end.to_array());
         if from > to {
             points.reverse();
         }
@@ -235,7 +234,7 @@ impl Arrangement {
     }
 
     fn definition(&self, key: Key) -> Definition {
-        let plane = |face: u32| self.faces[face as usize].corners;
+        let plane = |face: u32| self.faces[face as usize].plane();
         match key {
             Key::Vertex(vertex) => Definition::Given(self.place[&vertex]),
             Key::Pierced(edge, face) => Definition::LineAndPlane(self.ends(edge), plane(face)),
@@ -316,7 +315,10 @@ impl Arrangement {
 
     /// The line in which two faces cross: an edge of one of them, if it runs along one.
     fn segment(&mut self, faces: [u32; 2], points: [&Common; 2], ends: [u32; 2]) {
-        let edge = |which: usize| (0..3_u8).find(|&k| points.iter().all(|p| p.features[which].is_on(k)));
+        let edge = |which: usize| {
+            let face = &self.faces[faces[which] as usize];
+            face.numbers().find(|&k| points.iter().all(|p| face.is_on(p.features[which], k)))
+        };
         let edges = [edge(0), edge(1)];
         for which in 0..2 {
             let line = match (edges[which], edges[1 - which]) {
@@ -345,16 +347,18 @@ impl Arrangement {
     fn edges_in_plane(&mut self, faces: [u32; 2], contact: &Contact, ids: &[u32]) {
         for which in 0..2 {
             let other = faces[1 - which];
-            for k in 0..3_u8 {
-                let on: Vec<usize> = (0..ids.len()).filter(|&i| contact.points[i].features[which].is_on(k)).collect();
+            let [face, beyond] = [faces[which], other].map(|face| self.faces[face as usize]);
+            for k in face.numbers() {
+                let is_on = |i: &usize| face.is_on(contact.points[*i].features[which], k);
+                let on: Vec<usize> = (0..ids.len()).filter(is_on).collect();
                 let at = |i: usize| &self.points[ids[i] as usize];
                 let least = on.iter().copied().min_by(|&i, &j| along(at(i), at(j)));
                 let most = on.iter().copied().max_by(|&i, &j| along(at(i), at(j)));
                 let (Some(least), Some(most)) = (least, most) else { continue };
                 let ends = [least, most].map(|i| contact.points[i].features[1 - which]);
-                let along_own = (0..3).any(|j| ends.iter().all(|feature| feature.is_on(j)));
+                let along_own = beyond.numbers().any(|j| ends.iter().all(|feature| beyond.is_on(*feature, j)));
                 if least != most && !along_own {
-                    let carrier = self.carrier(Line::Edge(self.faces[faces[which] as usize].edge(k)));
+                    let carrier = self.carrier(Line::Edge(face.edge(k)));
                     self.push_segment(other, Segment { carrier, ends: [ids[least], ids[most]] });
                 }
             }
@@ -509,33 +513,51 @@ impl Arrangement {
     fn corners(&mut self) {
         for face in 0..self.faces.len() {
             if self.contents[face].is_touched {
-                let corners = self.faces[face].vertices.map(|vertex| self.id(Key::Vertex(vertex)));
-                self.contents[face].corners = corners.map(|corner| self.point(corner));
+                let shape = self.faces[face];
+                let corners: Vec<u32> = shape.vertices().iter().map(|&vertex| self.id(Key::Vertex(vertex))).collect();
+                self.contents[face].corners = corners.into_iter().map(|corner| self.point(corner)).collect();
             }
         }
     }
 }
 
-/// Pairs of triangles that have a point in common; triangles without an area have none.
-fn touching(operands: &Operands, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let mut faces = Faces::default();
-    faces.add(operands, pairs.as_flattened(), false);
-    let touch = |pair: &&[u32; 2]| {
-        let [a, b] = pair.map(|triangle| faces.of_triangle[triangle as usize]);
-        a != NONE && b != NONE && !Contact::of(&faces.faces[a as usize], &faces.faces[b as usize]).points.is_empty()
+/// Faces that have a point in common, and what; triangles without an area have none.
+fn contacts(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<([u32; 2], Contact)> {
+    let contact = |pair: &[u32; 2]| {
+        let pair = pair.map(|triangle| faces.of_triangle[triangle as usize]);
+        if pair.contains(&NONE) {
+            return None;
+        }
+        let contact = Contact::of(&faces.faces[pair[0] as usize], &faces.faces[pair[1] as usize]);
+        (!contact.points.is_empty()).then_some((pair, contact))
     };
-    pairs.par_iter().with_min_len(256).filter(touch).copied().collect()
+    pairs.par_iter().with_min_len(256).filter_map(contact).collect()
 }
 
-/// No face.
-const NONE: u32 = u32::MAX;
+/// Pairs of triangles that may touch, by what their faces have in common: each triangle of a face that another operand
+/// touches is with a triangle of that operand.
+fn touching(operands: &Operands, faces: &Faces, contacts: &[([u32; 2], Contact)]) -> Vec<[u32; 2]> {
+    let mut touching = Vec::with_capacity(contacts.len());
+    for (pair, _) in contacts {
+        let [a, b] = pair.map(|face| faces.triangles[face as usize]);
+        let [mut one, mut two] = [operands.halves(a), operands.halves(b)];
+        let (mut last, mut next) = ([a, b], [one.next(), two.next()]);
+        while next != [None; 2] {
+            last = [next[0].unwrap_or(last[0]), next[1].unwrap_or(last[1])];
+            touching.push(last);
+            next = [one.next(), two.next()];
+        }
+    }
+    touching
+}
 
-/// Triangles with names.
+/// Faces with names.
 #[derive(Default)]
 struct Faces {
     faces: Vec<Face>,
+    /// The lower triangle of each.
     triangles: Vec<u32>,
-    /// Face by triangle, or [`NONE`].
+    /// Face by its lower triangle, or [`NONE`].
     of_triangle: Vec<u32>,
     /// Where the vertices are, by name.
     place: FxHashMap<u32, DVec3>,
@@ -546,30 +568,49 @@ struct Faces {
 }
 
 impl Faces {
-    /// - `named`: whether vertices at the same place get the same name.
-    fn add(&mut self, operands: &Operands, triangles: &[u32], named: bool) {
+    /// Adds the faces with these lower triangles; their vertices have the names that the operands give them.
+    fn add(&mut self, operands: &Operands, triangles: &[u32]) {
         self.of_triangle.resize(operands.triangle_count(), NONE);
         for &triangle in triangles {
-            if self.of_triangle[triangle as usize] != NONE {
-                continue;
+            if self.of_triangle[triangle as usize] == NONE
+                && let Some(face) = operands.face(self.faces.len() as u32, triangle)
+            {
+                self.of_triangle[triangle as usize] = face.id;
+                self.faces.push(face);
+                self.triangles.push(triangle);
             }
-            let (vertices, corners) = operands.corners(triangle);
-            let id = self.faces.len() as u32;
-            let Some(mut face) = Face::new(id, vertices, corners) else { continue };
-            if named {
-                for k in 0..3 {
-                    let name = *self.first_at.entry(crate::mesh::bits(corners[k])).or_insert(vertices[k]);
-                    if name != vertices[k] {
-                        self.ambiguous.insert(name);
-                        face.vertices[k] = name;
-                    }
-                    self.place.insert(name, corners[k]);
-                }
-            }
-            self.of_triangle[triangle as usize] = id;
-            self.faces.push(face);
-            self.triangles.push(triangle);
         }
+    }
+
+    /// Gives vertices at the same place the same name, in the faces that touch and in what they have in common.
+    fn name(&mut self, contacts: &mut [([u32; 2], Contact)]) {
+        let mut is_named = vec![false; self.faces.len()];
+        let mut names: FxHashMap<u32, u32> = FxHashMap::default();
+        for &face in contacts.iter().flat_map(|(pair, _)| pair) {
+            if !std::mem::replace(&mut is_named[face as usize], true) {
+                names.extend(self.name_face(face as usize));
+            }
+        }
+        if !names.is_empty() {
+            contacts.par_iter_mut().with_min_len(256).for_each(|(_, contact)| contact.rename(&names));
+        }
+    }
+
+    /// Gives the vertices of a face their names; returns those that changed, with the old name first.
+    fn name_face(&mut self, face: usize) -> Vec<(u32, u32)> {
+        let mut changed = Vec::new();
+        let face = &mut self.faces[face];
+        for k in 0..face.sides {
+            let (vertex, place) = (face.vertices()[k], face.corners()[k]);
+            let name = *self.first_at.entry(crate::mesh::bits(place)).or_insert(vertex);
+            if name != vertex {
+                self.ambiguous.insert(name);
+                face.rename(k, name);
+                changed.push((vertex, name));
+            }
+            self.place.insert(name, place);
+        }
+        changed
     }
 
     /// All triangles around the vertices among some points.

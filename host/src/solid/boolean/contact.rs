@@ -1,4 +1,6 @@
-//! Where two triangles meet, decided exactly.
+//! Where two faces meet, decided exactly.
+//!
+//! A face is a triangle, or two in one plane that make a convex quadrilateral.
 //!
 //! Every common point is named by the features of lowest dimension that it lies on: a vertex, two edges, or an edge and a
 //! face. The same point found from a neighbouring triangle has the same name, which is how neighbours agree.
@@ -7,19 +9,22 @@ use crate::numeric::implicit::{others, projection, side};
 use crate::numeric::plane::Plane;
 use glam::DVec3;
 use robust::{Coord, orient2d};
+use rustc_hash::FxHashMap;
 
 /// Names an edge by its vertices, the lower first.
 pub type Edge = [u32; 2];
 
-/// A triangle of any operand, with names that are the same for all operands.
+/// A face of any operand, with names that are the same for all operands.
 #[derive(Clone, Copy, Debug)]
 pub struct Face {
     /// Its name.
     pub id: u32,
-    /// Its vertices; two at the same place have the same name.
-    pub vertices: [u32; 3],
+    /// Number of its corners, 3 or 4.
+    pub sides: usize,
+    /// Its vertices; two at the same place have the same name. A triangle has its first once more.
+    vertices: [u32; 4],
     /// Where they are.
-    pub corners: [DVec3; 3],
+    corners: [DVec3; 4],
     /// The axis to leave out, so that an area stays, and which way the corners then turn.
     pub axis: usize,
     /// 1.0 or -1.0.
@@ -32,27 +37,109 @@ impl Face {
     /// A triangle; `None` if its corners are on one line.
     pub fn new(id: u32, vertices: [u32; 3], corners: [DVec3; 3]) -> Option<Face> {
         let (axis, turn) = projection(corners)?;
-        Some(Face { id, vertices, corners, axis, turn, plane: Plane::through(corners) })
+        let ([u, v, w], [a, b, c]) = (vertices, corners);
+        let plane = Plane::through(corners);
+        Some(Face { id, sides: 3, vertices: [u, v, w, u], corners: [a, b, c, a], axis, turn, plane })
+    }
+
+    /// The face with a corner more, between the last and the first: in its plane, and so that it stays convex.
+    pub fn with(self, vertex: u32, corner: DVec3) -> Face {
+        let ([u, v, w, _], [a, b, c, _]) = (self.vertices, self.corners);
+        Face { sides: 4, vertices: [u, v, w, vertex], corners: [a, b, c, corner], ..self }
+    }
+
+    /// Whether a corner more, between the last and the first, is in its plane and leaves it convex, no three corners on
+    /// one line.
+    pub fn is_convex_with(&self, corner: DVec3) -> bool {
+        let [first, second, third] = self.plane();
+        let turns = |a, b, c| flat_turn(self.axis, a, b, c) == self.turn;
+        self.plane.side(corner) == 0.0
+            && turns(second, third, corner)
+            && turns(third, corner, first)
+            && turns(corner, first, second)
+    }
+
+    /// Its vertices.
+    pub fn vertices(&self) -> &[u32] {
+        &self.vertices[..self.sides]
+    }
+
+    /// Gives a vertex another name.
+    pub fn rename(&mut self, k: usize, name: u32) {
+        self.vertices[k] = name;
+    }
+
+    /// Where its corners are.
+    pub fn corners(&self) -> &[DVec3] {
+        &self.corners[..self.sides]
+    }
+
+    /// Three points of its plane, which turn as it does.
+    pub fn plane(&self) -> [DVec3; 3] {
+        self.plane.corners
+    }
+
+    /// The number of the corner after another.
+    fn after(&self, k: usize) -> usize {
+        if k + 1 == self.sides { 0 } else { k + 1 }
+    }
+
+    /// The number of the corner before another.
+    fn before(&self, k: usize) -> usize {
+        if k == 0 { self.sides - 1 } else { k - 1 }
+    }
+
+    /// The numbers of the corners, and of the edges from each to the next.
+    pub fn numbers(&self) -> std::ops::Range<u8> {
+        0..self.sides as u8
     }
 
     /// The edge from corner `k` to the next.
     pub fn edge(&self, k: u8) -> Edge {
-        let (a, b) = (self.vertices[k as usize], self.vertices[(k as usize + 1) % 3]);
+        let (a, b) = (self.vertices[k as usize], self.vertices[self.after(k as usize)]);
         if a < b { [a, b] } else { [b, a] }
     }
 
     /// Which way its corners turn, seen along an axis.
     pub fn turn_along(&self, axis: usize) -> f64 {
-        let [a, b, c] = self.corners;
+        let [a, b, c] = self.plane();
         flat_turn(axis, a, b, c)
     }
 
-    fn ends(&self, k: usize) -> [DVec3; 2] {
-        [self.corners[k], self.corners[(k + 1) % 3]]
+    /// The ends of the edge from corner `k` to the next.
+    pub fn ends(&self, k: usize) -> [DVec3; 2] {
+        [self.corners[k], self.corners[self.after(k)]]
+    }
+
+    /// Whether a feature lies on the closed edge `k`.
+    pub fn is_on(&self, feature: Feature, k: u8) -> bool {
+        match feature {
+            Feature::Corner(corner) => corner == k || corner as usize == self.after(k as usize),
+            Feature::Edge(edge) => edge == k,
+            Feature::Inside => false,
+        }
+    }
+
+    /// Where a point in the face is that lies on the lines of some edges, by a 0 for each of these.
+    fn feature(&self, lines: &[f64; 4]) -> Feature {
+        let on = |k: usize| lines[k] == 0.0;
+        let corner = (0..self.sides).find(|&k| on(k) && on(self.before(k))).map(|k| Feature::Corner(k as u8));
+        let edge = || (0..self.sides).find(|&k| on(k)).map(|k| Feature::Edge(k as u8));
+        corner.or_else(edge).unwrap_or(Feature::Inside)
+    }
+
+    /// On which sides of it the corners of another face lie; as many as that one has, and the first once more.
+    fn sides_of(&self, other: &Face) -> [f64; 4] {
+        let mut sides = [0.0; 4];
+        (0..other.sides).for_each(|k| sides[k] = self.plane.side(other.corners[k]));
+        if other.sides == 3 {
+            sides[3] = sides[0];
+        }
+        sides
     }
 }
 
-/// The name of a point that two triangles have in common.
+/// The name of a point that two faces have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Key {
     /// A vertex of the input.
@@ -65,69 +152,57 @@ pub enum Key {
     Faces([u32; 3]),
 }
 
-/// The part of a triangle that a point lies on; edge k goes from corner k to the next.
+/// The part of a face that a point lies on; edge k goes from corner k to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
     /// A corner.
     Corner(u8),
     /// Inside an edge.
     Edge(u8),
-    /// Inside the triangle.
+    /// Inside the face.
     Inside,
 }
 
-impl Feature {
-    /// Whether the feature lies on the closed edge `k`.
-    pub fn is_on(self, k: u8) -> bool {
-        match self {
-            Feature::Corner(corner) => corner == k || corner == (k + 1) % 3,
-            Feature::Edge(edge) => edge == k,
-            Feature::Inside => false,
-        }
-    }
-}
-
-/// A point that two triangles have in common.
+/// A point that two faces have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Common {
     /// Its name.
     pub key: Key,
-    /// Where it is in the first triangle and in the second.
+    /// Where it is in the first face and in the second.
     pub features: [Feature; 2],
 }
 
-/// What two triangles have in common: corners of a convex set.
+/// What two faces have in common: corners of a convex set.
 #[derive(Clone, Debug, Default)]
 pub struct Contact {
-    /// At most two if the triangles are in different planes, at most six otherwise.
+    /// At most two if the faces are in different planes, at most eight otherwise.
     pub points: Vec<Common>,
     /// Whether they lie in one plane.
     pub coplanar: bool,
 }
 
 impl Contact {
-    /// Finds what two triangles with an area have in common.
+    /// Finds what two faces have in common.
     pub fn of(one: &Face, two: &Face) -> Contact {
         let mut contact = Contact::default();
-        let signs = |plane: &Face, of: &Face| of.corners.map(|corner| plane.plane.side(corner));
-        let apart = |signs: &[f64; 3]| signs.iter().all(|s| *s > 0.0) || signs.iter().all(|s| *s < 0.0);
-        let of_two = signs(one, two);
+        let apart = |sides: &[f64; 4]| sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0);
+        let of_two = one.sides_of(two);
         if apart(&of_two) {
             return contact;
         }
-        if of_two == [0.0; 3] {
+        if of_two == [0.0; 4] {
             contact.coplanar = true;
-            contact.corners_inside(one, two, false, [true; 3]);
-            contact.corners_inside(two, one, true, [true; 3]);
+            contact.corners_inside(one, two, false, [0.0; 4]);
+            contact.corners_inside(two, one, true, [0.0; 4]);
             contact.crossings_in_plane(one, two);
             return contact;
         }
-        let of_one = signs(two, one);
+        let of_one = two.sides_of(one);
         if apart(&of_one) {
             return contact;
         }
-        contact.corners_inside(one, two, false, of_one.map(|s| s == 0.0));
-        contact.corners_inside(two, one, true, of_two.map(|s| s == 0.0));
+        contact.corners_inside(one, two, false, of_one);
+        contact.corners_inside(two, one, true, of_two);
         contact.piercings(one, two, of_one, false);
         contact.piercings(two, one, of_two, true);
         contact
@@ -140,10 +215,30 @@ impl Contact {
         }
     }
 
-    /// Corners of one triangle that lie in the plane of another, and there in the triangle.
-    fn corners_inside(&mut self, one: &Face, two: &Face, swapped: bool, in_plane: [bool; 3]) {
-        for k in 0..3_u8 {
-            if in_plane[k as usize]
+    /// Gives vertices other names, by their old ones. Points that are then one stay once.
+    pub fn rename(&mut self, names: &FxHashMap<u32, u32>) {
+        let name = |vertex: u32| names.get(&vertex).copied().unwrap_or(vertex);
+        let edge = |[a, b]: Edge| {
+            let (a, b) = (name(a), name(b));
+            if a < b { [a, b] } else { [b, a] }
+        };
+        for point in std::mem::take(&mut self.points) {
+            let key = match point.key {
+                Key::Vertex(vertex) => Key::Vertex(name(vertex)),
+                Key::Edges(one, two) => crossing(edge(one), edge(two)),
+                Key::Pierced(one, face) => Key::Pierced(edge(one), face),
+                Key::Faces(faces) => Key::Faces(faces),
+            };
+            if self.points.iter().all(|point| point.key != key) {
+                self.points.push(Common { key, ..point });
+            }
+        }
+    }
+
+    /// Corners of one face that lie in the plane of another, and there in the face.
+    fn corners_inside(&mut self, one: &Face, two: &Face, swapped: bool, sides: [f64; 4]) {
+        for k in one.numbers() {
+            if sides[k as usize] == 0.0
                 && let Some(feature) = locate(two, one.corners[k as usize])
             {
                 self.push(Key::Vertex(one.vertices[k as usize]), Feature::Corner(k), feature, swapped);
@@ -151,16 +246,16 @@ impl Contact {
         }
     }
 
-    /// Points where edges of one triangle pass through the plane of another, inside that triangle.
-    fn piercings(&mut self, one: &Face, two: &Face, signs: [f64; 3], swapped: bool) {
-        for k in 0..3_usize {
-            if signs[k] * signs[(k + 1) % 3] >= 0.0 {
+    /// Points where edges of one face pass through the plane of another, inside that face.
+    fn piercings(&mut self, one: &Face, two: &Face, sides: [f64; 4], swapped: bool) {
+        for k in 0..one.sides {
+            if sides[k] * sides[one.after(k)] >= 0.0 {
                 continue;
             }
             let [p, q] = one.ends(k);
-            // On which side of each edge of the other triangle the line passes.
-            let mut passes = [0.0; 3];
-            let is_beside = (0..3).any(|j| {
+            // On which side of each edge of the other face the line passes.
+            let mut passes = [0.0; 4];
+            let is_beside = (0..two.sides).any(|j| {
                 let [a, b] = two.ends(j);
                 passes[j] = side(p, q, a, b);
                 passes[..j].iter().any(|other| other * passes[j] < 0.0)
@@ -169,24 +264,22 @@ impl Contact {
                 continue;
             }
             let edge = one.edge(k as u8);
-            let zeros = |j: usize| passes[j] == 0.0;
-            let on = (0..3).find(|&j| zeros(j) && zeros((j + 2) % 3)).map(|j| Feature::Corner(j as u8));
-            let on = on.or_else(|| (0..3).find(|&j| zeros(j)).map(|j| Feature::Edge(j as u8)));
-            let (key, feature) = match on {
-                Some(Feature::Corner(j)) => (Key::Vertex(two.vertices[j as usize]), Feature::Corner(j)),
-                Some(Feature::Edge(j)) => (crossing(edge, two.edge(j)), Feature::Edge(j)),
-                _ => (Key::Pierced(edge, two.id), Feature::Inside),
+            let feature = two.feature(&passes);
+            let key = match feature {
+                Feature::Corner(j) => Key::Vertex(two.vertices[j as usize]),
+                Feature::Edge(j) => crossing(edge, two.edge(j)),
+                Feature::Inside => Key::Pierced(edge, two.id),
             };
             self.push(key, Feature::Edge(k as u8), feature, swapped);
         }
     }
 
-    /// Proper crossings of the edges of two triangles in one plane.
+    /// Proper crossings of the edges of two faces in one plane.
     fn crossings_in_plane(&mut self, one: &Face, two: &Face) {
         let turn = |a: DVec3, b: DVec3, c: DVec3| flat_turn(one.axis, a, b, c);
-        for k in 0..3_u8 {
+        for k in one.numbers() {
             let [p, q] = one.ends(k.into());
-            for j in 0..3_u8 {
+            for j in two.numbers() {
                 let [a, b] = two.ends(j.into());
                 if turn(p, q, a) * turn(p, q, b) < 0.0 && turn(a, b, p) * turn(a, b, q) < 0.0 {
                     self.push(crossing(one.edge(k), two.edge(j)), Feature::Edge(k), Feature::Edge(j), false);
@@ -260,16 +353,15 @@ fn flat_turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
     }
 }
 
-/// Where in a triangle a point of its plane lies; `None` outside.
+/// Where in a face a point of its plane lies; `None` outside.
 fn locate(face: &Face, point: DVec3) -> Option<Feature> {
-    let turns = [0, 1, 2].map(|k| {
+    let mut turns = [0.0; 4];
+    for k in 0..face.sides {
         let [a, b] = face.ends(k);
-        flat_turn(face.axis, a, b, point) * face.turn
-    });
-    if turns.iter().any(|t| *t < 0.0) {
-        return None;
+        turns[k] = flat_turn(face.axis, a, b, point) * face.turn;
+        if turns[k] < 0.0 {
+            return None;
+        }
     }
-    let on = |k: usize| turns[k] == 0.0;
-    let corner = (0..3).find(|&k| on(k) && on((k + 2) % 3)).map(|k| Feature::Corner(k as u8));
-    corner.or_else(|| (0..3).find(|&k| on(k)).map(|k| Feature::Edge(k as u8))).or(Some(Feature::Inside))
+    Some(face.feature(&turns))
 }

@@ -58,13 +58,20 @@ pub fn divide(arrangement: &Arrangement) -> Vec<Facet> {
 
 /// The border of a face, point by point from its first corner on.
 fn border(arrangement: &Arrangement, face: u32) -> Vec<u32> {
-    let corners = arrangement.contents[face as usize].corners;
     let mut border = Vec::new();
-    for k in 0..3_u8 {
-        border.push(corners[k as usize]);
+    for (k, &corner) in (0..).zip(&arrangement.contents[face as usize].corners) {
+        border.push(corner);
         border.extend(arrangement.on_edge(face, k));
     }
     border
+}
+
+/// Places in a list, so that each beginning of them is spread over all of it, and goes over it in turns.
+///
+/// Points of a line that are inserted one after the other would exchange many diagonals in vain.
+fn spread(count: usize) -> impl Iterator<Item = usize> {
+    let strides = (0..usize::BITS - count.leading_zeros()).rev().map(|bit| 1_usize << bit);
+    strides.flat_map(move |stride| (stride - 1..count).step_by(2 * stride))
 }
 
 /// A triangulation with the numbers that points have outside of it.
@@ -78,7 +85,12 @@ struct Sheet<'a> {
 }
 
 impl<'a> Sheet<'a> {
-    fn insert(&mut self, point: u32) {
+    /// Inserts points; those of each line should follow each other.
+    fn insert(&mut self, points: &[u32]) {
+        spread(points.len()).for_each(|place| self.insert_one(points[place]));
+    }
+
+    fn insert_one(&mut self, point: u32) {
         if self.inside.contains_key(&point) {
             return;
         }
@@ -96,16 +108,14 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// Puts in what lies in a face.
-    fn fill(&mut self, face: u32) {
-        let content = &self.arrangement.contents[face as usize];
-        let pieces: Vec<Vec<u32>> = content.segments.iter().map(|s| self.arrangement.pieces(s)).collect();
-        for &point in content.inner.iter().chain(pieces.iter().flatten()) {
-            self.insert(self.arrangement.point(point));
-        }
-        for pieces in pieces {
-            self.fix(pieces);
-        }
+    /// Puts in lines, and what lies in faces.
+    fn fill(&mut self, mut lines: Vec<Vec<u32>>, faces: &[u32]) {
+        let contents = faces.iter().map(|&face| &self.arrangement.contents[face as usize]);
+        lines.extend(contents.clone().flat_map(|content| &content.segments).map(|s| self.arrangement.pieces(s)));
+        let inner = contents.flat_map(|content| &content.inner).map(|&point| self.arrangement.point(point));
+        let points: Vec<u32> = lines.iter().flatten().copied().chain(inner).collect();
+        self.insert(&points);
+        lines.into_iter().for_each(|line| self.fix(line));
     }
 
     fn facet(&self, triangle: usize, turn: f64) -> [u32; 3] {
@@ -116,17 +126,21 @@ impl<'a> Sheet<'a> {
 
 fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
     let (content, shape) = (&arrangement.contents[face as usize], &arrangement.faces[face as usize]);
-    let [a, b, c] = content.corners;
-    let corners = if shape.turn > 0.0 { [a, b, c] } else { [a, c, b] };
+    let is_turned = shape.turn < 0.0;
+    let mut corners = content.corners.clone();
+    if is_turned {
+        corners[1..].reverse();
+    }
+    let places: Vec<&Point> = corners.iter().map(|&p| &arrangement.points[p as usize]).collect();
     let mut sheet = Sheet {
         arrangement,
-        triangulation: Triangulation::new(shape.axis, corners.map(|p| &arrangement.points[p as usize])),
-        inside: corners.into_iter().zip(0..).collect(),
-        outside: corners.to_vec(),
+        triangulation: Triangulation::new(shape.axis, &places),
+        inside: corners.iter().copied().zip(0..).collect(),
+        outside: corners,
     };
-    for k in 0..3_u8 {
+    for k in shape.numbers() {
         // Sides in the order of the corners here.
-        let (side, is_turned) = if shape.turn > 0.0 { (k, false) } else { (2 - k, true) };
+        let side = if is_turned { shape.sides as u8 - 1 - k } else { k };
         let mut points = arrangement.on_edge(face, side);
         if is_turned {
             points.reverse();
@@ -135,26 +149,23 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
         sheet.inside.extend(points.iter().copied().zip(sheet.outside.len() as u32..));
         sheet.outside.extend(points);
     }
-    sheet.fill(face);
+    sheet.fill(Vec::new(), &[face]);
     let facet = |triangle| Facet { corners: sheet.facet(triangle, shape.turn), face, others: Vec::new() };
     (0..sheet.triangulation.triangles.len()).map(facet).collect()
 }
 
 fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     let first = &arrangement.faces[faces[0] as usize];
-    let helpers = around(first.axis, faces.iter().flat_map(|&f| arrangement.faces[f as usize].corners));
+    let helpers = around(first.axis, faces.iter().flat_map(|&f| arrangement.faces[f as usize].corners().to_vec()));
     let mut sheet = Sheet {
         arrangement,
-        triangulation: Triangulation::new(first.axis, helpers.each_ref()),
+        triangulation: Triangulation::new(first.axis, &helpers.each_ref()),
         inside: FxHashMap::default(),
         outside: vec![NONE; 3],
     };
     let borders: Vec<Vec<u32>> = faces.iter().map(|&face| border(arrangement, face)).collect();
-    borders.iter().flatten().for_each(|&point| sheet.insert(point));
-    for border in &borders {
-        sheet.fix(border.iter().chain(&border[..1]).copied());
-    }
-    faces.iter().for_each(|&face| sheet.fill(face));
+    let closed = |border: &Vec<u32>| border.iter().chain(&border[..1]).copied().collect();
+    sheet.fill(borders.iter().map(closed).collect(), faces);
     // Faces of one plane may have been seen along different axes.
     let turn = |face: u32| arrangement.faces[face as usize].turn_along(first.axis);
     // Triangles are counted operand by operand.
@@ -195,11 +206,11 @@ impl Region<'_> {
         let helpers = around(face.axis, places);
         let mut sheet = Sheet {
             arrangement,
-            triangulation: Triangulation::new(face.axis, helpers.each_ref()),
+            triangulation: Triangulation::new(face.axis, &helpers.each_ref()),
             inside: FxHashMap::default(),
             outside: vec![NONE; 3],
         };
-        self.points.iter().for_each(|&point| sheet.insert(point));
+        sheet.insert(self.points);
         self.borders.iter().for_each(|&border| sheet.fix(border));
         let found = inside_of(&sheet, face.turn, self.borders.iter().copied());
         found.into_iter().map(|triangle| sheet.facet(triangle as usize, face.turn)).collect()
@@ -241,4 +252,17 @@ fn inside_of(sheet: &Sheet, turn: f64, borders: impl Iterator<Item = [u32; 2]>) 
     }
     found.sort_unstable();
     found
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_spread_order_has_each_place_once() {
+        for count in [0, 1, 2, 3, 7, 8, 100] {
+            let mut places: Vec<usize> = super::spread(count).collect();
+            places.sort_unstable();
+            assert!(places.into_iter().eq(0..count));
+        }
+        assert!(super::spread(7).eq([3, 1, 5, 0, 2, 4, 6]));
+    }
 }

@@ -20,6 +20,8 @@ pub struct Piece {
     pub corners: [u32; 3],
     /// The face whose surface it has.
     pub face: u32,
+    /// A face of that surface that each corner lies in.
+    pub at: [u32; 3],
     /// [`Fate::Kept`] or [`Fate::Turned`], seen from that face.
     pub fate: Fate,
 }
@@ -50,11 +52,12 @@ fn piece(facet: &Facet, fate: Fate) -> Option<Piece> {
     };
     let cover = facet.cover().find(|c| c.is_along == wanted);
     let [a, b, c] = facet.corners;
-    Some(match cover {
-        Some(cover) if !cover.is_along => Piece { corners: [a, c, b], face: cover.face, fate: Fate::Kept },
-        Some(cover) => Piece { corners: [a, b, c], face: cover.face, fate },
-        None => Piece { corners: [a, b, c], face: facet.face, fate },
-    })
+    let (corners, face, fate) = match cover {
+        Some(cover) if !cover.is_along => ([a, c, b], cover.face, Fate::Kept),
+        Some(cover) => ([a, b, c], cover.face, fate),
+        None => ([a, b, c], facet.face, fate),
+    };
+    Some(Piece { corners, face, at: [face; 3], fate })
 }
 
 /// Which pieces belong together, and which points are not needed.
@@ -107,7 +110,7 @@ impl Plan {
                 }
             }
         }
-        let plane = |region: u32| arrangement.faces[kept[region as usize].face as usize].corners;
+        let plane = |region: u32| arrangement.faces[kept[region as usize].face as usize].plane();
         let is_needless = |(regions, count, borders): ([u32; 2], u32, u32)| match (count, borders) {
             (1, 0) => true,
             (2, 2) => !are_coplanar(plane(regions[0]), plane(regions[1])),
@@ -136,13 +139,16 @@ impl Plan {
             }
             straight.push([from, to]);
         }
-        let mut points: Vec<u32> = old.iter().flat_map(|piece| piece.corners).collect();
-        points.sort_unstable();
-        points.dedup();
-        points.retain(|point| !self.needless.contains(point));
+        // Each point with a face that it lies in.
+        let mut at: Vec<(u32, u32)> = old.iter().flat_map(|piece| piece.corners.map(|p| (p, piece.face))).collect();
+        at.sort_unstable();
+        at.dedup_by_key(|(point, _)| *point);
+        at.retain(|(point, _)| !self.needless.contains(point));
+        let points: Vec<u32> = at.iter().map(|(point, _)| *point).collect();
+        let face_at = |point: u32| at[at.partition_point(|(other, _)| *other < point)].1;
         let first = old[0];
-        let corners = Region { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
-        corners.into_iter().map(|corners| Piece { corners, ..first }).collect()
+        let triangles = Region { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
+        triangles.into_iter().map(|corners| Piece { corners, at: corners.map(face_at), ..first }).collect()
     }
 }
 
@@ -157,7 +163,7 @@ fn are_one(operands: &Operands, arrangement: &Arrangement, one: &Piece, two: &Pi
         let mesh = operands.meshes()[operand as usize];
         mesh.surfaces.get((triangle - operands.first_triangle(operand)) as usize)
     };
-    let plane = |piece: &Piece| arrangement.faces[piece.face as usize].corners;
+    let plane = |piece: &Piece| arrangement.faces[piece.face as usize].plane();
     one.fate == two.fate
         && operands.of_triangle(b) == operand
         && surface(a) == surface(b)

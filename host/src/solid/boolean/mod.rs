@@ -23,6 +23,7 @@ mod facets;
 mod merge;
 mod operand;
 mod parts;
+mod quads;
 mod relevance;
 mod result;
 mod rounding;
@@ -34,13 +35,12 @@ mod winding;
 
 pub use arrangement::Counts;
 pub(crate) use contact::{Contact, Face, Key};
-pub(super) use operand::overlaps;
+pub(super) use operand::{Operand, overlaps};
+pub(super) use quads::mates;
 pub use result::Outcome;
 pub(super) use simple::{Resolution, resolve};
 pub(super) use union_find::UnionFind;
 
-use crate::mesh::Mesh;
-use crate::octree::Sorted;
 use arrangement::Arrangement;
 use operand::Operands;
 use parts::Parts;
@@ -80,8 +80,8 @@ impl Expression {
     }
 }
 
-/// Evaluates an expression over meshes that bound solids simply, with their triangles by place.
-pub(super) fn evaluate(solids: Vec<(&Mesh, &Sorted)>, expression: &Expression) -> Outcome {
+/// Evaluates an expression over meshes that bound solids simply.
+pub(super) fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Outcome {
     let operands = Operands::new(solids, true);
     let Work { outcome, must_settle, .. } = work(&operands, expression);
     if must_settle { simple::settled(outcome) } else { outcome }
@@ -104,8 +104,8 @@ fn work(operands: &Operands, expression: &Expression) -> Work {
     let facets = facets::divide(&arrangement);
     // Triangles that stay whole, if they stay.
     let mut is_whole = arrangement.is_relevant.clone();
-    for face in arrangement.touched() {
-        is_whole[arrangement.triangles[face as usize] as usize] = false;
+    for triangle in arrangement.touched().flat_map(|face| operands.halves(arrangement.triangles[face as usize])) {
+        is_whole[triangle as usize] = false;
     }
     let parts = Parts::new(operands, &arrangement, &facets, &is_whole, |inside| expression.contains(inside));
     let mut counts = arrangement.counts;

@@ -1,10 +1,37 @@
 //! The solids of an operation, with their vertices and triangles counted through.
 
-use super::contact::overlap;
+use super::contact::{Face, overlap};
+use super::quads::ring;
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
 use glam::DVec3;
 use rayon::prelude::*;
+
+/// No triangle.
+pub const NONE: u32 = u32::MAX;
+
+/// An operand.
+#[derive(Clone, Copy)]
+pub struct Operand<'a> {
+    /// Its surface.
+    pub mesh: &'a Mesh,
+    /// The triangles of it by place.
+    pub sorted: &'a Sorted,
+    /// For each triangle the one with which it makes one face, or [`NONE`]; empty if all are on their own.
+    pub mates: &'a [u32],
+}
+
+impl Operand<'_> {
+    /// The triangle with which another makes one face.
+    fn mate(&self, triangle: u32) -> Option<u32> {
+        self.mates.get(triangle as usize).copied().filter(|mate| *mate != NONE)
+    }
+
+    /// The lower triangle of the face that a triangle belongs to.
+    fn first_half(&self, triangle: u32) -> u32 {
+        self.mate(triangle).map_or(triangle, |mate| mate.min(triangle))
+    }
+}
 
 /// The operands.
 pub struct Operands<'a> {
@@ -12,7 +39,7 @@ pub struct Operands<'a> {
     /// within each are looked for too.
     pub are_simple: bool,
     meshes: Vec<&'a Mesh>,
-    sorted: Vec<&'a Sorted>,
+    operands: Vec<Operand<'a>>,
     first_vertex: Vec<u32>,
     first_triangle: Vec<u32>,
 }
@@ -20,10 +47,9 @@ pub struct Operands<'a> {
 impl<'a> Operands<'a> {
     /// Counts through the vertices and triangles of some meshes.
     ///
-    /// - `meshes`: with the triangles of each by place.
     /// - `are_simple`: whether their surfaces are known to bound them simply.
-    pub fn new(meshes: Vec<(&'a Mesh, &'a Sorted)>, are_simple: bool) -> Operands<'a> {
-        let (meshes, sorted): (Vec<&Mesh>, Vec<&Sorted>) = meshes.into_iter().unzip();
+    pub fn new(operands: Vec<Operand<'a>>, are_simple: bool) -> Operands<'a> {
+        let meshes: Vec<&Mesh> = operands.iter().map(|operand| operand.mesh).collect();
         let starts = |count: fn(&Mesh) -> usize| {
             let mut sum = 0;
             let mut starts = vec![0];
@@ -35,7 +61,7 @@ impl<'a> Operands<'a> {
         };
         let first_vertex = starts(|mesh| mesh.vertices.len());
         let first_triangle = starts(|mesh| mesh.triangles.len());
-        Operands { are_simple, meshes, sorted, first_vertex, first_triangle }
+        Operands { are_simple, meshes, operands, first_vertex, first_triangle }
     }
 
     /// The meshes.
@@ -45,7 +71,7 @@ impl<'a> Operands<'a> {
 
     /// The triangles of an operand by place.
     pub fn sorted(&self, operand: u32) -> &Sorted {
-        self.sorted[operand as usize]
+        self.operands[operand as usize].sorted
     }
 
     /// Number of all vertices.
@@ -81,7 +107,34 @@ impl<'a> Operands<'a> {
         (local.map(|v| v + self.first_vertex(operand)), local.map(|v| mesh.vertices[v as usize]))
     }
 
-    /// Pairs of triangles of different operands whose boxes touch.
+    /// The face that a triangle is, or is one half of.
+    pub fn face(&self, id: u32, triangle: u32) -> Option<Face> {
+        let operand = self.of_triangle(triangle);
+        let mesh = self.meshes[operand as usize];
+        let triangle = triangle - self.first_triangle(operand);
+        let numbered = |vertex: u32| vertex + self.first_vertex(operand);
+        let at = |vertex: u32| mesh.vertices[vertex as usize];
+        let mate = self.operands[operand as usize].mate(triangle);
+        if let Some([a, b, c, d]) = mate.and_then(|mate| ring(mesh, triangle, mate)) {
+            let face = Face::new(id, [a, b, c].map(numbered), [a, b, c].map(at))?;
+            return Some(face.with(numbered(d), at(d)));
+        }
+        Face::new(id, mesh.triangles[triangle as usize].map(numbered), mesh.corners(triangle as usize))
+    }
+
+    /// The triangles of the face that a triangle belongs to, the lower first.
+    pub fn halves(&self, triangle: u32) -> impl Iterator<Item = u32> + use<> {
+        let operand = self.of_triangle(triangle);
+        let first = self.first_triangle(operand);
+        let mate = self.operands[operand as usize].mate(triangle - first).map(|mate| mate + first);
+        let (low, high) = match mate {
+            Some(mate) if mate < triangle => (mate, Some(triangle)),
+            _ => (triangle, mate),
+        };
+        std::iter::once(low).chain(high)
+    }
+
+    /// Pairs of faces of different operands, by their lower triangles, of which the boxes of triangles touch.
     pub fn pairs(&self) -> Vec<[u32; 2]> {
         let count = self.meshes.len() as u32;
         let touching = |&(i, j): &(u32, u32)| self.sorted(i).bounds().touches(self.sorted(j).bounds());
@@ -91,6 +144,12 @@ impl<'a> Operands<'a> {
             .into_par_iter()
             .map(|(i, j)| {
                 let mut pairs = self.sorted(i).pairs(self.sorted(j));
+                let [one, two] = [i, j].map(|k| &self.operands[k as usize]);
+                if !(one.mates.is_empty() && two.mates.is_empty()) {
+                    pairs.iter_mut().for_each(|pair| *pair = [one.first_half(pair[0]), two.first_half(pair[1])]);
+                    pairs.sort_unstable();
+                    pairs.dedup();
+                }
                 let first = [self.first_triangle(i), self.first_triangle(j)];
                 pairs.iter_mut().for_each(|pair| *pair = [pair[0] + first[0], pair[1] + first[1]]);
                 pairs

@@ -203,7 +203,7 @@ fn windings(
                 steps[operand as usize] += if covering.is_along { 1 } else { -1 };
             }
             let middle = Point::middle(facet.corners.map(|p| &arrangement.points[p as usize]));
-            (middle, arrangement.faces[facet.face as usize].corners)
+            (middle, arrangement.faces[facet.face as usize].plane())
         }
         (None, None) => return vec![[0; 2]; steps.len()],
     };

@@ -9,6 +9,7 @@ use super::parts::{Fate, Parts};
 use super::rounding;
 use crate::mesh::Mesh;
 use crate::numeric::triangle;
+use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 /// What an operation gives.
@@ -74,11 +75,16 @@ pub fn assemble(
             }
             *number
         });
-        let triangle = arrangement.triangles[piece.face as usize];
-        let operand = operands.of_triangle(triangle);
-        let index = triangle - operands.first_triangle(operand);
-        outcome.push(corners, piece.fate, [operand, index]);
-        tables.interpolate(&mut outcome.mesh, operands.meshes()[operand as usize], operand, index as usize);
+        let operand = operands.of_triangle(arrangement.triangles[piece.face as usize]);
+        let place = corners.map(|corner| outcome.mesh.vertices[corner as usize]);
+        let triangle_at = |face: u32, place: DVec3| {
+            half_at(operands, arrangement.triangles[face as usize], place) - operands.first_triangle(operand)
+        };
+        let source = triangle_at(piece.face, (place[0] + place[1] + place[2]) / 3.0);
+        let at = [0, 1, 2].map(|k| triangle_at(piece.at[k], place[k]) as usize);
+        outcome.push(corners, piece.fate, [operand, source]);
+        let mesh = operands.meshes()[operand as usize];
+        tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
     let is_kept = |operand: u32, triangle: u32| {
         let vertex = operands.meshes()[operand as usize].triangles[triangle as usize][0];
@@ -87,6 +93,18 @@ pub fn assemble(
     };
     let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, is_kept);
     (outcome, crosses)
+}
+
+/// Which of the triangles of a face, given by its lower one, a point lies in.
+fn half_at(operands: &Operands, triangle: u32, place: DVec3) -> u32 {
+    let mut halves = operands.halves(triangle);
+    let (Some(low), Some(high)) = (halves.next(), halves.next()) else { return triangle };
+    let gap = |half: u32| {
+        let (_, [a, b, c]) = operands.corners(half);
+        let weights = triangle::weights([a, b, c], place);
+        (a * weights[0] + b * weights[1] + c * weights[2]).distance_squared(place)
+    };
+    if gap(high) < gap(low) { high } else { low }
 }
 
 impl Outcome {
@@ -161,23 +179,30 @@ impl Tables {
     }
 
     /// For the part of a triangle that was pushed last.
-    pub fn interpolate(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize) {
+    ///
+    /// - `at`: for each corner a triangle beside that one, of one surface with it, that it lies in.
+    pub fn interpolate(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize, at: [usize; 3]) {
         self.surface(result, mesh, operand, triangle);
         let Some(last) = result.triangles.len().checked_sub(1).filter(|_| self.normals || self.parameters) else {
             return;
         };
-        let corners = mesh.corners(triangle);
-        let weights = result.corners(last).map(|point| triangle::weights(corners, point));
+        let corners = result.corners(last);
+        let weights = [0, 1, 2].map(|k| triangle::weights(mesh.corners(at[k]), corners[k]));
         if self.normals {
-            let normals = mesh.corner_normals[triangle];
-            let along = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(result.area_vector(last)) >= 0.0;
-            let sign = if along { 1.0 } else { -1.0 };
-            let mean = |w: [f64; 3]| normals[0] * w[0] + normals[1] * w[1] + normals[2] * w[2];
-            result.corner_normals.push(weights.map(|w| mean(w).normalize_or(normals[0]) * sign));
+            let sign = if mesh.area_vector(triangle).dot(result.area_vector(last)) >= 0.0 { 1.0 } else { -1.0 };
+            let normal = |k: usize| {
+                let (normals, w) = (mesh.corner_normals[at[k]], weights[k]);
+                let mean = normals[0] * w[0] + normals[1] * w[1] + normals[2] * w[2];
+                mean.normalize_or(normals[0]) * sign
+            };
+            result.corner_normals.push([0, 1, 2].map(normal));
         }
         if self.parameters {
-            let uv = mesh.corner_parameters[triangle];
-            result.corner_parameters.push(weights.map(|w| uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2]));
+            let parameters = |k: usize| {
+                let (uv, w) = (mesh.corner_parameters[at[k]], weights[k]);
+                uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2]
+            };
+            result.corner_parameters.push([0, 1, 2].map(parameters));
         }
     }
 }

@@ -3,7 +3,7 @@
 //! A surface is simple if it winds once or not at all around every point off it. What any closed surface bounds are
 //! the points that it winds around more than not at all.
 
-use super::operand::{Operands, overlaps};
+use super::operand::{Operand, Operands, overlaps};
 use super::result::Outcome;
 use super::snapping::snapped;
 use super::union_find::UnionFind;
@@ -120,7 +120,7 @@ fn again(outcome: Outcome) -> Outcome {
 /// What a mesh bounds, with its surface divided where it crosses itself.
 fn divided(mesh: &Mesh) -> Work {
     let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
-    work(&Operands::new(vec![(mesh, &sorted)], false), &Expression::Operand(0))
+    work(&Operands::new(vec![Operand { mesh, sorted: &sorted, mates: &[] }], false), &Expression::Operand(0))
 }
 
 fn overlapping(mesh: &Mesh) -> Vec<[u32; 2]> {

@@ -284,7 +284,7 @@ fn rebuilt(outcome: Outcome, near: &Near) -> Outcome {
         if is_whole {
             tables.take(&mut new.mesh, old, index as usize);
         } else {
-            tables.interpolate(&mut new.mesh, old, 0, index as usize);
+            tables.interpolate(&mut new.mesh, old, 0, index as usize, [index as usize; 3]);
         }
     }
     new.clean();
@@ -356,7 +356,7 @@ fn divided(
         .collect();
     let frame = [point(0.0, 0.0), point(STEPS, 0.0), point(0.0, STEPS)];
     let mut names = t.to_vec();
-    let mut triangulation = Triangulation::new(2, frame.each_ref());
+    let mut triangulation = Triangulation::new(2, &frame.each_ref());
     for k in 0..3_u8 {
         triangulation.insert_on_side(k, &on_sides[k as usize]);
         names.extend(chains[k as usize].iter().map(|(_, v)| v));

@@ -23,8 +23,10 @@ pub struct Triangulation<'a> {
     pub triangles: Vec<[u32; 3]>,
     /// The triangle beyond the side from corner k to the next, or [`NONE`].
     pub beyond: Vec<[u32; 3]>,
-    /// Sides of the first triangle that each point is on, a bit for each.
+    /// Sides of what it began with that each point is on, a bit for each.
     sides: Vec<u8>,
+    /// Number of these sides.
+    corners: u32,
     /// Some triangle at each point.
     at: Vec<u32>,
     fixed: FxHashSet<[u32; 2]>,
@@ -36,15 +38,17 @@ fn sorted(a: u32, b: u32) -> [u32; 2] {
 }
 
 impl<'a> Triangulation<'a> {
-    /// Begins with a triangle that turns counter-clockwise as seen along `axis`.
-    pub fn new(axis: usize, corners: [&'a Point; 3]) -> Triangulation<'a> {
+    /// Begins with a triangle or a convex quadrilateral that turns counter-clockwise as seen along `axis`.
+    pub fn new(axis: usize, corners: &[&'a Point]) -> Triangulation<'a> {
+        let is_quad = corners.len() == 4;
         Triangulation {
             axis,
             points: corners.to_vec(),
-            sides: vec![0b101, 0b011, 0b110],
-            triangles: vec![[0, 1, 2]],
-            beyond: vec![[NONE; 3]],
-            at: vec![0; 3],
+            sides: if is_quad { vec![0b1001, 0b0011, 0b0110, 0b1100] } else { vec![0b101, 0b011, 0b110] },
+            corners: corners.len() as u32,
+            triangles: if is_quad { vec![[0, 1, 2], [2, 3, 0]] } else { vec![[0, 1, 2]] },
+            beyond: if is_quad { vec![[NONE, NONE, 1], [NONE, NONE, 0]] } else { vec![[NONE; 3]] },
+            at: vec![0, 0, 0, 1][..corners.len()].to_vec(),
             fixed: FxHashSet::default(),
             last: 0,
         }
@@ -62,7 +66,7 @@ impl<'a> Triangulation<'a> {
         self.fixed.contains(&sorted(a, b))
     }
 
-    /// Adds a point of the first triangle; returns its number, that of an earlier one at the same place if there is one.
+    /// Adds a point inside what it began with; returns its number, that of an earlier one at the same place if there is one.
     pub fn insert(&mut self, point: &'a Point) -> u32 {
         let p = self.push(point, 0);
         let (triangle, turns) = self.locate(p);
@@ -81,9 +85,9 @@ impl<'a> Triangulation<'a> {
         p
     }
 
-    /// Adds points on side `k` of the first triangle, in order from corner `k` to the next, before all others.
+    /// Adds points on side `k` of what it began with, in order from corner `k` to the next, before all others.
     pub fn insert_on_side(&mut self, k: u8, points: impl IntoIterator<Item = &'a Point>) {
-        let (mut from, to) = (u32::from(k), (u32::from(k) + 1) % 3);
+        let (mut from, to) = (u32::from(k), (u32::from(k) + 1) % self.corners);
         for point in points {
             let p = self.push(point, 1 << k);
             if let Some((triangle, side)) = self.along(from, to) {
@@ -392,7 +396,7 @@ mod tests {
         let corners = [given(0.0, 0.0), given(16.0, 0.0), given(0.0, 16.0)];
         let grid: Vec<Point> =
             (0..=16).flat_map(|x| (0..=16 - x).map(move |y| given(f64::from(x), f64::from(y)))).collect();
-        let mut t = Triangulation::new(2, corners.each_ref());
+        let mut t = Triangulation::new(2, &corners.each_ref());
         let numbers: Vec<u32> = grid.iter().map(|p| t.insert(p)).collect();
         assert_eq!(t.points.len(), 17 * 18 / 2);
         assert_eq!(t.triangles.len(), 256);
@@ -417,7 +421,7 @@ mod tests {
         let corners = [given(-4.0, -2.0), given(4.0, -2.0), given(0.0, 4.0)];
         let points: Vec<Point> =
             (0..300).map(|_| given(random.random_range(-0.9..0.9), random.random_range(-0.9..0.9))).collect();
-        let mut t = Triangulation::new(2, corners.each_ref());
+        let mut t = Triangulation::new(2, &corners.each_ref());
         let numbers: Vec<u32> = points.iter().map(|p| t.insert(p)).collect();
         for &to in &numbers[1..40] {
             t.fix(numbers[0], to);
