@@ -1,7 +1,7 @@
 //! Triangles in the order of their locational codes, with boxes around runs of them: what is near what.
 //!
 //! Each triangle is filed once, under the code of the voxel that holds the middle of its box. Neighbours in that order
-//! are neighbours in space, so that boxes around runs of a few, around eight such runs, and so on are small. Building
+//! are neighbours in space, so that boxes around groups of a few, around groups of these, and so on are small. Building
 //! takes one sort; nothing is divided. It serves questions that meet each triangle seldom: which pairs of triangles of two
 //! meshes may touch, and which triangles lie beside an axis-parallel ray.
 
@@ -11,11 +11,10 @@ use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
+use wide::f64x4;
 
-/// Triangles in the smallest runs.
-const RUN: usize = 4;
 /// Boxes under a box.
-const FAN: usize = 8;
+const FAN: usize = 4;
 /// Digits of the codes by which triangles are sorted.
 const DIGITS: u32 = 10;
 /// Pairs of boxes from which on the search goes on in parallel.
@@ -26,18 +25,62 @@ const TASKS: usize = 64;
 pub struct Sorted {
     /// Triangles in order.
     order: Vec<u32>,
-    /// Their boxes, in that order.
-    boxes: Vec<Bounds>,
-    /// Boxes: around runs of triangles first, around all of them last.
-    levels: Vec<Vec<Bounds>>,
+    /// Boxes by level, some at a time: those of triangles, in order, then those around each group of the level before.
+    levels: Vec<Vec<Group>>,
 }
 
-/// A box of a [`Sorted`].
+/// As many boxes as are under a box, coordinate by coordinate, to be compared at once. Where there are fewer, the last are
+/// empty.
+#[derive(Clone, Debug)]
+struct Group {
+    min: [f64x4; 3],
+    max: [f64x4; 3],
+}
+
+impl Group {
+    fn of(boxes: &[Bounds]) -> Group {
+        let lane = |lane: usize| boxes.get(lane).copied().unwrap_or(Bounds::EMPTY);
+        let lanes: [Bounds; FAN] = std::array::from_fn(lane);
+        let coordinates = |pick: fn(&Bounds) -> DVec3| {
+            std::array::from_fn(|axis| f64x4::new(lanes.each_ref().map(|bounds| pick(bounds)[axis])))
+        };
+        Group { min: coordinates(|bounds| bounds.min), max: coordinates(|bounds| bounds.max) }
+    }
+
+    fn at(&self, lane: usize) -> Bounds {
+        let coordinate = |of: &[f64x4; 3]| DVec3::from([0, 1, 2].map(|axis| of[axis].as_array()[lane]));
+        Bounds { min: coordinate(&self.min), max: coordinate(&self.max) }
+    }
+
+    /// The box around all.
+    fn union(&self) -> Bounds {
+        (0..FAN).fold(Bounds::EMPTY, |all, lane| all.union(self.at(lane)))
+    }
+
+    /// The boxes that have a point in common with another.
+    fn touching(&self, other: Bounds) -> impl Iterator<Item = usize> + use<> {
+        let apart = |axis: usize| {
+            self.min[axis].simd_gt(f64x4::splat(other.max[axis]))
+                | self.max[axis].simd_lt(f64x4::splat(other.min[axis]))
+        };
+        let mut left = !(apart(0) | apart(1) | apart(2)).to_bitmask() & ((1 << FAN) - 1);
+        std::iter::from_fn(move || {
+            let lane = (left != 0).then_some(left.trailing_zeros() as usize);
+            left &= left.wrapping_sub(1);
+            lane
+        })
+    }
+}
+
+/// A box of a [`Sorted`]: on level 0 that of a triangle.
 #[derive(Clone, Copy)]
 struct Place {
-    level: usize,
-    index: usize,
+    level: u32,
+    index: u32,
 }
+
+/// Two boxes.
+type Pair = (Place, Place);
 
 impl Sorted {
     /// Sorts triangles; their corners must be finite.
@@ -63,69 +106,56 @@ impl Sorted {
             })
             .collect();
         let order: Vec<u32> = radix_sorted(keys).into_iter().map(|key| key as u32).collect();
-        let boxes: Vec<Bounds> = order.par_iter().with_min_len(4096).map(|&t| bounds(&triangles[t as usize])).collect();
-        let union = |boxes: &[Bounds]| boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(*b));
-        let mut levels: Vec<Vec<Bounds>> = vec![boxes.par_chunks(RUN).with_min_len(1024).map(union).collect()];
-        while let Some(boxes) = levels.last().filter(|boxes| boxes.len() > 1) {
-            levels.push(boxes.chunks(FAN).map(union).collect());
+        let group = |some: &[u32]| {
+            let mut boxes = [Bounds::EMPTY; FAN];
+            boxes.iter_mut().zip(some).for_each(|(slot, &t)| *slot = bounds(&triangles[t as usize]));
+            Group::of(&boxes)
+        };
+        let mut levels: Vec<Vec<Group>> = vec![order.par_chunks(FAN).with_min_len(1024).map(group).collect()];
+        while let Some(groups) = levels.last().filter(|groups| groups.len() > 1) {
+            let around = |some: &[Group]| {
+                let mut boxes = [Bounds::EMPTY; FAN];
+                boxes.iter_mut().zip(some).for_each(|(slot, group)| *slot = group.union());
+                Group::of(&boxes)
+            };
+            levels.push(groups.par_chunks(FAN).with_min_len(1024).map(around).collect());
         }
-        Sorted { order, boxes, levels }
+        Sorted { order, levels }
     }
 
     /// The box around all triangles; empty without any.
     pub fn bounds(&self) -> Bounds {
-        self.top().map_or(Bounds::EMPTY, |top| self.at(top))
+        self.levels.last().map_or(Bounds::EMPTY, |top| top[0].union())
     }
 
     /// Pairs of triangles, one of this set and one of another, whose boxes have a point in common, in a fixed order.
     pub fn pairs(&self, other: &Sorted) -> Vec<[u32; 2]> {
         let (Some(one), Some(two)) = (self.top(), other.top()) else { return Vec::new() };
-        let descend = |task: (Place, Place), found: &mut Vec<(Place, Place)>| self.descend(other, task, found);
-        let search = |(one, two): (Place, Place), pairs: &mut Vec<[u32; 2]>| {
-            let near = other.at(two);
-            for i in self.run(one).filter(|&i| self.boxes[i].touches(near)) {
-                let touching = other.run(two).filter(|&j| self.boxes[i].touches(other.boxes[j]));
-                pairs.extend(touching.map(|j| [self.order[i], other.order[j]]));
-            }
-        };
-        searched((one, two), descend, search)
+        let under = |pair, found: &mut Vec<_>| self.pairs_under(other, pair, found);
+        searched((one, two), under, |(one, two)| {
+            Some([self.order[one.index as usize], other.order[two.index as usize]])
+        })
     }
 
     /// Pairs of triangles of this set, the lower first, whose boxes have a point in common and that `keep` accepts, in a
     /// fixed order.
     pub fn pairs_within(&self, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let Some(top) = self.top() else { return Vec::new() };
-        let descend = |task: (Place, Place), found: &mut Vec<(Place, Place)>| self.descend_both(task, found);
-        let search = |(one, two): (Place, Place), pairs: &mut Vec<[u32; 2]>| {
-            let near = self.at(two);
-            for i in self.run(one).filter(|&i| self.boxes[i].touches(near)) {
-                let later = self.run(two).filter(|&j| j > i && self.boxes[i].touches(self.boxes[j]));
-                let pair = later.map(|j| [self.order[i].min(self.order[j]), self.order[i].max(self.order[j])]);
-                pairs.extend(pair.filter(|&[a, b]| keep(a, b)));
-            }
-        };
-        searched((top, top), descend, search)
-    }
-
-    /// Adds the pairs under two boxes of one level, the second not before the first, that touch.
-    fn descend_both(&self, (one, two): (Place, Place), found: &mut Vec<(Place, Place)>) {
-        for a in self.under(one).filter(|&a| self.at(a).touches(self.at(two))) {
-            let later = self.under(two).filter(|b| b.index >= a.index && self.at(*b).touches(self.at(a)));
-            found.extend(later.map(|b| (a, b)));
-        }
+        let under = |pair, found: &mut Vec<_>| self.own_pairs_under(pair, found);
+        searched((top, top), under, |(one, two)| {
+            let (a, b) = (self.order[one.index as usize], self.order[two.index as usize]);
+            (one.index != two.index && keep(a.min(b), a.max(b))).then(|| [a.min(b), a.max(b)])
+        })
     }
 
     /// Calls for every triangle whose box touches another.
     pub fn touching(&self, near: Bounds, mut visit: impl FnMut(u32)) {
         let mut stack: Vec<Place> = self.top().into_iter().collect();
         while let Some(place) = stack.pop() {
-            if !self.at(place).touches(near) {
-                continue;
-            }
             if place.level == 0 {
-                self.run(place).filter(|&i| self.boxes[i].touches(near)).for_each(|i| visit(self.order[i]));
+                visit(self.order[place.index as usize]);
             } else {
-                stack.extend(self.under(place));
+                stack.extend(self.touching_under(place, near));
             }
         }
     }
@@ -141,77 +171,81 @@ impl Sorted {
                 continue;
             }
             if place.level == 0 {
-                self.run(place).for_each(|i| limit = visit(self.order[i]));
+                limit = visit(self.order[place.index as usize]);
                 continue;
             }
             let first = stack.len();
-            stack.extend(self.under(place).map(|place| (distance(self.at(place)), place)));
+            let below = self.touching_under(place, Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY });
+            stack.extend(below.map(|place| (distance(self.at(place)), place)));
             stack[first..].sort_by(|(a, _), (b, _)| b.total_cmp(a));
         }
     }
 
+    /// The box around all, above the last level.
     fn top(&self) -> Option<Place> {
-        self.levels.len().checked_sub(1).map(|level| Place { level, index: 0 })
+        (!self.levels.is_empty()).then_some(Place { level: self.levels.len() as u32, index: 0 })
     }
 
     fn at(&self, place: Place) -> Bounds {
-        self.levels[place.level][place.index]
+        let index = place.index as usize;
+        match self.levels.get(place.level as usize) {
+            Some(level) => level[index / FAN].at(index % FAN),
+            None => self.bounds(),
+        }
     }
 
-    /// Places in the order of the triangles of a run.
-    fn run(&self, place: Place) -> std::ops::Range<usize> {
-        place.index * RUN..self.order.len().min((place.index + 1) * RUN)
-    }
-
-    fn under(&self, place: Place) -> impl Iterator<Item = Place> {
+    /// The boxes under a box that touch another.
+    fn touching_under(&self, place: Place, near: Bounds) -> impl Iterator<Item = Place> + use<> {
         let level = place.level - 1;
-        let first = place.index * FAN;
-        (first..self.levels[level].len().min(first + FAN)).map(move |index| Place { level, index })
+        let lanes = self.levels[level as usize][place.index as usize].touching(near);
+        lanes.map(move |lane| Place { level, index: place.index * FAN as u32 + lane as u32 })
     }
 
-    /// Adds the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch.
-    fn descend(&self, other: &Sorted, (one, two): (Place, Place), found: &mut Vec<(Place, Place)>) {
-        let (a, b) = (self.at(one), other.at(two));
+    /// Finds the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch.
+    fn pairs_under(&self, other: &Sorted, (one, two): Pair, found: &mut Vec<Pair>) {
         match one.level.cmp(&two.level) {
-            Ordering::Greater => {
-                found.extend(self.under(one).filter(|&one| self.at(one).touches(b)).map(|one| (one, two)));
-            }
-            Ordering::Less => {
-                found.extend(other.under(two).filter(|&two| other.at(two).touches(a)).map(|two| (one, two)));
-            }
+            Ordering::Greater => self.touching_under(one, other.at(two)).for_each(|one| found.push((one, two))),
+            Ordering::Less => other.touching_under(two, self.at(one)).for_each(|two| found.push((one, two))),
             Ordering::Equal => {
-                for one in self.under(one).filter(|&one| self.at(one).touches(b)) {
-                    let a = self.at(one);
-                    found.extend(other.under(two).filter(|&two| other.at(two).touches(a)).map(|two| (one, two)));
+                for one in self.touching_under(one, other.at(two)) {
+                    other.touching_under(two, self.at(one)).for_each(|two| found.push((one, two)));
                 }
             }
+        }
+    }
+
+    /// Finds the pairs under two boxes of one level, the second not before the first, that touch; the second never before
+    /// the first.
+    fn own_pairs_under(&self, (one, two): Pair, found: &mut Vec<Pair>) {
+        for a in self.touching_under(one, self.at(two)) {
+            self.touching_under(two, self.at(a)).filter(|b| b.index >= a.index).for_each(|b| found.push((a, b)));
         }
     }
 }
 
 /// Searches from a pair of boxes on, in a fixed order.
 ///
-/// - `descend`: adds the pairs under a pair.
-/// - `search`: adds what is found in a pair of runs.
+/// - `under`: finds the pairs under a pair.
+/// - `take`: what to keep of a pair of triangles.
 fn searched(
-    top: (Place, Place),
-    descend: impl Fn((Place, Place), &mut Vec<(Place, Place)>) + Sync,
-    search: impl Fn((Place, Place), &mut Vec<[u32; 2]>) + Sync,
+    top: Pair,
+    under: impl Fn(Pair, &mut Vec<Pair>) + Sync,
+    take: impl Fn(Pair) -> Option<[u32; 2]> + Sync,
 ) -> Vec<[u32; 2]> {
-    let is_open = |(one, two): &(Place, Place)| one.level + two.level > 0;
+    let is_open = |(one, two): &Pair| one.level + two.level > 0;
     // Breadth first, until there is work for many threads.
     let mut tasks = vec![top];
     while !tasks.is_empty() && tasks.len() < TASKS && tasks.iter().any(is_open) {
         let mut next = Vec::new();
-        tasks.into_iter().for_each(|task| if is_open(&task) { descend(task, &mut next) } else { next.push(task) });
+        tasks.into_iter().for_each(|task| if is_open(&task) { under(task, &mut next) } else { next.push(task) });
         tasks = next;
     }
-    let below = |task: (Place, Place)| {
+    let below = |task: Pair| {
         let mut pairs = Vec::new();
         let mut stack = Vec::with_capacity(256);
         stack.push(task);
         while let Some(task) = stack.pop() {
-            if is_open(&task) { descend(task, &mut stack) } else { search(task, &mut pairs) }
+            if is_open(&task) { under(task, &mut stack) } else { pairs.extend(take(task)) }
         }
         pairs
     };

@@ -18,9 +18,12 @@ impl Expression {
     pub fn depends_on(&self, operand: usize, known: &[Option<bool>]) -> bool {
         // A child decides if no other child has the value that settles all.
         let among = |all: &[Expression], settled: bool| {
-            let settles = |e: &Expression| e.value(known) == Some(settled);
-            let settling = all.iter().filter(|e| settles(e)).count();
-            all.iter().any(|e| settling <= usize::from(settles(e)) && e.depends_on(operand, known))
+            let mut settling = all.iter().filter(|e| e.value(known) == Some(settled));
+            match (settling.next(), settling.next()) {
+                (None, _) => all.iter().any(|e| e.depends_on(operand, known)),
+                (Some(only), None) => only.depends_on(operand, known),
+                _ => false,
+            }
         };
         match self {
             Expression::Operand(index) => *index == operand,
