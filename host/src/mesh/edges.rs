@@ -305,7 +305,7 @@ mod tests {
 
     #[test]
     fn coarse_triangles_of_a_smooth_surface_are_no_creases() {
-        let mut mesh = samples::ball(6, 3);
+        let mut mesh = Mesh { corner_normals: Vec::new(), ..samples::ball(6, 3) };
         assert!(!wire(&mesh, &Selection::creases(20.0)).is_empty());
         mesh.corner_normals = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(DVec3::normalize)).collect();
         assert!(wire(&mesh, &Selection::creases(20.0)).is_empty());

@@ -204,6 +204,6 @@ fn there_are_no_triangles_without_width() {
     for triangle in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(triangle);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        assert!(mesh.area_vector(triangle).length() > 1e-4 * longest * longest, "{a} {b} {c}");
+        assert!(mesh.area_vector(triangle).length() > 1e-9 * longest * longest, "{a} {b} {c}");
     }
 }
