@@ -51,7 +51,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let (mut solids, mut names, mut looks) = (Vec::new(), Vec::new(), Vec::new());
     for path in meshes {
-        let (solid, own, its_looks) = grouped_solid(path)?;
+        let Operand { solid, names: own, looks: its_looks } = grouped_solid(path)?;
         // Numbers of surfaces of a result go on from operand to operand.
         let count = solid.mesh().surfaces.iter().max().map_or(0, |last| *last as usize + 1);
         names.extend((0..count).map(|k| own.get(k).cloned().unwrap_or_else(|| format!("{}/{k}", stem(path)))));
@@ -102,11 +102,18 @@ fn stem(path: &Path) -> String {
 
 /// Reads a mesh that must be a solid.
 pub(super) fn solid(path: &Path) -> Result<Solid, Failure> {
-    grouped_solid(path).map(|(solid, ..)| solid)
+    grouped_solid(path).map(|operand| operand.solid)
 }
 
-/// Reads a mesh that must be a solid, and names and looks of its groups; one without groups is one, called as the file.
-fn grouped_solid(path: &Path) -> Result<(Solid, Vec<String>, Vec<Option<Look>>), Failure> {
+/// A solid, and names and looks of its groups.
+struct Operand {
+    solid: Solid,
+    names: Vec<String>,
+    looks: Vec<Option<Look>>,
+}
+
+/// Reads a mesh that must be a solid; one without groups is one, called as the file.
+fn grouped_solid(path: &Path) -> Result<Operand, Failure> {
     let Grouped { mut mesh, mut names, looks } = mesh::read_grouped(path)?;
     if mesh.surfaces.is_empty() {
         mesh.surfaces = vec![0; mesh.triangles.len()];
@@ -117,5 +124,5 @@ fn grouped_solid(path: &Path) -> Result<(Solid, Vec<String>, Vec<Option<Look>>),
     if let Some(crossing) = crossing {
         tracing::warn!("{}: {crossing}; taken for all that it winds around", path.display());
     }
-    Ok((solid, names, looks))
+    Ok(Operand { solid, names, looks })
 }
