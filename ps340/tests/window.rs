@@ -252,14 +252,18 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     desk.display.act(&format!("mousemove {} {y}", x + 60));
     desk.expect("message 60", "ok V 0.");
 
-    // The knob of the brightness at its lowest.
+    // The knob of the brightness at its lowest. Where frames are slow, a whole drag may fall into one: it is done again.
     desk.click("view Display");
-    let [x, y] = desk.place("knob brightness");
-    desk.display.act(&format!("mousemove {} {y}", x + 30));
-    desk.display.act("mousedown 1");
-    desk.display.act(&format!("mousemove {} {y}", x - 20));
-    desk.display.act("mouseup 1");
-    desk.expect("knob", "brightness 0,");
+    let begin = Instant::now();
+    while !desk.order("knob").contains("brightness 0,") {
+        assert!(begin.elapsed() < PATIENCE, "the knob does not turn: {}", desk.order("knob"));
+        let [x, y] = desk.place("knob brightness");
+        let steps = [format!("mousemove {} {y}", x + 30), "mousedown 1".into(), format!("mousemove {} {y}", x - 20)];
+        for step in steps.iter().map(String::as_str).chain(["mouseup 1"]) {
+            desk.display.act(step);
+            desk.order("frames 3");
+        }
+    }
     desk.click("view Display");
 
     // From a pixel to 8K and back, the window shows what it is given, while polygons are shaded.

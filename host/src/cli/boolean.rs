@@ -1,7 +1,7 @@
 //! `peris boolean`: solids from solids.
 
 use super::{Exit, Failure, Row};
-use crate::mesh::{self, Grouped};
+use crate::mesh::{self, Grouped, Look};
 use crate::solid::{Expression, Solid};
 use anyhow::Context;
 use clap::{Args, FromArgMatches, ValueEnum};
@@ -49,12 +49,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if mesh::Format::of(output).is_none() {
         return Err(mesh::MeshError::Format { path: output.clone() }.into());
     }
-    let (mut solids, mut names) = (Vec::new(), Vec::new());
+    let (mut solids, mut names, mut looks) = (Vec::new(), Vec::new(), Vec::new());
     for path in meshes {
-        let (solid, own) = grouped_solid(path)?;
+        let Operand { solid, names: own, looks: its_looks } = grouped_solid(path)?;
         // Numbers of surfaces of a result go on from operand to operand.
         let count = solid.mesh().surfaces.iter().max().map_or(0, |last| *last as usize + 1);
         names.extend((0..count).map(|k| own.get(k).cloned().unwrap_or_else(|| format!("{}/{k}", stem(path)))));
+        looks.extend((0..count).map(|k| its_looks.get(k).copied().flatten()));
         solids.push(solid);
     }
     let all = |range: std::ops::Range<usize>| range.map(Expression::Operand).collect::<Vec<_>>();
@@ -69,8 +70,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let (result, outcome) = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
     let seconds = start.elapsed().as_secs_f64();
-    let mesh = result.mesh();
-    mesh::write_grouped(mesh, &names, output)?;
+    let grouped = Grouped { mesh: result.into_mesh(), names, looks };
+    mesh::write_grouped(&grouped, output)?;
+    let mesh = &grouped.mesh;
     let volume = mesh.signed_volume();
     if *json {
         let counts = &outcome.counts;
@@ -100,12 +102,19 @@ fn stem(path: &Path) -> String {
 
 /// Reads a mesh that must be a solid.
 pub(super) fn solid(path: &Path) -> Result<Solid, Failure> {
-    grouped_solid(path).map(|(solid, _)| solid)
+    grouped_solid(path).map(|operand| operand.solid)
 }
 
-/// Reads a mesh that must be a solid, and the names of its groups; one without groups is one, called as the file.
-fn grouped_solid(path: &Path) -> Result<(Solid, Vec<String>), Failure> {
-    let Grouped { mut mesh, mut names } = mesh::read_grouped(path)?;
+/// A solid, and names and looks of its groups.
+struct Operand {
+    solid: Solid,
+    names: Vec<String>,
+    looks: Vec<Option<Look>>,
+}
+
+/// Reads a mesh that must be a solid; one without groups is one, called as the file.
+fn grouped_solid(path: &Path) -> Result<Operand, Failure> {
+    let Grouped { mut mesh, mut names, looks } = mesh::read_grouped(path)?;
     if mesh.surfaces.is_empty() {
         mesh.surfaces = vec![0; mesh.triangles.len()];
         names = vec![stem(path)];
@@ -115,5 +124,5 @@ fn grouped_solid(path: &Path) -> Result<(Solid, Vec<String>), Failure> {
     if let Some(crossing) = crossing {
         tracing::warn!("{}: {crossing}; taken for all that it winds around", path.display());
     }
-    Ok((solid, names))
+    Ok(Operand { solid, names, looks })
 }

@@ -69,15 +69,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if to_commands {
         return commands(arguments);
     }
-    let Grouped { mut mesh, mut names } = triangles(input, &arguments.definitions)?;
-    if let Some(most) = most.filter(|most| *most < mesh.triangles.len()) {
-        mesh = mesh.simplified(most);
-        names.clear();
+    let mut grouped = triangles(input, &arguments.definitions)?;
+    if let Some(most) = most.filter(|most| *most < grouped.mesh.triangles.len()) {
+        grouped = grouped.mesh.simplified(most).into();
     }
     if arguments.scale != 1.0 {
-        mesh = mesh.transformed(&DAffine3::from_scale(DVec3::splat(arguments.scale)));
+        grouped.mesh = grouped.mesh.transformed(&DAffine3::from_scale(DVec3::splat(arguments.scale)));
     }
-    mesh::write_grouped(&mesh, &names, output)?;
+    mesh::write_grouped(&grouped, output)?;
+    let mesh = grouped.mesh;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     if *json {
         say!("{:#}", serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));

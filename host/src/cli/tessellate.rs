@@ -2,7 +2,7 @@
 
 use super::convert::input_scene;
 use super::{Definitions, Exit, Failure, Row};
-use crate::mesh::{self, Format, Grouped, MeshError};
+use crate::mesh::{self, Format, MeshError};
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -21,7 +21,7 @@ struct Arguments {
     input: PathBuf,
     #[command(flatten)]
     definitions: Definitions,
-    /// The file to write: .obj (groups), .gltf or .glb (a primitive for each surface), .ply (a property of faces), .stl
+    /// The file to write: .obj (groups), .gltf or .glb (a primitive with a material for each surface), .ply (a property of faces), .stl
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Largest distance between surface and triangles, scene units [default: that of the scene and its objects]
@@ -42,9 +42,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let scene = input_scene(input, definitions)?.within(*chord, *angle);
     let start = Instant::now();
-    let Grouped { mesh, names } = scene.tessellated()?;
+    let grouped = scene.tessellated()?;
     let seconds = start.elapsed().as_secs_f64();
-    mesh::write_grouped(&mesh, &names, output)?;
+    mesh::write_grouped(&grouped, output)?;
+    let mesh = grouped.mesh;
     let error = scene.chord_error()?;
     let mut used = mesh.surfaces.clone();
     used.sort_unstable();

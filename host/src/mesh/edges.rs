@@ -6,6 +6,9 @@ use robust::{Coord3D, orient3d};
 use super::Mesh;
 use super::measure::{angle_between, unit_normal};
 
+/// Normals of one plane differ by less.
+const FLAT: f64 = 1e-9;
+
 /// All edges of a mesh and the triangles at each. Vertices at the same position count as one.
 #[derive(Clone, Debug)]
 pub struct EdgeTable {
@@ -52,7 +55,7 @@ pub enum Interior {
     #[default]
     None,
     /// Those along which one surface parameter is constant: the grid of a tessellated surface without its diagonals.
-    /// All edges of a mesh that has no parameters.
+    /// All edges of a mesh that has no parameters. None within a plane.
     Isoparametric,
     /// All.
     All,
@@ -63,7 +66,8 @@ pub enum Interior {
 pub struct Selection {
     /// Edges of one triangle. (Edges of more than two are always creases.)
     pub boundary: bool,
-    /// Edges where the two planes meet at more than this angle, degrees, 0..=180; `None` for no creases.
+    /// Edges where the two surfaces meet at more than this angle, degrees, 0..=180; `None` for no creases. The planes of
+    /// the triangles must do so, and the normals that the mesh has there: coarse triangles are no creases.
     pub crease_degrees: Option<f64>,
     /// Edges between triangles of different surfaces, whatever their angle.
     pub seams: bool,
@@ -158,6 +162,7 @@ impl EdgeTable {
         }
         if let Some(degrees) = selection.crease_degrees
             && self.dihedral_degrees(mesh, edge).is_some_and(|angle| angle > degrees)
+            && normals_turn_degrees(mesh, a, b).is_none_or(|angle| angle > degrees)
         {
             return true;
         }
@@ -167,6 +172,7 @@ impl EdgeTable {
         }
         match selection.interior {
             Interior::None => false,
+            Interior::Isoparametric if self.is_within_plane(mesh, edge, a, b) => false,
             Interior::Isoparametric => is_isoparametric(mesh, a) || is_isoparametric(mesh, b),
             Interior::All => true,
         }
@@ -180,6 +186,16 @@ impl EdgeTable {
         let normal_b = mesh.face_normal(b.triangle as usize)?;
         let turned = if a.forward == b.forward { -normal_b } else { normal_b };
         Some(angle_between(normal_a, turned).to_degrees())
+    }
+
+    /// Whether both triangles of an edge are parts of one plane, by the normals that the mesh has or else by their own.
+    fn is_within_plane(&self, mesh: &Mesh, edge: &Edge, a: &EdgeUse, b: &EdgeUse) -> bool {
+        let corners = [a, b].map(|place| mesh.corner_normals.get(place.triangle as usize));
+        let [Some(one), Some(two)] = corners else {
+            return self.dihedral_degrees(mesh, edge).is_some_and(|angle| angle.to_radians() < FLAT);
+        };
+        let side = if a.forward == b.forward { -1.0 } else { 1.0 };
+        one.iter().all(|n| n.distance(one[0]) < FLAT) && two.iter().all(|n| (*n * side).distance(one[0]) < FLAT)
     }
 }
 
@@ -200,6 +216,17 @@ fn facing(mesh: &Mesh, eye: Eye) -> Vec<bool> {
         }
     };
     (0..mesh.triangles.len()).map(faces).collect()
+}
+
+/// The angle between the normals that the mesh has at both sides of an edge, in the mean over its ends, degrees; `None`
+/// where there are none.
+fn normals_turn_degrees(mesh: &Mesh, a: &EdgeUse, b: &EdgeUse) -> Option<f64> {
+    let mean = |place: &EdgeUse| {
+        let normals = mesh.corner_normals.get(place.triangle as usize)?;
+        (normals[usize::from(place.side)] + normals[(usize::from(place.side) + 1) % 3]).try_normalize()
+    };
+    let side = if a.forward == b.forward { -1.0 } else { 1.0 };
+    Some(angle_between(mean(a)?, mean(b)? * side).to_degrees())
 }
 
 /// Whether one parameter is the same at both ends of a side; true where there are no parameters.
@@ -274,6 +301,25 @@ mod tests {
         assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::splat(5.0)))).len(), 6);
         assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::new(0.4, 0.3, 5.0)))).len(), 4);
         assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::splat(0.4)))).len(), 0);
+    }
+
+    #[test]
+    fn coarse_triangles_of_a_smooth_surface_are_no_creases() {
+        let mut mesh = Mesh { corner_normals: Vec::new(), ..samples::ball(6, 3) };
+        assert!(!wire(&mesh, &Selection::creases(20.0)).is_empty());
+        mesh.corner_normals = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(DVec3::normalize)).collect();
+        assert!(wire(&mesh, &Selection::creases(20.0)).is_empty());
+        let mut flat = cube();
+        flat.corner_normals = (0..flat.triangles.len()).map(|t| [flat.face_normal(t).unwrap(); 3]).collect();
+        assert_eq!(wire(&flat, &Selection::creases(20.0)).len(), 12);
+    }
+
+    #[test]
+    fn the_grid_has_no_lines_within_a_plane() {
+        let mut mesh = cube();
+        assert_eq!(wire(&mesh, &Selection::grid(20.0)).len(), 12);
+        mesh.corner_normals = (0..mesh.triangles.len()).map(|t| [mesh.face_normal(t).unwrap(); 3]).collect();
+        assert_eq!(wire(&mesh, &Selection::grid(20.0)).len(), 12);
     }
 
     #[test]

@@ -95,18 +95,17 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
 /// # Errors
 /// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written.
 pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
-    write_grouped(mesh, &[], path)
+    write_grouped(&Grouped::from(mesh.clone()), path)
 }
 
-/// Writes a mesh with names for its surfaces, as [`write()`] does.
+/// Writes a mesh with names for its surfaces, as [`write()`] does; glTF keeps what they look like, too.
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_grouped(mesh: &Mesh, names: &[String], path: impl AsRef<Path>) -> Result<(), MeshError> {
+pub fn write_grouped(grouped: &Grouped, path: impl AsRef<Path>) -> Result<(), MeshError> {
     let path = path.as_ref();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
-    let bytes =
-        print_grouped(mesh, names, format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
+    let bytes = print_grouped(grouped, format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
     std::fs::write(path, bytes).map_err(|source| MeshError::File { path: path.to_owned(), source })
 }
 
@@ -147,21 +146,22 @@ fn parse_beside(
 /// # Errors
 /// If the mesh is not valid, or the format cannot hold it.
 pub fn print(mesh: &Mesh, format: Format) -> Result<Vec<u8>, Fault> {
-    print_grouped(mesh, &[], format)
+    print_grouped(&Grouped::from(mesh.clone()), format)
 }
 
 /// The bytes of a mesh file with names for its surfaces.
 ///
 /// # Errors
 /// As [`print()`].
-pub fn print_grouped(mesh: &Mesh, names: &[String], format: Format) -> Result<Vec<u8>, Fault> {
+pub fn print_grouped(grouped: &Grouped, format: Format) -> Result<Vec<u8>, Fault> {
+    let Grouped { mesh, names, .. } = grouped;
     mesh.validate()?;
     match format {
         Format::Obj => Ok(obj::print(mesh, names)),
         Format::Stl => stl::print(mesh),
         Format::Ply => Ok(ply::print(mesh, names)),
-        Format::Gltf => gltf::print_text(mesh, names),
-        Format::Glb => gltf::print_binary(mesh, names),
+        Format::Gltf => gltf::print_text(grouped),
+        Format::Glb => gltf::print_binary(grouped),
         Format::Compact => compact::print(mesh),
     }
 }

@@ -1,5 +1,7 @@
 //! Names of the surfaces of a mesh: the groups of files.
 
+use glam::DVec3;
+
 use super::Mesh;
 
 /// A mesh and what its surfaces are called.
@@ -9,11 +11,24 @@ pub struct Grouped {
     pub mesh: Mesh,
     /// What the surfaces are called, by their numbers. There may be fewer names than surfaces.
     pub names: Vec<String>,
+    /// What the surfaces look like, by their numbers; none where that is not known. There may be fewer than surfaces.
+    pub looks: Vec<Option<Look>>,
+}
+
+/// What a surface looks like, in the terms of glTF.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Reflected fraction of red, green and blue, linear, each 0..=1.
+    pub base: DVec3,
+    /// How far it is a metal, 0..=1.
+    pub metallic: f64,
+    /// The root of the spread of the slopes of its facets, 0..=1; 1 is matt.
+    pub roughness: f64,
 }
 
 impl From<Mesh> for Grouped {
     fn from(mesh: Mesh) -> Grouped {
-        Grouped { mesh, names: Vec::new() }
+        Grouped { mesh, ..Grouped::default() }
     }
 }
 
@@ -35,19 +50,21 @@ pub(super) fn name_of(names: &[String], surface: u32) -> String {
 #[derive(Default)]
 pub(super) struct Groups {
     names: Vec<String>,
+    looks: Vec<Option<Look>>,
     number_of: std::collections::HashMap<String, u32>,
     of_triangles: Vec<u32>,
 }
 
 impl Groups {
-    /// Notes that the triangles from the last noted one up to `count` are of the group `name`.
-    pub fn extend(&mut self, name: &str, count: usize) {
+    /// Notes that the triangles from the last noted one up to `count` are of the group `name`, which looks so if it is new.
+    pub fn extend(&mut self, name: &str, look: Option<Look>, count: usize) {
         if count <= self.of_triangles.len() {
             return;
         }
         let number = self.number_of.get(name).copied().unwrap_or_else(|| {
             self.number_of.insert(name.to_owned(), self.names.len() as u32);
             self.names.push(name.to_owned());
+            self.looks.push(look);
             self.names.len() as u32 - 1
         });
         self.of_triangles.resize(count, number);
@@ -55,10 +72,10 @@ impl Groups {
 
     /// Puts the groups on a mesh; one group without a name is none.
     pub fn on(self, mut mesh: Mesh) -> Grouped {
-        if self.names.iter().all(String::is_empty) {
+        if self.names.iter().all(String::is_empty) && self.looks.iter().all(Option::is_none) {
             return Grouped::from(mesh);
         }
         mesh.surfaces = self.of_triangles;
-        Grouped { mesh, names: self.names }
+        Grouped { mesh, names: self.names, looks: self.looks }
     }
 }

@@ -8,7 +8,7 @@ const MAX_STEPS: usize = 5;
 const NONE: u32 = u32::MAX;
 
 /// The members that paths go through; a path keeps their numbers, so that errors stay small.
-const KEYS: [&str; 39] = [
+const KEYS: [&str; 43] = [
     "member",
     "asset",
     "version",
@@ -33,6 +33,10 @@ const KEYS: [&str; 39] = [
     "material",
     "materials",
     "name",
+    "pbrMetallicRoughness",
+    "baseColorFactor",
+    "metallicFactor",
+    "roughnessFactor",
     "accessors",
     "componentType",
     "count",

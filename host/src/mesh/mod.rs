@@ -26,11 +26,11 @@ pub use check::EdgeReport;
 pub use edges::{Eye, Interior, Selection, wire};
 pub use error::{Fault, MeshError, Place, Problem};
 pub use file::{Format, parse, parse_grouped, print, print_grouped, read, read_grouped, write, write_grouped};
-pub use groups::Grouped;
+pub use groups::{Grouped, Look};
 pub use json_path::JsonPath;
 pub(crate) use measure::bits;
 pub(crate) use placement::normal_matrix;
-pub use polylines::{Polylines, polylines};
+pub use polylines::{Polylines, polylines, polylines_of_groups};
 
 use glam::{DVec2, DVec3};
 

@@ -72,7 +72,7 @@ fn statement(text: &str, content: &mut Content, corners: &mut Vec<Corner>) -> Re
             }
             content.triangles.extend(fan(corners));
             let count = content.triangles.len();
-            content.groups.extend(&content.group(), count);
+            content.groups.extend(&content.group(), None, count);
         }
         Some(word @ ("o" | "g" | "usemtl")) => {
             let which = usize::from(word != "o") + usize::from(word == "usemtl");
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn polygons_negative_indices_comments_and_continued_lines_are_understood() {
         let text = "# a square\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 \\\n 0\nvt 0.5\nvn 0 0 2\ng x\nf -4//1 2//1 3//-1 -1//1 # face\n";
-        let Grouped { mesh, names } = parse(text.as_bytes()).unwrap();
+        let Grouped { mesh, names, .. } = parse(text.as_bytes()).unwrap();
         assert_eq!((mesh.surfaces.as_slice(), names), ([0; 2].as_slice(), vec!["x".to_owned()]));
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(mesh.vertices[3], DVec3::Y);
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn groups_come_back_with_their_names() {
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no a\ng a\nf 1 2 3\nusemtl red\nf 2 3 1\ng a\nf 1 2 3\no\ng\nusemtl\nf 3 1 2\n";
-        let Grouped { mesh, names } = parse(text.as_bytes()).unwrap();
+        let Grouped { mesh, names, .. } = parse(text.as_bytes()).unwrap();
         assert_eq!(
             (mesh.surfaces.as_slice(), &names),
             ([0, 1, 2, 2, 0].as_slice(), &["", "a", "a/red"].map(String::from).to_vec())

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::edges::EdgeTable;
+use super::edges::{EdgeTable, EdgeUse};
 use super::{Mesh, Selection};
 
 /// Runs of points joined by lines.
@@ -43,9 +43,21 @@ impl Polylines {
 /// # Source
 /// Hierholzer 1873: odd vertices are joined in pairs by edges that are not drawn, the closed trail is cut there.
 pub fn polylines(mesh: &Mesh, selection: &Selection) -> Polylines {
+    polylines_of_groups(mesh, selection, &[], 1).pop().unwrap_or_default()
+}
+
+/// The same for each group of triangles. An edge between two groups is of the later one.
+///
+/// - `group_of`: the group of each triangle, below `count`; empty if all are of the first.
+pub fn polylines_of_groups(mesh: &Mesh, selection: &Selection, group_of: &[u32], count: usize) -> Vec<Polylines> {
     let table = EdgeTable::of(mesh);
-    let edges: Vec<[u32; 2]> = table.select(mesh, selection).map(|edge| edge.ends).collect();
-    Trails::new(mesh, edges).into_polylines()
+    let mut edges: Vec<Vec<[u32; 2]>> = vec![Vec::new(); count];
+    for edge in table.select(mesh, selection) {
+        let group = |place: &EdgeUse| group_of.get(place.triangle as usize).map_or(0, |group| *group as usize);
+        let last = table.uses(edge).iter().map(group).max().unwrap_or(0);
+        edges[last].push(edge.ends);
+    }
+    edges.into_iter().map(|edges| Trails::new(mesh, edges).into_polylines()).collect()
 }
 
 /// A graph on its way into trails.

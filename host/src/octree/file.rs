@@ -7,7 +7,9 @@ use bincode::config::{Configuration, standard};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::build::Leaves;
+use std::ops::Range;
+
+use super::build::{Division, Leaves, Reference, eighths};
 use super::cube::Cube;
 use super::{LocationalCode, MAX_DEPTH, Object, Octree, OctreeError, Settings, Walk, check};
 
@@ -93,8 +95,7 @@ impl Octree {
 
     /// Reads what [`Octree::to_bytes`] wrote. Rays go down the index.
     ///
-    /// Bytes that are not an octree are refused. Not looked for are triangles that a node ought to name and does not: where
-    /// someone made such a file on purpose, rays miss them there.
+    /// Bytes that are not an octree are refused, also where a node does not name just the triangles that touch it.
     ///
     /// # Errors
     /// [`FileError`].
@@ -124,6 +125,31 @@ fn demand(holds: bool, otherwise: &'static str) -> Result<(), FileError> {
     if holds { Ok(()) } else { Err(FileError::Contradiction(otherwise)) }
 }
 
+/// Checks that the terminal nodes in a cell name the triangles that touch them, and no others.
+///
+/// - `nodes`: those in the cell.
+/// - `references`: to the triangles that touch the cell.
+fn check_nodes(
+    division: &Division,
+    leaves: &Leaves,
+    cell: LocationalCode,
+    nodes: Range<usize>,
+    references: &[Reference],
+) -> Result<(), FileError> {
+    if leaves.codes.get(nodes.start).filter(|_| !nodes.is_empty()) == Some(&cell) {
+        let named = leaves.of(nodes.start).iter();
+        let is_same = named.eq(references.iter().map(|reference| &reference.triangle));
+        return demand(is_same, "a node does not name just the triangles that touch it");
+    }
+    if nodes.is_empty() {
+        return demand(references.is_empty(), "a triangle lies where there is no node");
+    }
+    for (eighth, part) in eighths(cell).zip(division.distribute(cell, references)) {
+        check_nodes(division, leaves, eighth, leaves.within(eighth, nodes.clone()), &part)?;
+    }
+    Ok(())
+}
+
 impl Stored {
     fn octree(self) -> Result<Octree, FileError> {
         let vertices: Vec<DVec3> = self.vertices.iter().map(|&p| DVec3::from_array(p)).collect();
@@ -140,11 +166,8 @@ impl Stored {
         let mut octree = Octree { vertices, objects, leaves, ..Octree::of_cube(cube, &settings) };
         octree.triangles = self.triangles;
         let division = octree.division();
-        let is_touched = |leaf: usize| {
-            let cell = octree.leaves.codes[leaf];
-            octree.leaves.of(leaf).iter().all(|&triangle| division.part(triangle, cell).is_some())
-        };
-        demand((0..octree.leaves.codes.len()).all(is_touched), "a node names a triangle that does not touch it")?;
+        let all = division.references(0..octree.triangles.len());
+        check_nodes(&division, &octree.leaves, LocationalCode::ROOT, 0..octree.leaves.codes.len(), &all)?;
         octree.homes = division.homes(0..octree.triangles.len());
         Ok(octree.with_walk(Walk::Index))
     }

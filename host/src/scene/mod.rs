@@ -138,9 +138,37 @@ impl Scene {
 }
 
 impl Object {
-    /// How its surface reflects in the main.
-    pub fn main_material(&self) -> Material {
-        self.own_material().unwrap_or_default()
+    /// The materials of its surface, each once, and which of them its triangles have; nothing if that is the same for all.
+    ///
+    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`Made`] tells.
+    pub fn materials(&self, operand_of: &[u32]) -> (Vec<Material>, Vec<u32>) {
+        let Some((composite, whole)) = self.composite() else {
+            return (vec![self.own_material().unwrap_or_default()], Vec::new());
+        };
+        let mut materials: Vec<Material> = Vec::new();
+        let mut number = |material: Material| {
+            materials.iter().position(|known| *known == material).unwrap_or_else(|| {
+                materials.push(material);
+                materials.len() - 1
+            }) as u32
+        };
+        let of_operand: Vec<u32> = composite.materials(whole).into_iter().map(&mut number).collect();
+        if materials.len() < 2 {
+            return (vec![materials.pop().unwrap_or_default()], Vec::new());
+        }
+        (materials, operand_of.iter().map(|operand| of_operand[*operand as usize]).collect())
+    }
+
+    /// The composite whose operands its triangles come from, and the material of the whole.
+    fn composite(&self) -> Option<(&Composite, Option<Material>)> {
+        match &self.shape {
+            Shape::Composite(composite) => Some((composite, self.material)),
+            Shape::Rounded(rounded) => {
+                let (composite, inner) = rounded.object.composite()?;
+                Some((composite, self.material.or(inner)))
+            }
+            _ => None,
+        }
     }
 
     fn own_material(&self) -> Option<Material> {

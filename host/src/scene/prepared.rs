@@ -164,21 +164,10 @@ impl Prepared {
 
     /// The materials of an object, each once; which of them its triangles have is stored if there are several.
     fn add_materials(&mut self, object: &Object, operand_of: &[u32]) -> (Vec<Material>, Option<u32>) {
-        let Shape::Composite(composite) = &object.shape else { return (vec![object.main_material()], None) };
-        let mut materials: Vec<Material> = Vec::new();
-        let mut number = |material: Material| {
-            materials.iter().position(|known| *known == material).unwrap_or_else(|| {
-                materials.push(material);
-                materials.len() - 1
-            }) as u32
-        };
-        let of_operand: Vec<u32> = composite.materials(object.material).into_iter().map(&mut number).collect();
-        if materials.len() < 2 {
-            return (vec![materials.pop().unwrap_or_default()], None);
-        }
-        let from = self.material_of.len() as u32;
-        self.material_of.extend(operand_of.iter().map(|operand| of_operand[*operand as usize]));
-        (materials, Some(from))
+        let (materials, of_triangles) = object.materials(operand_of);
+        let from = (!of_triangles.is_empty()).then_some(self.material_of.len() as u32);
+        self.material_of.extend(of_triangles);
+        (materials, from)
     }
 
     /// How a triangle reflects.

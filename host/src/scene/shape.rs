@@ -7,12 +7,13 @@ use super::meeting::meet;
 use super::prepared::largest_stretch;
 use super::sculpture::{Sculpture, SculptureError};
 use crate::intersection::Precision;
-use crate::mesh::{self, Mesh, MeshError, Polylines};
+use crate::mesh::{self, Mesh, MeshError, Polylines, edges::EdgeTable};
 use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError};
 use crate::subdivision::SubdivisionError;
 use crate::surface::{self, Surface, TessellationError, Tolerance, chord_error, ground, tessellate};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -238,7 +239,9 @@ impl Rounded {
     fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
         let Rounded { object, edges, radius } = self;
         let chord = tolerance.chord / largest_stretch(&object.transform);
-        let Made { mesh, surfaces, .. } = object.placed(object.shape.made(Tolerance { chord, ..tolerance })?);
+        let Made { mesh, surfaces, operand_of, .. } =
+            object.placed(object.shape.made(Tolerance { chord, ..tolerance })?);
+        let operands: HashMap<u32, u32> = mesh.surfaces.iter().copied().zip(operand_of).collect();
         let solid = ExactSolid::new(mesh, surfaces)
             .map_err(|source| ShapeError::Solid { object: object.name.clone(), source })?;
         let choice = if edges.is_empty() { EdgeChoice::All } else { EdgeChoice::Nearest(edges.clone()) };
@@ -246,8 +249,21 @@ impl Rounded {
             .rounded(&choice, *radius, tolerance.chord)
             .map_err(|source| ShapeError::Rounding { object: object.name.clone(), source })?;
         let (mesh, surfaces) = rounded.into_parts();
-        Ok(Made { mesh, surfaces, ..Made::default() })
+        let operand_of = if operands.is_empty() { Vec::new() } else { operands_beside(&mesh, operands) };
+        Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
     }
+}
+
+/// For each triangle the operand of its surface; what is rounded is of an operand beside it.
+fn operands_beside(mesh: &Mesh, mut operands: HashMap<u32, u32>) -> Vec<u32> {
+    let table = EdgeTable::of(mesh);
+    for edge in &table.edges {
+        let surfaces: Vec<u32> = table.uses(edge).iter().map(|place| mesh.surfaces[place.triangle as usize]).collect();
+        if let Some(operand) = surfaces.iter().find_map(|surface| operands.get(surface).copied()) {
+            surfaces.iter().for_each(|surface| _ = operands.entry(*surface).or_insert(operand));
+        }
+    }
+    mesh.surfaces.iter().map(|surface| operands.get(surface).copied().unwrap_or(0)).collect()
 }
 
 impl Made {

@@ -1,7 +1,8 @@
 //! A scene as one mesh, of which every triangle knows its object and its surface.
 
 use super::{MAX_OBJECTS, Made, Object, Scene, SceneError, Shape};
-use crate::mesh::{Grouped, Mesh};
+use crate::illumination::Material;
+use crate::mesh::{Grouped, Look, Mesh};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
@@ -10,7 +11,7 @@ const MAX_TRIANGLES: u64 = 1 << 30;
 
 impl Scene {
     /// The triangles of all objects in scene coordinates, with normals, and with parameters if all objects have them. A
-    /// surface is named OBJECT, or OBJECT/NUMBER where an object has several.
+    /// surface is named OBJECT, or OBJECT/NUMBER where an object has several, and looks as its material.
     ///
     /// # Errors
     /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
@@ -20,7 +21,7 @@ impl Scene {
         let made = |object: &Object| object.made(settings.tolerance, settings.angle).map(|(made, _)| made);
         let all = self.objects.par_iter().map(made).collect::<Result<Vec<Made>, SceneError>>()?;
         let mut whole = Grouped::default();
-        for (object, Made { mut mesh, .. }) in self.objects.iter().zip(all) {
+        for (object, Made { mut mesh, operand_of, .. }) in self.objects.iter().zip(all) {
             if (whole.mesh.triangles.len() + mesh.triangles.len()) as u64 > MAX_TRIANGLES {
                 return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
             }
@@ -37,6 +38,12 @@ impl Scene {
             whole.mesh.append(&placed, whole.names.len() as u32);
             let name = |k: usize| if count == 1 { object.name.clone() } else { format!("{}/{k}", object.name) };
             whole.names.extend((0..count).map(name));
+            let (materials, of_triangles) = object.materials(&operand_of);
+            let mut looks = vec![look(&materials[0]); count];
+            for (surface, material) in placed.surfaces.iter().zip(of_triangles) {
+                looks[*surface as usize] = look(&materials[material as usize]);
+            }
+            whole.looks.extend(looks.into_iter().map(Some));
         }
         Ok(whole)
     }
@@ -61,6 +68,25 @@ impl Scene {
     }
 }
 
+/// A material in the terms of glTF, which has one colour: what is mirrored counts to it, as a metal.
+///
+/// # Source
+/// The exponent n of a highlight belongs to facets of the roughness a with n = 2 / a^2 - 2 (Walter et al. 2007), and a is the
+/// square of the number that glTF wants.
+fn look(material: &Material) -> Look {
+    let sum = |bands: DVec3| bands.element_sum();
+    let base = (material.diffuse + material.mirror).min(DVec3::ONE);
+    let metallic = sum(material.mirror) / (sum(material.diffuse) + sum(material.mirror)).max(f64::MIN_POSITIVE);
+    let roughness = if sum(material.specular) > 0.0 {
+        (2.0 / (material.exponent + 2.0)).powf(0.25)
+    } else if sum(material.mirror) > 0.0 {
+        0.0
+    } else {
+        1.0
+    };
+    Look { base, metallic, roughness }
+}
+
 fn flat_normals(mesh: &Mesh) -> Vec<[DVec3; 3]> {
     (0..mesh.triangles.len()).map(|triangle| [mesh.face_normal(triangle).unwrap_or(DVec3::ZERO); 3]).collect()
 }
@@ -68,8 +94,25 @@ fn flat_normals(mesh: &Mesh) -> Vec<[DVec3; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Composite, Operation};
     use crate::solid::Primitive;
     use glam::DMat4;
+
+    #[test]
+    fn materials_of_operands_become_looks_of_surfaces() {
+        let shine = Material { mirror: DVec3::splat(0.35), diffuse: DVec3::splat(0.35), ..Material::default() };
+        let mut can = object("can", Primitive::Cylinder { radius: 1.0, height: 2.0 }, 0.0);
+        let mut drill = object("drill", Primitive::Cylinder { radius: 0.5, height: 4.0 }, 0.0);
+        (can.material, drill.material) = (Some(Material::default()), Some(shine));
+        let composite = Composite { operation: Operation::Difference, operands: vec![can.clone(), drill], nesting: 1 };
+        let part = Object { shape: Shape::Composite(Box::new(composite)), material: None, ..can };
+        let Grouped { mesh, looks, .. } = Scene { objects: vec![part], ..Scene::default() }.tessellated().unwrap();
+        for (triangle, surface) in mesh.surfaces.iter().enumerate() {
+            let is_hole = mesh.corners(triangle).iter().all(|p| p.x.hypot(p.z) < 0.6);
+            let look = looks[*surface as usize].unwrap();
+            assert_eq!((look.base, look.metallic), (DVec3::splat(0.7), if is_hole { 0.5 } else { 0.0 }));
+        }
+    }
 
     fn object(name: &str, primitive: Primitive, x: f64) -> Object {
         let transform = DMat4::from_translation(DVec3::X * x);
@@ -81,7 +124,8 @@ mod tests {
         let can = object("can", Primitive::Cylinder { radius: 1.0, height: 2.0 }, 0.0);
         let ball = object("ball", Primitive::Sphere { radius: 1.0 }, 5.0);
         let scene = Scene { objects: vec![can, ball], ..Scene::default() };
-        let Grouped { mesh, names } = scene.tessellated().unwrap();
+        let Grouped { mesh, names, looks } = scene.tessellated().unwrap();
+        assert_eq!(looks, [Some(Look { base: DVec3::splat(0.7), metallic: 0.0, roughness: 1.0 }); 4]);
         assert_eq!(names, ["can/0", "can/1", "can/2", "ball"]);
         for (k, surface) in mesh.surfaces.iter().enumerate() {
             assert_eq!(*surface == 3, mesh.corners(k)[0].x > 3.0);

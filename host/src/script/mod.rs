@@ -50,7 +50,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 6] = [
+pub const EMBEDDED: [Embedded; 7] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -80,6 +80,11 @@ pub const EMBEDDED: [Embedded; 6] = [
         name: "crystal",
         summary: "polyhedra between sharp and smooth, by subdivision with creases",
         text: include_str!("../../scenes/crystal.rhai"),
+    },
+    Embedded {
+        name: "manifold",
+        summary: "pipes with the accurate curves in which they meet, on saddles with rounded edges",
+        text: include_str!("../../scenes/manifold.rhai"),
     },
 ];
 

@@ -115,7 +115,7 @@ impl ExactSolid {
     }
 
     /// Normals and parameters at the corners of a triangle of a result that is a part of triangle `source` of this solid.
-    fn corners_of(&self, result: &Mesh, triangle: usize, source: usize) -> [(DVec3, DVec2); 3] {
+    pub(super) fn corners_of(&self, result: &Mesh, triangle: usize, source: usize) -> [(DVec3, DVec2); 3] {
         let mesh = self.solid.mesh();
         let (corners, normals, uvs) =
             (mesh.corners(source), mesh.corner_normals[source], mesh.corner_parameters[source]);

@@ -25,20 +25,26 @@ pub fn mirrored(p: DVec3) -> DVec3 {
     DVec3::new(p.x, p.y, -p.z)
 }
 
-/// The triangles of a mesh in scene coordinates, with the normals that it brings.
+/// The triangles of a mesh in scene coordinates, with the normals that it brings, for each group of them.
 ///
 /// - `hard`: which edges are drawn in pictures without hidden lines; the others are soft.
-/// - `attributes`: the name of their ATTRIBUTES.
+/// - `group_of`: the group of each triangle; empty if all are of the first.
+/// - `attributes`: for each group the name of its ATTRIBUTES.
 ///
 /// # Errors
 /// A corner is too far away for single precision.
-pub fn polygons(mesh: &Mesh, hard: &Selection, attributes: &str) -> Result<Vec<Polygon>, String> {
+pub fn polygons(
+    mesh: &Mesh,
+    hard: &Selection,
+    group_of: &[u32],
+    attributes: &[String],
+) -> Result<Vec<Vec<Polygon>>, String> {
     let table = EdgeTable::of(mesh);
     let mut soft = vec![[true; 3]; mesh.triangles.len()];
     for place in table.select(mesh, hard).flat_map(|edge| table.uses(edge)) {
         soft[place.triangle as usize][usize::from(place.side)] = false;
     }
-    let mut polygons = Vec::with_capacity(mesh.triangles.len());
+    let mut groups: Vec<Vec<Polygon>> = vec![Vec::new(); attributes.len()];
     for (triangle, soft) in soft.iter().enumerate() {
         let corners = mesh.corners(triangle).map(|corner| mirrored(corner).as_vec3().to_array());
         if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
@@ -55,10 +61,12 @@ pub fn polygons(mesh: &Mesh, hard: &Selection, attributes: &str) -> Result<Vec<P
             position: corners[k],
             normal: normals.map(|normals| normals[k]),
         };
-        let attributes = polygons.is_empty().then(|| name(attributes));
-        polygons.push(Polygon { attributes, outline: None, coplanar: false, vertices: (0..3).map(vertex).collect() });
+        let group = group_of.get(triangle).map_or(0, |group| *group as usize);
+        let attributes = groups[group].is_empty().then(|| name(&attributes[group]));
+        let vertices = (0..3).map(vertex).collect();
+        groups[group].push(Polygon { attributes, outline: None, coplanar: false, vertices });
     }
-    Ok(polygons)
+    Ok(groups)
 }
 
 /// What a material looks like to the machine, from both sides.
@@ -141,7 +149,7 @@ mod tests {
             corner_normals: vec![[DVec3::Z; 3]; 3],
             ..Mesh::default()
         };
-        let polygons = polygons(&square, &Selection::creases(25.0), "PERIS_A1").unwrap();
+        let polygons = polygons(&square, &Selection::creases(25.0), &[], &["PERIS_A1".into()]).unwrap().concat();
         assert_eq!(polygons.len(), 2, "a triangle without area is left out");
         assert_eq!(polygons.iter().filter(|polygon| polygon.attributes.is_some()).count(), 1);
         for polygon in &polygons {
@@ -153,11 +161,17 @@ mod tests {
             assert_eq!(soft.len(), 1);
             assert!(soft[0][0] == soft[0][1], "the diagonal ends at one of its corners");
         }
-        let all = super::polygons(&square, &Selection::ALL, "PERIS_A1").unwrap();
+        let named = ["PERIS_A1".to_owned(), "PERIS_A1_2".to_owned()];
+        let all = super::polygons(&square, &Selection::ALL, &[], &named[..1]).unwrap().concat();
+        let groups = super::polygons(&square, &Selection::ALL, &[1, 0, 0], &named).unwrap();
+        assert!(groups.iter().zip(&named).all(|(group, name)| {
+            let attributes = group[0].attributes.as_ref();
+            group.len() == 1 && attributes.is_some_and(|given| given.to_string() == *name)
+        }));
         assert!(all.iter().flat_map(|polygon| &polygon.vertices).all(|vertex| !vertex.soft));
         let far = Mesh { vertices: vec![DVec3::splat(1e40), DVec3::X, DVec3::Y], triangles: vec![[0, 1, 2]], ..square };
-        assert!(super::polygons(&far, &Selection::ALL, "PERIS_A1").unwrap_err().contains("too far away"));
-        assert_eq!(super::polygons(&mesh::bunny(), &Selection::ALL, "PERIS_A1").unwrap().len(), 69_666);
+        assert!(super::polygons(&far, &Selection::ALL, &[], &named).unwrap_err().contains("too far away"));
+        assert_eq!(super::polygons(&mesh::bunny(), &Selection::ALL, &[], &named).unwrap()[0].len(), 69_666);
     }
 
     #[test]

@@ -9,7 +9,8 @@ use super::{
     network::name,
 };
 use crate::{
-    mesh::{Eye, Polylines, Selection, polylines},
+    illumination::Material,
+    mesh::{Eye, Polylines, Selection, polylines_of_groups},
     numeric::bounds::Bounds,
     scene::{Camera, Object, Scene, Settings},
     surface::Tolerance,
@@ -97,7 +98,7 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
     shown.commands.push(Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())]));
     let angle = scene.settings.angle;
-    let objects: Result<Vec<Node>, WorkstationError> = (1..)
+    let objects: Result<Vec<Vec<Part>>, WorkstationError> = (1..)
         .zip(&scene.objects)
         .map(|(number, object)| data(number, object, angle, camera, drawing, &mut shown))
         .collect();
@@ -113,13 +114,15 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
         let lights = lights.into_iter().map(|light| Command::Define { name: None, object: Node::Illumination(light) });
         shown.commands.extend(lights);
     }
-    for (number, (object, data)) in (1..).zip(scene.objects.iter().zip(objects?)) {
+    for (number, parts) in (1..).zip(objects?) {
         begin(&mut shown.commands, &format!("O{number}"));
-        // The colour of vectors has no value: brightness comes from the intensity.
-        let material = object.main_material();
-        let [hue, saturation] = facets::hue_saturation(material.diffuse + material.mirror);
-        operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
-        shown.commands.push(Command::Define { name: Some(name("D")), object: data });
+        for (k, Part { material, data }) in (1..).zip(parts) {
+            // The colour of vectors has no value: brightness comes from the intensity.
+            let [hue, saturation] = facets::hue_saturation(material.diffuse + material.mirror);
+            operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
+            let node = if k == 1 { "D".to_owned() } else { format!("D{k}") };
+            shown.commands.push(Command::Define { name: Some(name(&node)), object: data });
+        }
         shown.commands.push(Command::EndStructure);
     }
     shown.commands.push(Command::EndStructure);
@@ -181,7 +184,14 @@ fn boundaries(camera: &Camera, depth: f64, radius: f64) -> Boundaries {
     }
 }
 
-/// The vectors or polygons of one object; what its polygons look like is defined on the way.
+/// What an object has of one material.
+struct Part {
+    material: Material,
+    data: Node,
+}
+
+/// The vectors or polygons of one object, those of each of its materials; what its polygons look like is defined on the
+/// way.
 fn data(
     number: usize,
     object: &Object,
@@ -189,11 +199,12 @@ fn data(
     camera: &Camera,
     drawing: &Drawing,
     shown: &mut Shown,
-) -> Result<Node, WorkstationError> {
+) -> Result<Vec<Part>, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
     let chord = drawing.tolerance * object.shape.extent().unwrap_or(1.0);
     let coarse = object.shape.made(Tolerance::new(chord, angle)).map_err(|e| failed(e.to_string()))?;
     let mesh = coarse.mesh.transformed(&DAffine3::from_mat4(object.transform));
+    let (materials, material_of) = object.materials(&coarse.operand_of);
     let selection = match drawing.lines {
         Lines::Grid => Selection::grid(drawing.crease_degrees),
         // The machine finds the outline of polygons itself, from wherever they are seen.
@@ -201,20 +212,35 @@ fn data(
         Lines::Outline => Selection::drawing(drawing.crease_degrees, Eye::Point(camera.from)),
         Lines::All => Selection::ALL,
     };
-    let mut runs = coarse.lines;
-    if !drawing.facets || !runs.points.is_empty() {
+    let mut lines = coarse.lines;
+    if !drawing.facets || !lines.points.is_empty() {
         let to_scene = |point: &mut DVec3| *point = object.transform.transform_point3(*point);
-        runs.points.iter_mut().for_each(to_scene);
-        runs.extend(polylines(&mesh, &selection));
-        return vectors(&runs, shown).map(Node::VectorList).map_err(failed);
+        lines.points.iter_mut().for_each(to_scene);
+        let mut runs = polylines_of_groups(&mesh, &selection, &material_of, materials.len());
+        if let Some(first) = runs.first_mut() {
+            first.extend(lines);
+        }
+        let part = |(material, runs): (Material, &Polylines)| {
+            let data = vectors(runs, shown).map(Node::VectorList).map_err(failed)?;
+            Ok(Part { material, data })
+        };
+        return materials.into_iter().zip(&runs).map(part).collect();
     }
-    let surface = format!("{ROOT}_A{number}");
-    let polygons = facets::polygons(&mesh, &selection, &surface).map_err(failed)?;
-    let attributes = Node::Attributes(facets::attributes(&object.main_material()));
-    shown.commands.push(Command::Define { name: Some(name(&surface)), object: attributes });
-    shown.points += 3 * polygons.len();
-    shown.lines += 3 * polygons.len();
-    Ok(Node::Polygons(polygons))
+    let surface = |k: usize| if k == 0 { format!("{ROOT}_A{number}") } else { format!("{ROOT}_A{number}_{}", k + 1) };
+    let surfaces: Vec<String> = (0..materials.len()).map(surface).collect();
+    let groups = facets::polygons(&mesh, &selection, &material_of, &surfaces).map_err(failed)?;
+    for (surface, material) in surfaces.iter().zip(&materials) {
+        let attributes = Node::Attributes(facets::attributes(material));
+        shown.commands.push(Command::Define { name: Some(name(surface)), object: attributes });
+    }
+    let corners = 3 * groups.iter().map(Vec::len).sum::<usize>();
+    shown.points += corners;
+    shown.lines += corners;
+    Ok(materials
+        .into_iter()
+        .zip(groups)
+        .map(|(material, group)| Part { material, data: Node::Polygons(group) })
+        .collect())
 }
 
 /// Runs of lines in scene coordinates.
@@ -242,4 +268,61 @@ fn vectors(runs: &Polylines, shown: &mut Shown) -> Result<VectorList, String> {
     shown.lines += runs.lines();
     shown.points += list.points.len();
     Ok(list)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene::{Composite, Operation, Shape},
+        solid::Primitive,
+    };
+    use glam::DMat4;
+
+    /// A red plate with a blue hole.
+    fn drilled() -> Scene {
+        let operand = |primitive, diffuse| Object {
+            name: "operand".into(),
+            shape: Shape::Solid(primitive),
+            transform: DMat4::IDENTITY,
+            material: Some(Material { diffuse, ..Material::default() }),
+            tolerance: None,
+        };
+        let plate = operand(Primitive::Box { size: DVec3::new(4.0, 1.0, 4.0) }, DVec3::X);
+        let drill = operand(Primitive::Cylinder { radius: 1.0, height: 3.0 }, DVec3::Z);
+        let whole = Composite { operation: Operation::Difference, operands: vec![plate.clone(), drill], nesting: 1 };
+        let object = Object { shape: Shape::Composite(Box::new(whole)), material: None, ..plate };
+        Scene { objects: vec![object], ..Scene::default() }
+    }
+
+    /// What follows each colour: hue, name of the node, number of lines or polygons.
+    fn colored(drawing: &Drawing) -> Vec<(f64, String, usize)> {
+        let bounds = Bounds::of([DVec3::splat(-2.0), DVec3::splat(2.0)]);
+        let shown = commands(&drilled(), &Camera::framing(&bounds), &bounds, drawing).unwrap();
+        let mut found = Vec::new();
+        let mut hue_now = f64::NAN;
+        for command in &shown.commands {
+            let Command::Define { name, object } = command else { continue };
+            let named = name.as_ref().map(ToString::to_string).unwrap_or_default();
+            match object {
+                Node::Operate { operate: Operate::SetColor { hue, .. }, .. } => hue_now = *hue,
+                Node::VectorList(list) => {
+                    found.push((hue_now, named, list.lines.iter().filter(|line| **line).count()));
+                }
+                Node::Polygons(polygons) => found.push((hue_now, named, polygons.len())),
+                _ => {}
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn each_material_of_a_composite_has_its_color() {
+        let vectors = colored(&Drawing { lines: Lines::Outline, ..Drawing::default() });
+        let [(red, first, edges), (blue, second, rims)] = &vectors[..] else { panic!("{vectors:?}") };
+        assert_eq!((*red, first.as_str(), *edges), (120.0, "D", 12));
+        assert!((*blue, second.as_str()) == (0.0, "D2") && *rims > 2 * 12, "the rims belong to the hole: {vectors:?}");
+        let polygons = colored(&Drawing { facets: true, ..Drawing::default() });
+        assert!(matches!(&polygons[..], [(120.0, _, _), (0.0, _, _)]), "{polygons:?}");
+    }
 }

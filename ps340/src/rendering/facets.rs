@@ -31,6 +31,8 @@ pub const BYTES_PER_VERTEX: u64 = 50;
 /// Most vertices that are rendered together, so that a rendering begins within half a second and takes less than a
 /// gigabyte. Ours.
 pub const MAX_VERTICES: usize = 1_000_000;
+/// What is thinner than this part of the coordinates may be due to their single precision.
+const RESOLUTION: f64 = 1.0 / (1 << 21) as f64;
 
 /// A point where corners of polygons meet.
 #[derive(Clone, Copy, Debug)]
@@ -387,10 +389,23 @@ impl Builder {
         let eye = facets.views[face.view as usize].eye;
         facets.triangles.extend(triangles.into_iter().map(|triangle| {
             let place = triangle.map(|corner| corners[corner as usize]);
-            let toward = newell(&place).dot(toward_eye(eye, place[0])) * mirror > 0.0;
+            let given = triangle.map(|corner| facets.corners[begin + corner as usize].normal);
+            let toward = front(&place, given, mirror).dot(toward_eye(eye, place[0])) > 0.0;
             Triangle { corners: triangle.map(|corner| begin as u32 + corner), face: number, toward }
         }));
     }
+}
+
+/// Towards the front of a triangle, any length.
+///
+/// Where it is so thin that coordinates of single precision do not tell, its normals do, if it has some: what is in the
+/// plane of its neighbours is seen as they are.
+fn front(place: &[DVec3; 3], given: [Option<DVec3>; 3], mirror: f64) -> DVec3 {
+    let area = newell(place) * mirror;
+    let reach = place.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let longest = (0..3).map(|k| place[k].distance(place[(k + 1) % 3])).fold(0.0, f64::max);
+    let [Some(a), Some(b), Some(c)] = given else { return area };
+    if area.length() < longest * reach * RESOLUTION { a + b + c } else { area }
 }
 
 /// The matrices of a block.

@@ -81,6 +81,12 @@ impl<'a> At<'a> {
         self.get(key).map(|at| at.text()).transpose()
     }
 
+    /// A member that is a finite number.
+    pub fn number(&self, key: &'static str) -> Result<Option<f64>, Fault> {
+        let read = |at: At| at.value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| at.expected("a number"));
+        self.get(key).map(read).transpose()
+    }
+
     /// A member that is a list of N finite numbers.
     pub fn numbers<const N: usize>(&self, key: &'static str) -> Result<Option<[f64; N]>, Fault> {
         let Some(at) = self.get(key) else { return Ok(None) };

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde_json::Value;
 
-use super::super::groups::{Grouped, Groups};
+use super::super::groups::{Grouped, Groups, Look};
 use super::super::{Fault, Mesh, Place, Problem};
 use super::accessor::Buffers;
 use super::document::At;
@@ -190,11 +190,10 @@ impl<'a> Scene<'a> {
         let own = mesh.text_of("name")?.or(node).unwrap_or_default();
         for primitive in mesh.list("primitives")? {
             let Some(part) = self.primitive(primitive)? else { continue };
-            let material = match primitive.get("material") {
-                Some(at) => at.named(&self.root, "materials")?.text_of("name")?,
-                None => None,
-            };
-            let name = [own, material.unwrap_or_default()];
+            let material = primitive.get("material").map(|at| at.named(&self.root, "materials")).transpose()?;
+            let called = material.map(|at| at.text_of("name")).transpose()?.flatten();
+            let look = material.map(look).transpose()?.flatten();
+            let name = [own, called.unwrap_or_default()];
             let name = name.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("/");
             let triangles = self.mesh.triangles.len() + part.triangles.len();
             if triangles > self.most {
@@ -207,7 +206,7 @@ impl<'a> Scene<'a> {
             if self.mesh.vertices.iter().rev().take(part.vertices.len()).any(|vertex| !vertex.is_finite()) {
                 return Err(mesh.fault(Problem::NotFinite));
             }
-            self.groups.extend(&name, triangles);
+            self.groups.extend(&name, look, triangles);
         }
         Ok(())
     }
@@ -262,9 +261,18 @@ impl<'a> Scene<'a> {
         if self.lacks[1] {
             mesh.corner_parameters.clear();
         }
-        let Grouped { mesh, names } = self.groups.on(mesh);
-        Grouped { mesh: mesh.welded(), names }
+        let grouped = self.groups.on(mesh);
+        Grouped { mesh: grouped.mesh.welded(), ..grouped }
     }
+}
+
+/// What a material looks like, textures left out; none if it does not say.
+fn look(material: At<'_>) -> Result<Option<Look>, Fault> {
+    let Some(at) = material.get("pbrMetallicRoughness") else { return Ok(None) };
+    let factor = |key| Ok::<f64, Fault>(at.number(key)?.unwrap_or(1.0).clamp(0.0, 1.0));
+    let [r, g, b, _] = at.numbers::<4>("baseColorFactor")?.unwrap_or([1.0; 4]);
+    let base = DVec3::new(r, g, b).clamp(DVec3::ZERO, DVec3::ONE);
+    Ok(Some(Look { base, metallic: factor("metallicFactor")?, roughness: factor("roughnessFactor")? }))
 }
 
 fn short(at: At<'_>) -> Fault {

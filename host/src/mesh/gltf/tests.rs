@@ -1,7 +1,7 @@
 //! glTF files by hand, through both forms and back, and broken in every way.
 
 use super::super::samples::{ball, tetrahedron};
-use super::super::{Format, Mesh, Problem, parse_grouped, print_grouped, read_grouped};
+use super::super::{Format, Grouped, Look, Mesh, Problem, parse_grouped, print, print_grouped, read_grouped};
 use super::*;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
@@ -43,10 +43,13 @@ fn refused(binary: &[u8], rest: Value) -> String {
 fn both_forms_keep_triangles_normals_parameters_and_groups() {
     let mut mesh = ball(12, 8);
     mesh.surfaces = (0..mesh.triangles.len() as u32).map(|k| k % 3).collect();
-    let names = ["front".to_owned(), "back side".to_owned()];
+    let names = vec!["front".to_owned(), "back side".to_owned()];
+    let looks = vec![None, Some(Look { base: DVec3::new(0.5, 0.25, 1.0), metallic: 0.125, roughness: 0.75 })];
+    let grouped = Grouped { mesh: mesh.clone(), names, looks };
     for format in [Format::Gltf, Format::Glb] {
-        let back = parse_grouped(&print_grouped(&mesh, &names, format).unwrap(), format).unwrap();
+        let back = parse_grouped(&print_grouped(&grouped, format).unwrap(), format).unwrap();
         assert_eq!(back.names, ["front", "back side", "surface 2"]);
+        assert_eq!(back.looks, [None, grouped.looks[1], None]);
         assert!(back.mesh.is_closed());
         let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
         order.sort_by_key(|k| mesh.surfaces[*k]);
@@ -216,7 +219,7 @@ fn small_files_do_not_become_huge_meshes() {
 
 #[test]
 fn broken_binary_files_are_refused() {
-    let whole = print_grouped(&tetrahedron(), &[], Format::Glb).unwrap();
+    let whole = print(&tetrahedron(), Format::Glb).unwrap();
     assert_eq!(parse_grouped(&whole, Format::Glb).unwrap().mesh, tetrahedron().welded());
     for length in 0..whole.len() {
         assert!(parse_grouped(&whole[..length], Format::Glb).is_err(), "{length}");
@@ -238,8 +241,8 @@ fn corners_without_a_normal_are_written_with_that_of_their_triangle() {
     let mut mesh = tetrahedron();
     mesh.corner_normals = vec![[DVec3::ZERO; 3]; mesh.triangles.len()];
     mesh.corner_parameters = vec![[DVec2::ZERO; 3]; mesh.triangles.len()];
-    let back = parse_grouped(&print_grouped(&mesh, &[], Format::Gltf).unwrap(), Format::Gltf).unwrap().mesh;
+    let back = parse_grouped(&print(&mesh, Format::Gltf).unwrap(), Format::Gltf).unwrap().mesh;
     assert!((0..4).all(|t| back.corner_normals[t][0].dot(mesh.face_normal(t).unwrap()) > 0.999));
     let far = tetrahedron().transformed(&glam::DAffine3::from_scale(DVec3::splat(1e300)));
-    assert!(matches!(print_grouped(&far, &[], Format::Glb).unwrap_err().problem, Problem::Range { .. }));
+    assert!(matches!(print(&far, Format::Glb).unwrap_err().problem, Problem::Range { .. }));
 }

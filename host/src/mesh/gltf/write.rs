@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
-use super::super::groups::{has_groups, name_of};
+use super::super::groups::{Grouped, Look, has_groups, name_of};
 use super::super::{Fault, Mesh, Place, Problem};
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
 
@@ -20,8 +20,8 @@ const INDICES: u32 = 34963;
 ///
 /// # Errors
 /// If a coordinate is too large for single precision.
-pub fn print_text(mesh: &Mesh, names: &[String]) -> Result<Vec<u8>, Fault> {
-    let (mut document, binary) = document(mesh, names)?;
+pub fn print_text(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
+    let (mut document, binary) = document(grouped)?;
     let uri = format!("data:application/octet-stream;base64,{}", base64::encode(&binary));
     document["buffers"][0]["uri"] = Value::from(uri);
     Ok(format!("{document:#}\n").into_bytes())
@@ -31,8 +31,8 @@ pub fn print_text(mesh: &Mesh, names: &[String]) -> Result<Vec<u8>, Fault> {
 ///
 /// # Errors
 /// If a coordinate is too large for single precision, or the file would be too long.
-pub fn print_binary(mesh: &Mesh, names: &[String]) -> Result<Vec<u8>, Fault> {
-    let (document, mut binary) = document(mesh, names)?;
+pub fn print_binary(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
+    let (document, mut binary) = document(grouped)?;
     let mut json = document.to_string().into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
@@ -58,7 +58,8 @@ pub fn print_binary(mesh: &Mesh, names: &[String]) -> Result<Vec<u8>, Fault> {
 type Corner = ([u32; 3], [u32; 3], [u32; 2]);
 
 /// The document without its buffer, and the buffer.
-fn document(mesh: &Mesh, names: &[String]) -> Result<(Value, Vec<u8>), Fault> {
+fn document(grouped: &Grouped) -> Result<(Value, Vec<u8>), Fault> {
+    let Grouped { mesh, names, looks } = grouped;
     for (vertex, position) in mesh.vertices.iter().enumerate() {
         if let Some(&value) = position.to_array().iter().find(|value| !(**value as f32).is_finite()) {
             return Err(Place::Vertex(vertex).fault(Problem::Range { value }));
@@ -91,7 +92,9 @@ fn document(mesh: &Mesh, names: &[String]) -> Result<(Value, Vec<u8>), Fault> {
         let mut primitive = json!({ "attributes": attributes, "indices": indices, "mode": 4 });
         if has_groups(mesh, names) {
             primitive["material"] = json!(materials.len());
-            materials.push(json!({ "name": name_of(names, surface(&part[0])) }));
+            let surface = surface(&part[0]);
+            let look = looks.get(surface as usize).copied().flatten();
+            materials.push(material(&name_of(names, surface), look));
         }
         primitives.push(primitive);
         first += part.len();
@@ -109,6 +112,18 @@ fn document(mesh: &Mesh, names: &[String]) -> Result<(Value, Vec<u8>), Fault> {
         return Err(Place::Mesh.fault(Problem::NoTriangles));
     }
     Ok((document, file.binary))
+}
+
+/// A material of this name.
+fn material(name: &str, look: Option<Look>) -> Value {
+    let Some(Look { base, metallic, roughness }) = look else { return json!({ "name": name }) };
+    let [r, g, b] = base.to_array();
+    json!({
+        "name": name,
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [r, g, b, 1.0], "metallicFactor": metallic, "roughnessFactor": roughness,
+        },
+    })
 }
 
 /// The different corners, in order of their first use, and those of each triangle.

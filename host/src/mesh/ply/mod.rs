@@ -64,7 +64,7 @@ fn tables<T: Table>(header: &Header, mut table: T) -> Result<Grouped, Fault> {
     }
     let mesh = content.into_mesh(&table)?;
     let names = if mesh.surfaces.is_empty() { Vec::new() } else { header.surfaces.clone() };
-    Ok(Grouped { mesh, names })
+    Ok(Grouped { mesh, names, ..Grouped::default() })
 }
 
 /// Refuses a count that the rest of the file cannot hold, before anything is reserved for it.

@@ -1,7 +1,7 @@
 //! Octrees as bytes.
 
 use super::*;
-use crate::octree::FileError;
+use crate::octree::{FileError, Leaves};
 
 fn octree() -> Octree {
     let mut octree = torus(8).octree();
@@ -57,6 +57,33 @@ fn what_is_no_octree_is_refused() {
     let mut huge = bytes[..50].to_vec();
     huge.extend([253, 0, 0, 0, 0, 0, 0, 0, 128]);
     assert!(matches!(error(&sealed(huge)), FileError::Fields(_)));
+}
+
+#[test]
+fn files_that_lack_a_reference_or_a_node_are_refused() {
+    let whole = octree();
+    let message = |octree: &Octree| {
+        let bytes = octree.to_bytes().expect("written");
+        Octree::from_bytes(&bytes).map(|_| ()).expect_err("refused").to_string()
+    };
+    for leaf in [0, whole.leaves.codes.len() / 2, whole.leaves.codes.len() - 1] {
+        let mut forged = whole.clone();
+        let begin = if leaf == 0 { 0 } else { forged.leaves.ends[leaf - 1] };
+        let count = forged.leaves.of(leaf).len();
+        let without = |leaves: &mut Leaves, from: usize, number: usize| {
+            leaves.triangles.drain(from..from + number);
+            leaves.ends[leaf..].iter_mut().for_each(|end| *end -= number);
+        };
+        if count > 1 {
+            without(&mut forged.leaves, begin, 1);
+            assert!(message(&forged).contains("just the triangles that touch it"), "{}", message(&forged));
+        }
+        let mut forged = whole.clone();
+        without(&mut forged.leaves, begin, count);
+        forged.leaves.ends.remove(leaf);
+        forged.leaves.codes.remove(leaf);
+        assert!(message(&forged).contains("where there is no node"), "{}", message(&forged));
+    }
 }
 
 #[test]

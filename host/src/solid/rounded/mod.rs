@@ -22,17 +22,22 @@
 
 mod faces;
 mod net;
+mod surfaces;
 
 use faces::Faces;
 use glam::DVec3;
 use net::Net;
+use std::collections::HashMap;
 
 use super::{ExactSolid, SolidError};
+use crate::mesh::Mesh;
 use crate::polygon::PolygonError;
 use crate::subdivision::SubdivisionError;
 
 /// The most that an edge may turn, degrees: at 180 a face would lie on the other.
 const SHARPEST: f64 = 179.0;
+/// Vertices are one if they are no farther apart than about this part of the size.
+const FOLD: f64 = 1.0 / (1_u64 << 44) as f64;
 
 /// Why edges cannot be rounded.
 #[derive(Debug, thiserror::Error)]
@@ -109,7 +114,8 @@ pub enum EdgeChoice {
 }
 
 impl ExactSolid {
-    /// The solid with some edges rounded.
+    /// The solid with some edges rounded. Faces keep their surfaces; each rounded edge has a new one behind those, without
+    /// an exact form.
     ///
     /// - `radius`: of the ball that would touch the faces where the rounding begins, model units.
     /// - `tolerance`: how far the triangles may be from the rounded surface, model units.
@@ -124,7 +130,7 @@ impl ExactSolid {
         let faces = Faces::of(mesh)?;
         let points = &mesh.vertices;
         let ends = |edge: usize| faces.edges[edge].ends.map(|vertex| points[vertex as usize]);
-        let chosen: Vec<usize> = match choice {
+        let mut chosen: Vec<usize> = match choice {
             EdgeChoice::All => (0..faces.edges.len()).collect(),
             EdgeChoice::Nearest(near) => {
                 let distance = |edge: &usize, at: DVec3| to_segment(ends(*edge), at);
@@ -136,8 +142,10 @@ impl ExactSolid {
         if chosen.is_empty() {
             return Err(RoundingError::NoEdges);
         }
+        chosen.sort_unstable();
+        chosen.dedup();
         let mut setbacks = vec![None; faces.edges.len()];
-        for edge in chosen {
+        for &edge in &chosen {
             let [from, to] = ends(edge);
             if faces.edges[edge].faces.iter().any(|face| faces.faces[*face].is_curved) {
                 return Err(RoundingError::Curved { from, to });
@@ -149,8 +157,50 @@ impl ExactSolid {
             setbacks[edge] = Some(radius * (0.5 * turn).tan());
         }
         let polyhedron = Net::polyhedron(&faces, points, &setbacks, radius)?;
-        Ok(ExactSolid::new(polyhedron.tessellated(tolerance)?, Vec::new())?)
+        let mut mesh = without_folds(polyhedron.tessellated(tolerance)?);
+        let surfaces = surfaces::assign(&mut mesh, self, &faces, &chosen);
+        Ok(ExactSolid::new(mesh, surfaces)?)
     }
+}
+
+/// A closed mesh without triangles that lie on each other, back to back.
+///
+/// Faces between sharp edges shrink at each step of the cutting, at last to lines; vertices that are no farther apart
+/// than [`FOLD`] of the size become one.
+fn without_folds(mut mesh: Mesh) -> Mesh {
+    let size = mesh.bounds().map_or(1.0, |bounds| bounds.diagonal());
+    let mut first: HashMap<[i64; 3], u32> = HashMap::new();
+    let place = |(vertex, point): (u32, &DVec3)| {
+        let key = (*point / (size * FOLD)).round().to_array().map(|x| x as i64);
+        *first.entry(key).or_insert(vertex)
+    };
+    let same: Vec<u32> = (0..).zip(&mesh.vertices).map(place).collect();
+    mesh.triangles.iter_mut().for_each(|corners| *corners = corners.map(|vertex| same[vertex as usize]));
+    let from_lowest = |[a, b, c]: [u32; 3]| {
+        if a < b && a < c {
+            [a, b, c]
+        } else if b < c {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        }
+    };
+    let mut is_kept = vec![true; mesh.triangles.len()];
+    let mut open: HashMap<[u32; 3], usize> = HashMap::new();
+    for (t, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+        if a == b || b == c || c == a {
+            is_kept[t] = false;
+        } else if let Some(back) = open.remove(&from_lowest([a, c, b])) {
+            (is_kept[t], is_kept[back]) = (false, false);
+        } else {
+            open.insert(from_lowest([a, b, c]), t);
+        }
+    }
+    let mut kept = is_kept.iter().copied();
+    mesh.triangles.retain(|_| kept.next().unwrap_or(true));
+    let mut kept = is_kept.iter().copied();
+    mesh.corner_normals.retain(|_| kept.next().unwrap_or(true));
+    mesh
 }
 
 /// The distance of a point from a line between two others.

@@ -3,8 +3,8 @@
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::*;
-use crate::solid::Body;
 use crate::solid::primitive::{block, cylinder, prism};
+use crate::solid::{Body, Expression};
 use crate::surface::Tolerance;
 
 fn solid(body: Body) -> ExactSolid {
@@ -144,4 +144,66 @@ fn what_cannot_be_rounded_is_refused_with_the_place() {
     let one = EdgeChoice::Nearest(vec![DVec3::new(1.5, 1.0, 1.0)]);
     assert!(ell.rounded(&one, 0.1, 1e-3).err().unwrap().to_string().contains("hollow"));
     assert!(ell.rounded(&EdgeChoice::All, 0.1, 1e-3).is_ok());
+}
+
+#[test]
+fn faces_keep_their_surfaces_and_each_rounded_edge_has_its_own() {
+    let block = turned(block(DVec3::new(4.0, 3.0, 2.0)).unwrap());
+    let count = block.surfaces().len();
+    let round = block.rounded(&EdgeChoice::All, 0.3, 1e-3).unwrap();
+    let mesh = round.solid().mesh();
+    assert_eq!((count, round.surfaces().len()), (6, 6 + 12));
+    let mut areas = vec![0.0; round.surfaces().len()];
+    for triangle in 0..mesh.triangles.len() {
+        let surface = mesh.surfaces[triangle] as usize;
+        areas[surface] += mesh.area_vector(triangle).length();
+        let Some(exact) = &round.surfaces()[surface] else { continue };
+        for (corner, point) in mesh.corners(triangle).into_iter().enumerate() {
+            let (uv, normal) = (mesh.corner_parameters[triangle][corner], mesh.corner_normals[triangle][corner]);
+            assert!(exact.point(uv).distance(point) < 1e-9 && exact.normal(uv).distance(normal) < 1e-12);
+        }
+    }
+    // What the rounding leaves of two faces of 4 by 3, 4 by 2 and 3 by 2; less at the corners.
+    let mut faces = areas[..6].to_vec();
+    faces.sort_by(f64::total_cmp);
+    for (area, whole) in faces.iter().zip([2.4 * 1.4, 2.4 * 1.4, 3.4 * 1.4, 3.4 * 1.4, 3.4 * 2.4, 3.4 * 2.4]) {
+        assert!(*area <= whole * (1.0 + 1e-9) && *area > 0.9 * whole, "{area} {whole}");
+    }
+    assert!(areas[6..].iter().all(|area| *area > 0.2));
+}
+
+#[test]
+fn curved_faces_that_stay_keep_their_normals() {
+    let drill = solid(cylinder(0.5, 4.0).unwrap());
+    let whole = solid(block(DVec3::splat(3.0)).unwrap());
+    let expression = Expression::difference(Expression::Operand(0), Expression::Operand(1));
+    let (drilled, _) = ExactSolid::evaluate(&[&whole, &drill], &expression);
+    let upright = [[1.5, 1.5], [1.5, -1.5], [-1.5, 1.5], [-1.5, -1.5]].map(|[x, z]| DVec3::new(x, 0.0, z));
+    let round = drilled.rounded(&EdgeChoice::Nearest(upright.to_vec()), 0.2, 1e-3).unwrap();
+    let mesh = round.solid().mesh();
+    let mut curved = 0;
+    for (normals, triangle) in mesh.corner_normals.iter().zip(0..) {
+        for (normal, point) in normals.iter().zip(mesh.corners(triangle)) {
+            let flat = DVec2::new(point.x, point.z);
+            if flat.length() < 0.51 && normal.y.abs() < 0.5 {
+                curved += 1;
+                let exact = -flat.normalize();
+                assert!(DVec2::new(normal.x, normal.z).distance(exact) < 1e-9, "{normal} {point}");
+            }
+        }
+    }
+    assert!(curved > 50);
+}
+
+#[test]
+fn there_are_no_triangles_without_width() {
+    let block = solid(block(DVec3::new(4.0, 0.5, 2.8)).unwrap());
+    let upright = [[2.0, 1.4], [2.0, -1.4], [-2.0, 1.4], [-2.0, -1.4]].map(|[x, z]| DVec3::new(x, 0.0, z));
+    let round = block.rounded(&EdgeChoice::Nearest(upright.to_vec()), 0.6, 1e-3).unwrap();
+    let mesh = round.solid().mesh();
+    for triangle in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(triangle);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        assert!(mesh.area_vector(triangle).length() > 1e-9 * longest * longest, "{a} {b} {c}");
+    }
 }
