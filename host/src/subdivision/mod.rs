@@ -9,6 +9,11 @@
 //! Edges that are sharp for ever are creases: curves of the same kind, at which both sides end as at a border. Where
 //! more than two creases and borders meet, and at sharp vertices, the surface has a corner.
 //!
+//! Edges of finite sharpness s are creases for so many steps. Each step divides what lies beside them by two, so that the
+//! rounding that comes in the end is 2^-s as wide. A fraction of s holds the rounding by that much in the first smooth
+//! step: between flat faces the distance of the surface from the edge falls with s without jumps, by 2^-s. What lies
+//! farther off jumps a little at whole numbers, since there faces are divided.
+//!
 //! # Source
 //! Doo and Sabin 1978; semi-sharp creases by steps after DeRose, Kass and Truong 1998; the rules at creases are ours.
 
@@ -19,6 +24,7 @@ mod polyhedron;
 mod rings;
 mod sharp;
 mod smooth;
+mod strips;
 mod weights;
 
 pub use error::SubdivisionError;
