@@ -232,6 +232,23 @@ impl Shape {
             }
         }
     }
+
+    /// Largest measured distance between the triangles for a tolerance and the exact surfaces or the limit surface, in own
+    /// coordinates; 0 where those are not known.
+    ///
+    /// # Errors
+    /// As [`Shape::made`].
+    pub(super) fn chord_error(&self, tolerance: Tolerance) -> Result<f64, ShapeError> {
+        let made = self.made(tolerance)?;
+        if let Shape::Subdivision(cage) = self {
+            return Ok(cage.polyhedron()?.distance(&made.mesh, tolerance.chord)?);
+        }
+        let known: Option<Vec<Arc<dyn Surface>>> = made.surfaces.into_iter().collect();
+        match known {
+            Some(surfaces) if !surfaces.is_empty() => Ok(chord_error(&made.mesh, &surfaces, MEASURED_STEPS)?.maximum),
+            _ => Ok(0.0),
+        }
+    }
 }
 
 impl Rounded {
@@ -247,20 +264,5 @@ impl Rounded {
             .map_err(|source| ShapeError::Rounding { object: object.name.clone(), source })?;
         let (mesh, surfaces) = rounded.into_parts();
         Ok(Made { mesh, surfaces, ..Made::default() })
-    }
-}
-
-impl Made {
-    /// Largest measured distance between the triangles and the exact surfaces, in own coordinates; 0 where those are not
-    /// known.
-    ///
-    /// # Errors
-    /// [`TessellationError`] if the mesh does not know its surfaces.
-    pub(super) fn chord_error(&self) -> Result<f64, TessellationError> {
-        let known: Option<Vec<Arc<dyn Surface>>> = self.surfaces.iter().cloned().collect();
-        match known {
-            Some(surfaces) if !surfaces.is_empty() => Ok(chord_error(&self.mesh, &surfaces, MEASURED_STEPS)?.maximum),
-            _ => Ok(0.0),
-        }
     }
 }
