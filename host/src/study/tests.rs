@@ -113,14 +113,11 @@ fn the_residual_of_any_exact_surface_falls_with_its_tolerance() {
     let options = Options { settings: 3, ..row("surface").options };
     let study = |shape| (row("surface").run)(&scene(shape), &options, &Watch::NOBODY).expect("a study");
     let shapes = [torus, Shape::Sculpture(Box::new(sculpture)), tube, Shape::Composite(Box::new(both))];
-    let studies = shapes.map(study);
-    for study in &studies {
+    for study in shapes.map(study) {
         assert!(study.rows.iter().all(|row| row.errors[2] <= row.setting * 1.01), "{study:?}");
         let [first, last] = [0, 2].map(|k| &study.rows[k]);
         assert!((0..3).all(|error| last.errors[error] < first.errors[error]), "{study:?}");
     }
-    // The torus of a script and the one of control points are the same rational surface.
-    assert_eq!(studies[0].rows[2].errors, studies[1].rows[2].errors);
 }
 
 #[test]
