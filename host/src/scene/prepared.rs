@@ -241,17 +241,20 @@ impl Object {
     /// The triangles in own coordinates, and the tolerance in scene units that they were made for (0 for flat shapes).
     pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<(Made, f64), SceneError> {
         let stretch = largest_stretch(&self.transform);
-        let own = self.own_chord(scene_tolerance);
-        // A flat shape fits any tolerance.
-        let tolerance = Tolerance::new(own.unwrap_or(f64::MAX), angle);
+        let tolerance = self.own_tolerance(scene_tolerance, angle);
         let made = self.shape.made(tolerance).map_err(|source| self.failed(source))?;
-        Ok((made, own.unwrap_or(0.0) * stretch))
+        Ok((made, self.own_chord(scene_tolerance).unwrap_or(0.0) * stretch))
     }
 
     /// The tolerance in own coordinates; none for flat shapes.
     fn own_chord(&self, scene_tolerance: Option<f64>) -> Option<f64> {
         let (extent, given) = (self.shape.extent()?, self.tolerance.or(scene_tolerance));
         Some(given.map_or(extent * RELATIVE_TOLERANCE, |given| given / largest_stretch(&self.transform)))
+    }
+
+    /// In own coordinates; a flat shape fits any.
+    fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
+        Tolerance::new(self.own_chord(scene_tolerance).unwrap_or(f64::MAX), angle)
     }
 
     /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
@@ -264,8 +267,8 @@ impl Object {
             let largest = errors.reduce(|a, b| Ok(a?.max(b?))).unwrap_or(Ok(0.0))?;
             return Ok(largest * stretch);
         }
-        let (made, _) = self.made(scene_tolerance, angle)?;
-        let error = made.chord_error().map_err(|source| self.failed(source.into()))?;
+        let tolerance = self.own_tolerance(scene_tolerance, angle);
+        let error = self.shape.chord_error(tolerance).map_err(|source| self.failed(source))?;
         Ok(error * stretch)
     }
 

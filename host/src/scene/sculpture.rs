@@ -161,12 +161,17 @@ impl Sculpture {
         Sculpture { sheets: self.sheets.iter().map(|sheet| sheet.transformed(placement)).collect() }
     }
 
+    /// Whether curves cut parts of a sheet off.
+    pub fn is_trimmed(&self) -> bool {
+        self.sheets.iter().any(Sheet::is_trimmed)
+    }
+
     /// Triangles of all sheets, and the exact surfaces that they name.
     ///
     /// # Errors
     /// [`SculptureError`] if a hole cannot be filled, loops cross, or the tolerance is too fine.
     pub fn tessellated(&self, tolerance: Tolerance) -> Result<(Mesh, Vec<Arc<dyn Surface>>), SculptureError> {
-        if self.sheets.iter().any(Sheet::is_trimmed) {
+        if self.is_trimmed() {
             let faces = self.sheets.iter().map(Sheet::faces).collect::<Result<Vec<_>, _>>()?.concat();
             let mesh = tessellate_trimmed(&faces, tolerance)?;
             return Ok((mesh, faces.iter().map(|face| Arc::clone(face.surface()) as Arc<dyn Surface>).collect()));
@@ -182,8 +187,7 @@ impl Sculpture {
     /// [`SculptureError`] with the open edges if they do not.
     pub fn check_closed(&self) -> Result<(), SculptureError> {
         let patches = self.sheets.iter().map(Sheet::patches).collect::<Result<Vec<_>, _>>()?.concat();
-        let is_trimmed = self.sheets.iter().any(Sheet::is_trimmed);
-        if !is_trimmed {
+        if !self.is_trimmed() {
             sculptured(patches)?;
             return Ok(());
         }

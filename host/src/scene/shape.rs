@@ -233,6 +233,23 @@ impl Shape {
             }
         }
     }
+
+    /// Largest measured distance between the triangles for a tolerance and the exact surfaces or the limit surface, in own
+    /// coordinates; 0 where those are not known.
+    ///
+    /// # Errors
+    /// As [`Shape::made`].
+    pub(super) fn chord_error(&self, tolerance: Tolerance) -> Result<f64, ShapeError> {
+        let made = self.made(tolerance)?;
+        if let Shape::Subdivision(cage) = self {
+            return Ok(cage.polyhedron()?.distance(&made.mesh, tolerance.chord)?);
+        }
+        let known: Option<Vec<Arc<dyn Surface>>> = made.surfaces.into_iter().collect();
+        match known {
+            Some(surfaces) if !surfaces.is_empty() => Ok(chord_error(&made.mesh, &surfaces, MEASURED_STEPS)?.maximum),
+            _ => Ok(0.0),
+        }
+    }
 }
 
 impl Rounded {
@@ -264,19 +281,4 @@ fn operands_beside(mesh: &Mesh, mut operands: HashMap<u32, u32>) -> Vec<u32> {
         }
     }
     mesh.surfaces.iter().map(|surface| operands.get(surface).copied().unwrap_or(0)).collect()
-}
-
-impl Made {
-    /// Largest measured distance between the triangles and the exact surfaces, in own coordinates; 0 where those are not
-    /// known.
-    ///
-    /// # Errors
-    /// [`TessellationError`] if the mesh does not know its surfaces.
-    pub(super) fn chord_error(&self) -> Result<f64, TessellationError> {
-        let known: Option<Vec<Arc<dyn Surface>>> = self.surfaces.iter().cloned().collect();
-        match known {
-            Some(surfaces) if !surfaces.is_empty() => Ok(chord_error(&self.mesh, &surfaces, MEASURED_STEPS)?.maximum),
-            _ => Ok(0.0),
-        }
-    }
 }

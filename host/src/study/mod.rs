@@ -91,7 +91,7 @@ pub const KNOBS: &[KnobRow] = &[
     },
     KnobRow {
         name: "surface",
-        summary: "tolerance of adaptive triangles against the exact surfaces",
+        summary: "tolerance of triangles, adaptive where surfaces are whole, against the exact surfaces",
         options: Options { width: 160, samples: 1, settings: 8, threads: None },
         run: residual::study,
     },

@@ -1,12 +1,16 @@
-//! The knob of adaptive tessellation: how far triangles are from the exact surfaces, and how far their planes turn away.
+//! The knob of exact surfaces: how far triangles are from them, and how far their planes turn away. The triangles are
+//! adaptive where a shape has its surfaces as a whole, else those of its scene.
 
 use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene, Shape};
 use crate::solid::Primitive;
-use crate::surface::{Surface, Tolerance, chord_error, rational_sphere, teapot, tessellate, tessellate_adaptively};
+use crate::surface::{
+    SplineSurface, Surface, Tolerance, chord_error, rational_sphere, rational_torus, tessellate_adaptively,
+};
 use glam::DVec2;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The coarsest tolerance, as a part of the diagonal of the largest object.
@@ -16,42 +20,65 @@ const STEP: f64 = 3.0;
 /// Steps along the sides of a triangle at which its distance to the surface is measured.
 const MEASURED_STEPS: usize = 4;
 
-/// The patches of one object.
-type Patches = Vec<Box<dyn Surface>>;
+/// The surfaces of one shape.
+type Surfaces = Vec<Arc<dyn Surface>>;
 
-/// Exact surfaces of a scene, in the coordinates of their objects.
-struct Residual {
-    objects: Vec<Patches>,
+/// A shape of exact surfaces, in its own coordinates.
+struct Exact<'a> {
+    shape: &'a Shape,
+    /// Its surfaces, if it has each as a whole: then their triangles are adaptive.
+    whole: Option<Surfaces>,
+}
+
+/// Exact surfaces of a scene.
+struct Residual<'a> {
+    shapes: Vec<Exact<'a>>,
     coarsest: f64,
+    angle: f64,
     settings: u32,
 }
 
 /// Makes the study of a scene.
 pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
-    let objects: Vec<Patches> = scene.objects.iter().filter_map(|object| patches(&object.shape)).collect();
-    if objects.is_empty() {
-        return Err(StudyError::Nothing("no object of the scene is a spline surface"));
-    }
     let coarsest = Prepared::new(scene)?.bounds.diagonal() * COARSEST;
-    sweep(&Residual { objects, coarsest, settings: options.settings.clamp(1, 9) }, watch)
+    let angle = scene.settings.angle;
+    let mut shapes = Vec::new();
+    scene.objects.iter().try_for_each(|object| collect(&object.shape, Tolerance::new(coarsest, angle), &mut shapes))?;
+    if shapes.is_empty() {
+        return Err(StudyError::Nothing("no object of the scene has curved surfaces that are known exactly"));
+    }
+    sweep(&Residual { shapes, coarsest, angle, settings: options.settings.clamp(1, 9) }, watch)
 }
 
-/// The exact surface of a shape as patches; `None` for other shapes.
-fn patches(shape: &Shape) -> Option<Patches> {
-    fn boxed<S: Surface + 'static>(patches: impl IntoIterator<Item = S>) -> Patches {
-        patches.into_iter().map(|patch| Box::new(patch) as Box<dyn Surface>).collect()
-    }
+/// Adds a shape if its surfaces are known, or else the operands that it is made of.
+fn collect<'a>(shape: &'a Shape, tolerance: Tolerance, shapes: &mut Vec<Exact<'a>>) -> Result<(), StudyError> {
     match shape {
-        Shape::Teapot => Some(boxed(teapot())),
-        Shape::Solid(Primitive::Sphere { radius }) => {
-            rational_sphere(*radius).ok().map(|sphere| boxed(sphere.patches().to_vec()))
+        Shape::Composite(composite) => composite.operands.iter().try_for_each(|o| collect(&o.shape, tolerance, shapes)),
+        Shape::Subdivision(_) => Ok(()),
+        _ if shape.is_exact_and_curved() => {
+            shapes.push(Exact { shape, whole: whole(shape, tolerance)? });
+            Ok(())
         }
-        _ => None,
+        _ => Ok(()),
     }
 }
 
-impl Knob for Residual {
-    type Answer = Vec<Mesh>;
+/// The surfaces of shapes that have them as a whole: round ones as closed rational forms.
+fn whole(shape: &Shape, tolerance: Tolerance) -> Result<Option<Surfaces>, StudyError> {
+    let rational = match shape {
+        Shape::Solid(Primitive::Sphere { radius }) => rational_sphere(*radius).ok(),
+        Shape::Solid(Primitive::Torus { ring, tube }) => rational_torus(*ring, *tube).ok(),
+        Shape::Sculpture(sculpture) if sculpture.is_trimmed() => return Ok(None),
+        Shape::Sculpture(_) | Shape::Teapot => return Ok(shape.made(tolerance)?.surfaces.into_iter().collect()),
+        _ => None,
+    };
+    let patches =
+        |surface: SplineSurface| surface.patches().iter().map(|p| Arc::new(p.clone()) as Arc<dyn Surface>).collect();
+    Ok(rational.map(patches))
+}
+
+impl Knob for Residual<'_> {
+    type Answer = Vec<(Mesh, Surfaces)>;
 
     fn setting(&self) -> &'static str {
         "tolerance (model units)"
@@ -62,19 +89,26 @@ impl Knob for Residual {
         ((0..self.settings).map(|i| self.coarsest / STEP.powi(i as i32)).collect(), 0.0)
     }
 
-    fn run(&self, setting: f64, _: &Watch<'_>) -> Result<Trial<Vec<Mesh>>, StudyError> {
+    fn run(&self, setting: f64, _: &Watch<'_>) -> Result<Trial<Self::Answer>, StudyError> {
         if setting == 0.0 {
             return Ok(Trial { answer: Vec::new(), seconds: 0.0, counts: Vec::new() });
         }
-        let tolerance = Tolerance::new(setting, 180.0);
         let start = Instant::now();
-        let meshes: Result<Vec<Mesh>, StudyError> =
-            self.objects.iter().map(|patches| Ok(tessellate_adaptively(patches, tolerance)?)).collect();
-        let (answer, seconds) = (meshes?, start.elapsed().as_secs_f64());
-        let grids: Result<Vec<Mesh>, StudyError> =
-            self.objects.iter().map(|patches| Ok(tessellate(patches, tolerance)?)).collect();
-        let count = |meshes: &[Mesh]| meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>() as f64;
-        let counts = vec![("triangles", count(&answer)), ("triangles of grids", count(&grids?))];
+        let triangles = |exact: &Exact<'_>| match &exact.whole {
+            Some(whole) => Ok((tessellate_adaptively(whole, Tolerance::new(setting, 180.0))?, whole.clone())),
+            None => {
+                let made = exact.shape.made(Tolerance::new(setting, self.angle))?;
+                Ok((made.mesh, made.surfaces.into_iter().flatten().collect()))
+            }
+        };
+        let answer: Result<Self::Answer, StudyError> = self.shapes.iter().map(triangles).collect();
+        let (answer, seconds) = (answer?, start.elapsed().as_secs_f64());
+        let count = answer.iter().map(|(mesh, _)| mesh.triangles.len()).sum::<usize>();
+        let mut of_scene = 0;
+        for exact in &self.shapes {
+            of_scene += exact.shape.made(Tolerance::new(setting, self.angle))?.mesh.triangles.len();
+        }
+        let counts = vec![("triangles", count as f64), ("triangles of the scene", of_scene as f64)];
         Ok(Trial { answer, seconds, counts })
     }
 
@@ -82,11 +116,11 @@ impl Knob for Residual {
         vec!["RMS normal angle (degrees)", "RMS residual (model units)", "greatest residual (model units)"]
     }
 
-    fn errors(&self, trial: &Trial<Vec<Mesh>>, _: &Trial<Vec<Mesh>>) -> Result<Vec<f64>, StudyError> {
+    fn errors(&self, trial: &Trial<Self::Answer>, _: &Trial<Self::Answer>) -> Result<Vec<f64>, StudyError> {
         let mut errors = [0.0_f64; 3];
-        for (mesh, patches) in trial.answer.iter().zip(&self.objects) {
-            let accuracy = chord_error(mesh, patches, MEASURED_STEPS)?;
-            for (error, found) in errors.iter_mut().zip([angle(mesh, patches), accuracy.rms, accuracy.maximum]) {
+        for (mesh, surfaces) in &trial.answer {
+            let accuracy = chord_error(mesh, surfaces, MEASURED_STEPS)?;
+            for (error, found) in errors.iter_mut().zip([angle(mesh, surfaces), accuracy.rms, accuracy.maximum]) {
                 *error = error.max(found);
             }
         }
@@ -96,11 +130,11 @@ impl Knob for Residual {
 
 /// The root of the mean square of the angle between the planes of triangles and the surface at their middles, degrees,
 /// weighted by area: a sliver may lean far and mean little.
-fn angle(mesh: &Mesh, patches: &Patches) -> f64 {
+fn angle(mesh: &Mesh, surfaces: &Surfaces) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for triangle in 0..mesh.triangles.len() {
         let uv = mesh.corner_parameters[triangle].iter().sum::<DVec2>() / 3.0;
-        let (plane, normal) = (mesh.area_vector(triangle), patches[mesh.surfaces[triangle] as usize].normal(uv));
+        let (plane, normal) = (mesh.area_vector(triangle), surfaces[mesh.surfaces[triangle] as usize].normal(uv));
         let angle = plane.angle_between(normal).to_degrees();
         if angle.is_finite() {
             sum += plane.length() * angle * angle;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::illumination::{Light, Material};
-use crate::scene::{Composite, Object, Operation, Settings, Shape};
+use crate::scene::{Cage, Composite, Object, Operation, Sculpture, Settings, Shape, Sheet};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
@@ -100,6 +100,37 @@ fn adaptive_triangles_keep_their_tolerance() {
     assert!((0..3).all(|error| last.errors[error] < first.errors[error]), "{study:?}");
     let result = (row("surface").run)(&scene(Shape::Bunny), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
+}
+
+#[test]
+fn the_residual_of_any_exact_surface_falls_with_its_tolerance() {
+    let torus = Shape::Solid(Primitive::Torus { ring: 2.0, tube: 0.5 });
+    let surface = Box::new(crate::surface::rational_torus(2.0, 0.5).expect("a torus"));
+    let sculpture = Sculpture { sheets: vec![Sheet::Spline { surface, loops: Vec::new() }] };
+    let tube = Shape::Solid(Primitive::Cylinder { radius: 0.5, height: 4.0 });
+    let operands = vec![scene(torus.clone()).objects.remove(0), scene(tube.clone()).objects.remove(0)];
+    let both = Composite { operation: Operation::Union, operands, nesting: 1 };
+    let options = Options { settings: 3, ..row("surface").options };
+    let study = |shape| (row("surface").run)(&scene(shape), &options, &Watch::NOBODY).expect("a study");
+    let shapes = [torus, Shape::Sculpture(Box::new(sculpture)), tube, Shape::Composite(Box::new(both))];
+    for study in shapes.map(study) {
+        assert!(study.rows.iter().all(|row| row.errors[2] <= row.setting * 1.01), "{study:?}");
+        let [first, last] = [0, 2].map(|k| &study.rows[k]);
+        assert!((0..3).all(|error| last.errors[error] < first.errors[error]), "{study:?}");
+    }
+}
+
+#[test]
+fn triangles_of_a_limit_surface_are_measured() {
+    let points = (0..8).map(|k| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)));
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let cage = Cage { points: points.collect(), faces: faces.map(Vec::from).to_vec(), sharpenings: Vec::new() };
+    let options = Options { width: 8, samples: 1, settings: 4, threads: None };
+    let scene = scene(Shape::Subdivision(Box::new(cage)));
+    let study = (row("tessellate").run)(&scene, &options, &Watch::NOBODY).expect("a study");
+    for row in &study.rows {
+        assert!(row.errors[0] <= row.setting && row.errors[0] > row.setting / 10.0, "{study:?}");
+    }
 }
 
 #[test]

@@ -172,7 +172,8 @@ impl Rim {
         new
     }
 
-    fn attractors(&self) -> Attractors {
+    /// Where its corners shrink to; not of a smooth face.
+    pub fn attractors(&self) -> Attractors {
         let count = self.held.len();
         let mut targets: Vec<Target> =
             (0..count).map(|k| if self.held[k] { Target::Corner(k) } else { Target::Free }).collect();
@@ -221,15 +222,16 @@ impl Rim {
 }
 
 /// Where the corners of a face shrink to.
-struct Attractors {
+pub(super) struct Attractors {
     /// For each corner of the face; empty if it is smooth.
-    targets: Vec<Target>,
+    pub targets: Vec<Target>,
     /// Whether there is one for the whole face.
-    is_one: bool,
+    pub is_one: bool,
 }
 
+/// Where a corner of a face shrinks to.
 #[derive(Clone, Copy, PartialEq)]
-enum Target {
+pub(super) enum Target {
     /// The limit of the smooth face, or what the other targets make of it.
     Free,
     /// The corner of this number in the face.

@@ -106,8 +106,8 @@ impl Polyhedron {
 
     /// Makes an edge sharp.
     ///
-    /// - `sharpness`: for so many steps the edge stays a crease; a fraction blends between crease and smooth edge in
-    ///   the step after; infinity for ever. Borders are creases for ever by themselves.
+    /// - `sharpness`: for so many steps the edge stays a crease, which halves its rounding with each of them; a fraction
+    ///   holds it back in the step after; infinity for ever. Borders are creases for ever by themselves.
     ///
     /// # Errors
     /// No such edge, or a sharpness below zero.

@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::error::SubdivisionError;
 use super::polyhedron::{NONE, Polyhedron};
 use super::rings::by_face;
-use super::weights::{Held, held, step};
+use super::strips;
+use super::weights::{Held, held, hold, step};
 
 /// What a polyhedron looks like to one step of the sharp rules.
 pub(super) struct Creases<'a> {
@@ -34,7 +35,7 @@ struct Sector {
 impl<'a> Creases<'a> {
     pub fn of(mesh: &'a Polyhedron) -> Creases<'a> {
         let vertex_hold = (0..mesh.points.len())
-            .map(|vertex| mesh.vertex_sharpness.get(vertex).map_or(0.0, |sharpness| sharpness.min(1.0)))
+            .map(|vertex| mesh.vertex_sharpness.get(vertex).map_or(0.0, |sharpness| hold(*sharpness)))
             .collect();
         let mut creases =
             Creases { mesh, last: mesh.last(), sectors: Vec::new(), ring: Vec::new(), vertex_hold, cut: Vec::new() };
@@ -79,15 +80,15 @@ impl<'a> Creases<'a> {
     /// Where three creases meet, and where a border has one face only, the surface has a corner. Where one face fills the
     /// angle of a crease, it is cut, unless the other side has one face, too.
     fn hold_corners(&mut self) {
-        // The three sharpest edges at each vertex, the third first.
+        // How much the three sharpest edges at each vertex hold, the third first.
         let mut sharpest = vec![[0.0_f64; 3]; self.mesh.points.len()];
         for side in 0..self.mesh.corners.len() as u32 {
-            let sharpness = self.mesh.sharpness(side).min(1.0);
+            let hold = hold(self.mesh.sharpness(side));
             // An edge of two faces is seen from both, at either end once.
             let ends = [side, self.mesh.next[side as usize]].map(|h| self.mesh.corners[h as usize] as usize);
             let seen = if self.mesh.twins[side as usize] == NONE { 2 } else { 1 };
             for &end in &ends[..seen] {
-                sharpest[end][0] = sharpness.max(sharpest[end][0]);
+                sharpest[end][0] = hold.max(sharpest[end][0]);
                 sharpest[end].sort_unstable_by(f64::total_cmp);
             }
         }
@@ -207,28 +208,37 @@ impl<'a> Creases<'a> {
         }
     }
 
-    /// The creases of the next step: their ends as old corners, and what is left of their sharpness.
+    /// What becomes of the creases: their ends as old corners, and their sharpness.
     fn heirs(&self) -> Vec<([u32; 2], f64)> {
         let mut heirs = Vec::new();
         for side in 0..self.mesh.corners.len() as u32 {
             if self.mesh.twins[side as usize] != NONE && self.is_crease(side) {
-                heirs.push((self.ends(side), self.mesh.sharpness(side) - 1.0));
+                heirs.push((self.ends(side), self.mesh.sharpness(side)));
             }
         }
         for sector in self.sectors.iter().filter(|sector| !sector.is_closed) {
             let (first, end) = (self.ring[sector.begin], self.ring[sector.end - 1]);
-            let left = self.mesh.sharpness(first).min(self.mesh.sharpness(self.last[end as usize])) - 1.0;
-            heirs.push(([first, end], left));
+            let sharpness = self.mesh.sharpness(first).min(self.mesh.sharpness(self.last[end as usize]));
+            heirs.push(([first, end], sharpness));
         }
         heirs
     }
 }
 
-/// Cuts corners and grinds edges, except where they are sharp.
+/// A step of sharp rules: cuts corners and grinds edges except where they are sharp, and leaves strips at both sides of
+/// creases, which it uses up by one.
 ///
 /// # Errors
 /// Corners meet that should not: only where faces of the polyhedron touch each other twice.
 pub(super) fn refined(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError> {
+    let mut refined = strips::divided(ground(mesh)?)?;
+    let sharpness = refined.edge_sharpness.iter_mut().chain(&mut refined.vertex_sharpness);
+    sharpness.for_each(|sharpness| *sharpness -= sharpness.min(1.0));
+    Ok(refined)
+}
+
+/// Cuts corners and grinds edges, except where they are sharp. Creases keep their sharpness.
+fn ground(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError> {
     let creases = Creases::of(mesh);
     let mut joined = Joined::new(mesh.corners.len());
     creases.join(&mut joined);
@@ -266,21 +276,22 @@ fn push_face(face: &[u32], names: &[u32], corners: &mut Vec<u32>, starts: &mut V
     }
 }
 
-/// Hands what is left of the sharpness on.
+/// Hands the sharpness of creases on.
 fn inherit(creases: &Creases<'_>, names: &[u32], refined: &mut Polyhedron) {
     let mesh = creases.mesh;
-    if mesh.vertex_sharpness.iter().any(|&sharpness| sharpness > 1.0) {
+    if mesh.vertex_sharpness.iter().any(|&sharpness| sharpness >= 1.0) {
         refined.vertex_sharpness = vec![0.0; refined.points.len()];
         for (corner, &vertex) in mesh.corners.iter().enumerate().filter(|(corner, _)| !creases.cut[*corner]) {
-            let left = (mesh.vertex_sharpness[vertex as usize] - 1.0).max(0.0);
-            refined.vertex_sharpness[names[corner] as usize] = left;
+            let sharpness = mesh.vertex_sharpness[vertex as usize];
+            let is_held = sharpness >= 1.0;
+            refined.vertex_sharpness[names[corner] as usize] = if is_held { sharpness } else { 0.0 };
         }
     }
     let mut sharp: HashMap<[u32; 2], f64> = HashMap::new();
-    for (ends, left) in creases.heirs() {
+    for (ends, sharpness) in creases.heirs() {
         let [a, b] = ends.map(|corner| names[corner as usize]);
-        if left > 0.0 && a != b {
-            sharp.insert([a.min(b), a.max(b)], left);
+        if a != b {
+            sharp.insert([a.min(b), a.max(b)], sharpness);
         }
     }
     if sharp.is_empty() {

@@ -8,6 +8,8 @@ use glam::{DMat3, DVec3};
 use super::*;
 use crate::numeric::sampling::Stream;
 
+mod creases;
+
 /// A cube of side 2 around the origin.
 fn cube() -> Polyhedron {
     let points = (0..8).map(|k| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)) * 2.0 - 1.0);
@@ -54,6 +56,15 @@ fn solid(n: u32, prism: bool) -> Polyhedron {
     let points: Vec<DVec3> = rim(0.0).chain([DVec3::Z, DVec3::NEG_Z]).collect();
     let faces: Vec<[u32; 3]> = (0..n).flat_map(|k| [[k, (k + 1) % n, n], [(k + 1) % n, k, n + 1]]).collect();
     Polyhedron::new(points, &faces).unwrap()
+}
+
+/// A cube whose upper rim is sharp.
+fn cup(sharpness: f64) -> Polyhedron {
+    let mut start = cube();
+    for ends in [[4, 5], [5, 7], [7, 6], [6, 4]] {
+        start.sharpen_edge(ends, sharpness).unwrap();
+    }
+    start
 }
 
 /// One step of a quadratic B-spline curve without ends.
@@ -278,96 +289,6 @@ fn maps_of_the_polyhedron_are_maps_of_the_surface() {
 }
 
 #[test]
-fn a_cube_of_sharp_edges_stays_a_cube() {
-    let mut start = cube();
-    start.sharpen_creases(30.0, f64::INFINITY).unwrap();
-    for steps in 0..3 {
-        let limit = start.subdivided(steps).unwrap().limit().unwrap();
-        assert!(limit.is_closed());
-        assert_eq!((limit.triangles.len(), limit.signed_volume()), (12, 8.0));
-        assert!(limit.corner_normals.iter().flatten().all(|normal| normal.abs().max_element() == 1.0));
-    }
-}
-
-/// A cube whose upper rim is sharp.
-fn cup(sharpness: f64) -> Polyhedron {
-    let mut start = cube();
-    for ends in [[4, 5], [5, 7], [7, 6], [6, 4]] {
-        start.sharpen_edge(ends, sharpness).unwrap();
-    }
-    start
-}
-
-#[test]
-fn a_crease_is_the_b_spline_of_its_edges_and_both_sides_meet_in_it() {
-    let start = cup(f64::INFINITY);
-    let mut rim = [4, 5, 7, 6].map(|k| start.points[k]).to_vec();
-    for steps in 1..5 {
-        rim = chaikin(&rim);
-        let found = start.subdivided(steps).unwrap();
-        assert!(found.is_closed());
-        assert_linked(&found);
-        let top: Vec<DVec3> = found.points.iter().copied().filter(|p| p.z == 1.0).collect();
-        assert!(rim.iter().all(|p| top.iter().any(|q| (*q - *p).length() < 1e-15)));
-        let limit = found.limit().unwrap();
-        assert!(limit.is_closed());
-        let middle = (rim[0] + rim[1]) * 0.5;
-        assert!(limit.vertices.iter().any(|p| (*p - middle).length() < 1e-15));
-        // On the rim the normals are those of the flat top, and others.
-        assert_eq!(euler(&found), 2);
-        let at_rim = |t: usize| {
-            limit.triangles[t]
-                .iter()
-                .zip(limit.corner_normals[t])
-                .filter(|(v, _)| (limit.vertices[**v as usize] - middle).length() < 1e-15)
-                .map(|(_, n)| n)
-                .collect::<Vec<_>>()
-        };
-        let normals: Vec<DVec3> = (0..limit.triangles.len()).flat_map(at_rim).collect();
-        assert!(normals.iter().any(|n| n.z == 1.0) && normals.iter().any(|n| n.z < 0.9));
-    }
-}
-
-#[test]
-fn finite_sharpness_comes_to_the_sharp_surface_as_it_grows() {
-    let volume = |sharpness| cup(sharpness).subdivided(4).unwrap().limit().unwrap().signed_volume();
-    let volumes: Vec<f64> = (0..=16).map(|k| volume(f64::from(k) * 0.25)).collect();
-    assert_eq!(volumes[0], cube().subdivided(4).unwrap().limit().unwrap().signed_volume());
-    // Each step that the crease lasts longer brings it nearer to the one that lasts for ever.
-    let last = volume(f64::INFINITY);
-    let far = |steps: usize| (volumes[4 * steps] - last).abs();
-    assert!(far(1) > far(2) && far(2) > far(3) && far(3) > far(4), "{volumes:?} {last}");
-}
-
-#[test]
-fn a_sharp_vertex_stays() {
-    let mut start = solid(6, false);
-    start.sharpen_vertex(6, f64::INFINITY).unwrap();
-    for steps in 0..4 {
-        let found = start.subdivided(steps).unwrap();
-        assert!(found.points.contains(&DVec3::Z));
-        assert_eq!(euler(&found), 2);
-        let limit = found.limit().unwrap();
-        assert!(limit.is_closed());
-        assert!(limit.vertices.contains(&DVec3::Z));
-        assert!(limit.vertices.iter().all(|p| p.z > -0.99));
-    }
-}
-
-#[test]
-fn a_crease_may_end_within_the_surface() {
-    let mut start = torus(8, 8);
-    start.sharpen_edge([9, 10], f64::INFINITY).unwrap();
-    start.sharpen_edge([10, 11], f64::INFINITY).unwrap();
-    for steps in 1..4 {
-        let found = start.subdivided(steps).unwrap();
-        assert!(found.is_closed());
-        assert_eq!(euler(&found), 0);
-        assert!(found.limit().unwrap().is_closed());
-    }
-}
-
-#[test]
 fn a_strip_of_one_face_is_ruled() {
     let start = sheet(6, 2);
     let limit = start.subdivided(2).unwrap().limit().unwrap();
@@ -474,6 +395,46 @@ fn tessellation_keeps_the_tolerance_without_cracks() {
     let report = open.edge_report();
     assert_eq!((report.crowded, report.misoriented), (0, 0));
     assert_eq!(open.vertices.len() + open.triangles.len() - report.edges, 1);
+}
+
+#[test]
+fn any_valence_and_vertices_that_coincide_are_taken() {
+    for n in (3..=64).step_by(7).chain([64]) {
+        for (prism, sharpness) in [(false, 0.7), (false, 2.0), (true, 0.7), (true, 2.0)] {
+            let mut start = solid(n, prism);
+            start.sharpen_creases(2.0, sharpness).unwrap();
+            // An edge without length, and all in one point.
+            let mut short = start.clone();
+            short.points[1] = short.points[0];
+            let mut point = start.clone();
+            point.points.fill(DVec3::X);
+            for polyhedron in [start, short, point] {
+                let mesh = polyhedron.tessellated(0.05).unwrap();
+                assert_eq!(mesh.edge_report().boundary, 0, "{n} {prism} {sharpness}");
+                let bounds = mesh.bounds().unwrap();
+                assert!(
+                    bounds.min.cmpge(DVec3::splat(-1.0 - 1e-12)).all()
+                        && bounds.max.cmple(DVec3::splat(1.0 + 1e-12)).all()
+                );
+                assert!(mesh.corner_normals.iter().flatten().all(|n| n.is_finite() && n.length() < 1.0 + 1e-9));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_distance_of_triangles_from_the_limit_is_measured() {
+    for tolerance in [0.1, 0.01] {
+        let start = solid(5, true);
+        let found = start.distance(&start.tessellated(tolerance).unwrap(), tolerance).unwrap();
+        assert!((tolerance / 10.0..=tolerance).contains(&found), "{found} of {tolerance}");
+    }
+    let mut start = cube();
+    start.sharpen_creases(30.0, f64::INFINITY).unwrap();
+    let mut wider = start.tessellated(0.1).unwrap();
+    assert_eq!(start.distance(&wider, 0.1).unwrap(), 0.0);
+    wider.vertices.iter_mut().for_each(|p| *p *= 1.5);
+    assert_eq!(start.distance(&wider, 0.1).unwrap(), 0.5);
 }
 
 #[test]

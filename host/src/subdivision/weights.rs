@@ -4,6 +4,12 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+/// How much a sharpness below 1 holds what would be cut: half as much as is cut elsewhere as it comes near 1, where a step
+/// of sharp rules gives the same. From 1 on, all is held.
+pub(super) fn hold(sharpness: f64) -> f64 {
+    if sharpness >= 1.0 { 1.0 } else { 1.0 - (-sharpness).exp2() }
+}
+
 /// How far a corner gives way, one after each side of it; zero everywhere on smooth faces.
 ///
 /// A value of 1 at the beginning or end of a side holds that end: the curve along the side begins there, as a B-spline
@@ -36,7 +42,7 @@ impl Held {
         let [before_last, last, here, next] = sides;
         let along = |side: f64, vertex: f64, other: f64| {
             // Between two sides that are nearly creases the corner is nearly cut: half as much is held.
-            if side >= 1.0 { vertex } else { vertex.max(other.min(1.0) * (1.0 - 0.5 * side)) }
+            if side >= 1.0 { vertex } else { vertex.max(hold(other) * (1.0 - 0.5 * side)) }
         };
         Held {
             here_forward: along(here, vertices[1], last),
@@ -105,7 +111,8 @@ pub(super) fn held(corners: &[DVec3], index: usize, held: Held, smooth: DVec3) -
         return smooth;
     }
     let count = corners.len();
-    let fraction = |here: f64, there: f64| (1.0 - here) * (1.0 + there) * 0.25;
+    // What is held more gets what the other end loses.
+    let fraction = |here: f64, there: f64| (1.0 - here) * (1.0 + (there - here).max(0.0)) * 0.25;
     let forward = fraction(held.here_forward, held.there_forward);
     let backward = fraction(held.here_backward, held.there_backward);
     let here = corners[index];
