@@ -356,10 +356,10 @@ fn flat_turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
 /// Where in a face a point of its plane lies; `None` outside.
 fn locate(face: &Face, point: DVec3) -> Option<Feature> {
     let mut turns = [0.0; 4];
-    for k in 0..face.sides {
+    for (k, turn) in turns[..face.sides].iter_mut().enumerate() {
         let [a, b] = face.ends(k);
-        turns[k] = flat_turn(face.axis, a, b, point) * face.turn;
-        if turns[k] < 0.0 {
+        *turn = flat_turn(face.axis, a, b, point) * face.turn;
+        if *turn < 0.0 {
             return None;
         }
     }

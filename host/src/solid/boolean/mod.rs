@@ -19,6 +19,7 @@
 
 mod arrangement;
 mod contact;
+mod faces;
 mod facets;
 mod merge;
 mod operand;
