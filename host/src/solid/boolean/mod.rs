@@ -1,12 +1,12 @@
 //! Boolean operations on solids, exact in every decision.
 //!
 //! # Method
-//! Triangles of different operands that may touch are found by their locational codes. What they have in common is decided
-//! by signs of determinants that are never wrong; points where edges pierce faces are kept as what defines them and not as
-//! rounded numbers. Touched triangles are divided along all that crosses them. The surfaces fall into parts that nothing
-//! crosses; a ray from each part tells which operands are in front of it and behind it, and a part is kept if the result is
-//! on one side only. Where divided faces lie beside each other in one
-//! plane, points that bound nothing are left out again. Only then are the points rounded.
+//! Two triangles that make a convex quadrilateral in one plane count as one. Those of different operands that may touch
+//! are found by their locational codes. What they have in common is decided by signs of determinants that are never wrong;
+//! points where edges pierce faces are kept as what defines them and not as rounded numbers. Touched faces are divided
+//! along all that crosses them. The surfaces fall into parts that nothing crosses; a ray from each part tells which
+//! operands are in front of it and behind it, and a part is kept if the result is on one side only. Where divided faces
+//! lie beside each other in one plane, points that bound nothing are left out again. Only then are the points rounded.
 //!
 //! All operands of an expression are worked on at once: no intermediate result is made or rounded.
 //!
