@@ -19,19 +19,12 @@ pub fn contacts(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<([u32; 2], Contact)> {
     pairs.par_iter().with_min_len(256).filter_map(contact).collect()
 }
 
-/// Pairs of triangles that may touch, by what their faces have in common: each triangle of a face that another operand
-/// touches is with a triangle of that operand.
+/// Pairs of triangles whose faces have a point in common.
 pub fn touching(operands: &Operands, faces: &Faces, contacts: &[([u32; 2], Contact)]) -> Vec<[u32; 2]> {
     let mut touching = Vec::with_capacity(contacts.len());
     for (pair, _) in contacts {
-        let [a, b] = pair.map(|face| faces.triangles[face as usize]);
-        let [mut one, mut two] = [operands.halves(a), operands.halves(b)];
-        let (mut last, mut next) = ([a, b], [one.next(), two.next()]);
-        while next != [None; 2] {
-            last = [next[0].unwrap_or(last[0]), next[1].unwrap_or(last[1])];
-            touching.push(last);
-            next = [one.next(), two.next()];
-        }
+        let [one, two] = pair.map(|face| faces.triangles[face as usize]);
+        touching.extend(operands.halves(one).flat_map(|a| operands.halves(two).map(move |b| [a, b])));
     }
     touching
 }
