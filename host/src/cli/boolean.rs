@@ -1,41 +1,30 @@
 //! `peris boolean`: solids from solids.
 
-use super::{Exit, Failure, Row};
+use super::{Exit, Failure, Row, formula};
 use crate::mesh::{self, Grouped, Look};
-use crate::solid::{Expression, Solid};
+use crate::solid::Solid;
 use anyhow::Context;
-use clap::{Args, FromArgMatches, ValueEnum};
+use clap::{Args, FromArgMatches};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub(super) const ROW: Row = Row {
     name: "boolean",
     summary: "Unites, intersects or subtracts solids that are given as closed meshes.",
-    arguments: Arguments::augment_args,
+    arguments: |command| {
+        let usage = "peris boolean A OPERATION B [OPERATION C]... -o FILE\n       \
+                     peris boolean OPERATION A B [C]... -o FILE";
+        Arguments::augment_args(command).override_usage(usage)
+    },
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
 
-/// A set operation on two or more solids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Operation {
-    /// What is in any of them
-    Union,
-    /// What is in all of them
-    Intersection,
-    /// What is in the first and in none of the others
-    Difference,
-    /// What is in an odd number of them
-    SymmetricDifference,
-}
-
 #[derive(Args, Debug)]
 struct Arguments {
-    /// The operation
-    #[arg(value_enum, value_name = "OPERATION")]
-    operation: Operation,
-    /// Closed meshes (.obj, .stl, .ply, .gltf, .glb, .cmesh), two or more; their groups stay, one without has its name
-    #[arg(value_name = "MESH", num_args = 2.., required = true)]
-    meshes: Vec<PathBuf>,
+    /// Closed meshes (.obj, .stl, .ply, .gltf, .glb, .cmesh) with an operation between each two, or with one in front of
+    /// them all; their groups stay, one without has its name
+    #[arg(value_name = "FORMULA", num_args = 1.., required = true, long_help = formula::HELP)]
+    formula: Vec<PathBuf>,
     /// The file to write; its extension names the format
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -45,12 +34,13 @@ struct Arguments {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { operation, meshes, output, json } = arguments;
+    let Arguments { formula, output, json } = arguments;
+    let (meshes, expression) = formula::parse(formula).map_err(|error| Failure::new(Exit::Usage, error))?;
     if mesh::Format::of(output).is_none() {
         return Err(mesh::MeshError::Format { path: output.clone() }.into());
     }
     let (mut solids, mut names, mut looks) = (Vec::new(), Vec::new(), Vec::new());
-    for path in meshes {
+    for path in &meshes {
         let Operand { solid, names: own, looks: its_looks } = grouped_solid(path)?;
         // Numbers of surfaces of a result go on from operand to operand.
         let count = solid.mesh().surfaces.iter().max().map_or(0, |last| *last as usize + 1);
@@ -58,15 +48,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         looks.extend((0..count).map(|k| its_looks.get(k).copied().flatten()));
         solids.push(solid);
     }
-    let all = |range: std::ops::Range<usize>| range.map(Expression::Operand).collect::<Vec<_>>();
-    let expression = match operation {
-        Operation::Union => Expression::Union(all(0..solids.len())),
-        Operation::Intersection => Expression::Intersection(all(0..solids.len())),
-        Operation::Difference => {
-            Expression::difference(Expression::Operand(0), Expression::Union(all(1..solids.len())))
-        }
-        Operation::SymmetricDifference => Expression::SymmetricDifference(all(0..solids.len())),
-    };
     let start = Instant::now();
     let (result, outcome) = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
     let seconds = start.elapsed().as_secs_f64();

@@ -7,6 +7,7 @@ mod check;
 mod continuity;
 mod convert;
 mod exit;
+mod formula;
 mod functions;
 mod intersect;
 mod job;

@@ -111,7 +111,9 @@ mod tests {
         }
         std::fs::write(file("b.rhai"), "sphere(1.5);").expect("written");
         command(&["tessellate", &file("b.rhai"), "-o", &file("b.stl"), "--chord", "0.01"]);
-        command(&["boolean", "difference", &file("a.ply"), &file("b.stl"), "-o", &file("c.obj")]);
+        command(&["boolean", &file("a.ply"), "-", &file("b.stl"), "-o", &file("c.obj")]);
+        command(&["boolean", "difference", &file("a.ply"), &file("b.stl"), "-o", &file("first.obj")]);
+        assert_eq!(mesh::read(file("c.obj")).expect("a mesh"), mesh::read(file("first.obj")).expect("a mesh"));
         let left = names("c.obj");
         assert!(left.contains(&"b".to_owned()) && left.contains(&"can/0".to_owned()) && left.len() == 4, "{left:?}");
         command(&["convert", &file("c.obj"), &file("d.ply"), "--scale", "0.001"]);
