@@ -15,11 +15,14 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// What counts as near when a surface is drawn together, in units in the last place, one attempt after the other.
-const ROUNDINGS: [f64; 6] = [2.0, 16.0, 128.0, 1024.0, 8192.0, 65536.0];
-/// Times that a surface is only divided before it is drawn together, one round of attempts after the other.
-const DIVISIONS: [usize; 4] = [0, 1, 2, 4];
-/// Times that a surface is drawn together or divided in an attempt.
+const ROUNDINGS: [f64; 4] = [2.0, 16.0, 128.0, 1024.0];
+/// When surfaces are drawn together, one round of attempts after the other: the first turn, how many in a row, and turns
+/// from there to the next such row. In all others they are divided; drawing together may make what only that settles.
+const RHYTHMS: [[usize; 3]; 4] = [[0, 2, 3], [0, 1, 3], [0, 1, TURNS], [2, 1, 4]];
+/// Most turns of an attempt.
 const TURNS: usize = 15;
+/// Most turns of all attempts together; each takes about as long as an operation on the result.
+const MOST_TURNS: usize = 150;
 
 /// What a closed surface bounds.
 pub struct Resolution {
@@ -42,7 +45,7 @@ pub fn resolve(mesh: &Mesh) -> Resolution {
 /// The outcome made simple where rounding made it cross itself; as it is where that does not succeed.
 ///
 /// What lies within a few roundings becomes one, and what crosses nevertheless is divided there and rounded anew. Where that
-/// does not settle it soon, it begins again with more roundings.
+/// does not settle it soon, it begins again with more roundings or another rhythm, until [`MOST_TURNS`] are used up.
 pub fn settled(mut outcome: Outcome) -> Outcome {
     outcome.clean();
     let pairs = overlapping(&outcome.mesh);
@@ -52,13 +55,11 @@ pub fn settled(mut outcome: Outcome) -> Outcome {
     // What rounding may make of the volume. Whoever moves points further has spoilt something.
     let reach = outcome.mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
     let (volume, bound) = (outcome.mesh.signed_volume(), 8.0 * f64::EPSILON * reach * outcome.mesh.area());
-    let never = Attempt { first: TURNS, roundings: 0.0, widely: false };
-    let drawn = DIVISIONS.into_iter().flat_map(|first| {
-        let each = ROUNDINGS.into_iter().flat_map(|roundings| [(roundings, false), (roundings, true)]);
-        each.map(move |(roundings, widely)| Attempt { first, roundings, widely })
-    });
+    let never = Attempt { rhythm: [TURNS, 0, TURNS], roundings: 0.0 };
+    let drawn = RHYTHMS.into_iter().flat_map(|rhythm| ROUNDINGS.map(|roundings| Attempt { rhythm, roundings }));
+    let mut turns = MOST_TURNS;
     for (attempt, number) in std::iter::once(never).chain(drawn).zip(1..) {
-        if let Some(mut settled) = attempt.on(outcome.clone(), pairs.clone())
+        if let Some(mut settled) = attempt.on(outcome.clone(), pairs.clone(), &mut turns)
             && (settled.mesh.signed_volume() - volume).abs() <= bound
         {
             settled.counts.settled = number;
@@ -69,27 +70,27 @@ pub fn settled(mut outcome: Outcome) -> Outcome {
     outcome
 }
 
-/// A way to make a surface simple, which may succeed.
+/// A way to make a surface simple, which may succeed. In each turn it is drawn together or divided.
 struct Attempt {
-    /// Times that it is only divided and rounded again, which mostly suffices, before it is drawn together too.
-    first: usize,
+    /// When it is drawn together; one of [`RHYTHMS`].
+    rhythm: [usize; 3],
     /// What counts as near when it is drawn together, in units in the last place.
     roundings: f64,
-    /// Whether triangles around those that overlap are drawn together too. Surfaces that coincide along lines need it, in
-    /// others it spreads the trouble.
-    widely: bool,
 }
 
 impl Attempt {
     /// The outcome made simple, if that succeeds.
     ///
     /// - `pairs`: the triangles that overlap.
-    fn on(&self, mut trial: Outcome, mut pairs: Vec<[u32; 2]>) -> Option<Outcome> {
+    /// - `turns`: how many are left; those that it takes are taken from them.
+    fn on(&self, mut trial: Outcome, mut pairs: Vec<[u32; 2]>, turns: &mut usize) -> Option<Outcome> {
+        let [first_draw, draws, period] = self.rhythm;
         let first = pairs.len();
         let mut least = first;
-        for turn in 0..TURNS {
-            trial = match turn.checked_sub(self.first) {
-                Some(turn) if turn % 3 < 2 => snapped(trial, &pairs, self.roundings, self.widely),
+        for turn in 0..TURNS.min(*turns) {
+            *turns -= 1;
+            trial = match turn.checked_sub(first_draw) {
+                Some(turn) if turn % period < draws => snapped(trial, &pairs, self.roundings),
                 _ => again(trial),
             };
             pairs = overlapping(&trial.mesh);

@@ -32,17 +32,8 @@ struct Near {
 ///
 /// - `pairs`: the triangles.
 /// - `roundings`: what is near, in units in the last place of the largest coordinate.
-/// - `widely`: whether triangles that share corners with those are drawn together too.
-pub fn snapped(mut outcome: Outcome, pairs: &[[u32; 2]], roundings: f64, widely: bool) -> Outcome {
-    let mut is_involved = vec![false; outcome.mesh.vertices.len()];
-    for vertex in pairs.as_flattened().iter().flat_map(|&t| outcome.mesh.triangles[t as usize]) {
-        is_involved[vertex as usize] = true;
-    }
+pub fn snapped(mut outcome: Outcome, pairs: &[[u32; 2]], roundings: f64) -> Outcome {
     let mut involved = pairs.as_flattened().to_vec();
-    if widely {
-        let is_around = |t: &u32| outcome.mesh.triangles[*t as usize].iter().any(|&v| is_involved[v as usize]);
-        involved = (0..outcome.mesh.triangles.len() as u32).filter(is_around).collect();
-    }
     involved.sort_unstable();
     involved.dedup();
     let reach = |p: DVec3| roundings * f64::EPSILON * p.abs().max_element();
