@@ -107,6 +107,28 @@ fn polygons_without_area_hide_nothing() {
     }
 }
 
+/// A square of four triangles, soft inside, with normals towards the eye: the third corner of one beside the diagonal lies
+/// this far on the wrong side of it, so that the triangle shows its reverse.
+fn folded(by: f32, has_normals: bool) -> Vec<Polygon> {
+    let [a, b, c, d] = [[-0.5, -0.5, 0.0], [-0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [0.5, -0.5, 0.0]];
+    let middle = [-by, by, 0.0];
+    let triangles = [[a, b, c], [a, c, middle], [c, d, middle], [d, a, middle]];
+    let mut polygons: Vec<Polygon> = triangles.iter().map(|corners| soft(polygon(corners))).collect();
+    if has_normals {
+        polygons.iter_mut().flat_map(|p| &mut p.vertices).for_each(|vertex| vertex.normal = Some([0.0, 0.0, -1.0]));
+    }
+    polygons
+}
+
+#[test]
+fn a_triangle_that_is_thin_but_for_single_precision_faces_as_its_normals_do() {
+    let outline = |lines: &[Segment]| ends(lines).len() == 4 && length(lines) == 4.0;
+    assert!(outline(&Scene::new(folded(3e-8, true)).lines(Rendering::HiddenLine)), "as the square");
+    // Without normals, and where it is no matter of precision, it is a fold with edges of its own.
+    assert!(!outline(&Scene::new(folded(3e-8, false)).lines(Rendering::HiddenLine)));
+    assert!(!outline(&Scene::new(folded(0.1, true)).lines(Rendering::HiddenLine)));
+}
+
 #[test]
 fn corners_in_the_plane_of_the_eye_take_no_depth_from_the_rest() {
     // Two squares so close that only a fine depth tells them apart, and a floor through the plane of the eye.
