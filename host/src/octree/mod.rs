@@ -39,7 +39,7 @@ pub use file::FileError;
 pub use frame::MAX_DISTANCE;
 use index::Index;
 pub use inside::Side;
-pub use nearest::Nearest;
+pub use nearest::{Nearest, hausdorff};
 pub use sorted::Sorted;
 pub use statistics::Statistics;
 

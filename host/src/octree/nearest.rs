@@ -1,8 +1,10 @@
 //! The point of a surface that is nearest to a point in space.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::Sorted;
+use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 
 /// The nearest point of a surface.
@@ -37,6 +39,27 @@ impl Sorted {
         );
         best
     }
+}
+
+/// The Hausdorff distance of two surfaces, as far as some of their points tell: how far a point of either can be from the
+/// other, in units of the positions. 0 if one of them has no triangles.
+///
+/// - `one`, `two`: all of their vertices count.
+/// - `most`: of each at most so many points are measured, vertices and middles of triangles, evenly chosen.
+pub fn hausdorff(one: &Mesh, two: &Mesh, most: usize) -> f64 {
+    let from = |of: &Mesh, other: &Mesh| {
+        let sorted = Sorted::new(&other.vertices, &other.triangles);
+        let vertices = of.vertices.len();
+        let point = |index: usize| match index.checked_sub(vertices) {
+            Some(triangle) => of.corners(triangle).into_iter().sum::<DVec3>() / 3.0,
+            None => of.vertices[index],
+        };
+        let far = |index| Some(sorted.nearest(point(index), |triangle| other.corners(triangle as usize))?.distance);
+        let count = vertices + of.triangles.len();
+        let chosen: Vec<usize> = (0..count).step_by(count.div_ceil(most.max(1)).max(1)).collect();
+        chosen.into_par_iter().filter_map(far).reduce(|| 0.0, f64::max)
+    };
+    from(one, two).max(from(two, one))
 }
 
 fn distance_to_box(point: DVec3, bounds: Bounds) -> f64 {
@@ -91,5 +114,23 @@ mod tests {
             }
         }
         assert_eq!(Sorted::default().nearest(DVec3::ZERO, |_| [DVec3::ZERO; 3]), None);
+    }
+
+    /// A square in the plane z = height, as two triangles.
+    fn square(half: f64, height: f64) -> Mesh {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let vertices = corners.map(|[x, y]| DVec3::new(x * half, y * half, height)).to_vec();
+        Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
+    }
+
+    #[test]
+    fn the_hausdorff_distance_is_that_of_the_side_from_which_it_is_farther() {
+        let [small, large] = [square(1.0, 0.0), square(2.0, 1.0)];
+        // Every point of the small square is 1 from the large one, whose corners are farther from it.
+        for (one, two) in [(&small, &large), (&large, &small)] {
+            assert_eq!(hausdorff(one, two, 100), 3.0_f64.sqrt());
+        }
+        assert_eq!(hausdorff(&small, &small, 100), 0.0);
+        assert_eq!(hausdorff(&small, &Mesh::default(), 100), 0.0);
     }
 }

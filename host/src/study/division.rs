@@ -2,7 +2,7 @@
 
 use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
-use crate::octree::Sorted;
+use crate::octree::{Sorted, hausdorff};
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene};
 use crate::subdivision::Polyhedron;
@@ -64,7 +64,7 @@ impl Knob for Steps {
     }
 
     fn error_names(&self) -> Vec<&'static str> {
-        vec!["RMS normal angle (degrees)", "greatest distance (scene units)", "RMS distance (scene units)"]
+        vec!["RMS normal angle (degrees)", "Hausdorff distance (scene units)", "RMS distance (scene units)"]
     }
 
     fn errors(&self, trial: &Trial<Vec<Mesh>>, reference: &Trial<Vec<Mesh>>) -> Result<Vec<f64>, StudyError> {
@@ -74,7 +74,9 @@ impl Knob for Steps {
             let squares: f64 = found.iter().map(|pair| pair[which] * pair[which]).sum();
             (squares / found.len().max(1) as f64).sqrt()
         };
-        Ok(vec![root(0), found.iter().map(|pair| pair[1]).fold(0.0, f64::max), root(1)])
+        let pairs = trial.answer.iter().zip(&reference.answer);
+        let farthest = pairs.map(|(mesh, fine)| hausdorff(mesh, fine, MOST_SAMPLES)).fold(0.0, f64::max);
+        Ok(vec![root(0), farthest, root(1)])
     }
 }
 

@@ -32,11 +32,8 @@ pub use polyhedron::Polyhedron;
 
 use std::borrow::Cow;
 
-use glam::DVec3;
-use rayon::prelude::*;
-
 use crate::mesh::Mesh;
-use crate::octree::Sorted;
+use crate::octree::hausdorff;
 use polyhedron::MOST_CORNERS;
 
 /// So many times finer are the triangles between points with which others are measured.
@@ -94,10 +91,10 @@ impl Polyhedron {
         adaptive::mesh(&self.lasting()?.subdivided(1)?, tolerance)
     }
 
-    /// How far points of the limit surface are from triangles that stand for it: the greatest distance, in units of the
-    /// positions.
+    /// How far the limit surface and triangles that stand for it are from each other: the Hausdorff distance, in units of
+    /// the positions, as far as vertices and middles of triangles tell.
     ///
-    /// The points are the vertices of triangles for an eighth of the tolerance; they lie on the surface.
+    /// The triangles for an eighth of the tolerance stand for the surface; their vertices lie on it.
     ///
     /// - `mesh`: the triangles.
     /// - `tolerance`: for which they were made.
@@ -105,11 +102,7 @@ impl Polyhedron {
     /// # Errors
     /// As [`Polyhedron::tessellated`] for the finer triangles.
     pub fn distance(&self, mesh: &Mesh, tolerance: f64) -> Result<f64, SubdivisionError> {
-        let fine = self.tessellated(tolerance / FINER)?;
-        let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
-        let nearest = |point: &DVec3| sorted.nearest(*point, |triangle| mesh.corners(triangle as usize));
-        let distances = fine.vertices.par_iter().filter_map(|point| Some(nearest(point)?.distance));
-        Ok(distances.reduce(|| 0.0, f64::max))
+        Ok(hausdorff(&self.tessellated(tolerance / FINER)?, mesh, usize::MAX))
     }
 
     /// The polyhedron after as many steps as its finite sharpness lasts.
