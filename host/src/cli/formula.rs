@@ -1,7 +1,7 @@
 //! Set operations on a command line: `A union B`, `A - B * C`, or the operation first, `difference A B C`.
 
 use crate::solid::Expression;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// A set operation on two or more solids.
@@ -84,7 +84,7 @@ pub(super) fn parse(words: &[PathBuf]) -> Result<(Vec<PathBuf>, Expression), For
     }
 }
 
-fn operation(word: &PathBuf) -> Option<&'static Operation> {
+fn operation(word: &Path) -> Option<&'static Operation> {
     OPERATIONS.iter().find(|operation| word.as_os_str() == operation.name || word.as_os_str() == operation.sign)
 }
 
