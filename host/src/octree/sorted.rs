@@ -150,7 +150,8 @@ impl Sorted {
 
     /// Calls for every triangle whose box touches another.
     pub fn touching(&self, near: Bounds, mut visit: impl FnMut(u32)) {
-        let mut stack: Vec<Place> = self.top().into_iter().collect();
+        let mut stack = Vec::with_capacity(64);
+        stack.extend(self.top());
         while let Some(place) = stack.pop() {
             if place.level == 0 {
                 visit(self.order[place.index as usize]);
@@ -175,7 +176,7 @@ impl Sorted {
                 continue;
             }
             let first = stack.len();
-            let below = self.touching_under(place, Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY });
+            let below = self.touching_under(place, self.at(place));
             stack.extend(below.map(|place| (distance(self.at(place)), place)));
             stack[first..].sort_by(|(a, _), (b, _)| b.total_cmp(a));
         }

@@ -340,7 +340,7 @@ pub fn crossing(one: Edge, two: Edge) -> Key {
 }
 
 /// Which way three given points turn, seen along an axis.
-fn flat_turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
+pub fn flat_turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [x, y] = others(axis);
     let coord = |p: DVec3| Coord { x: p[x], y: p[y] };
     let turn = orient2d(coord(a), coord(b), coord(c));

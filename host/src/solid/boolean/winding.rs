@@ -1,5 +1,6 @@
 //! How often a closed surface winds around a point, by one ray.
 
+use super::contact::flat_turn;
 use super::operand::Operands;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::{Definition, Point, side_of, turn};
@@ -27,16 +28,18 @@ pub fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64)
 
 /// 1 if the ray along x leaves through the front of a triangle, -1 if through its back, 0 if not at all.
 fn passes(point: &Point, corners: [DVec3; 3]) -> i32 {
-    let [a, b, c] = corners.map(|corner| Point::new(Definition::Given(corner)));
-    let facing = turn(0, &a, &b, &c);
+    let [a, b, c] = corners;
+    let facing = flat_turn(0, a, b, c);
     if facing == 0.0 {
         return 0;
     }
-    for (from, to) in [(&a, &b), (&b, &c), (&c, &a)] {
-        let mut turns = turn(0, point, from, to);
+    for (p, q) in [(a, b), (b, c), (c, a)] {
+        let mut turns = match point.definition() {
+            &Definition::Given(point) => flat_turn(0, point, p, q),
+            _ => turn(0, point, &Point::new(Definition::Given(p)), &Point::new(Definition::Given(q))),
+        };
         if turns == 0.0 {
             // The derivatives of the turn by y and by z.
-            let (p, q) = (from.near(), to.near());
             let by = [p.z - q.z, q.y - p.y];
             turns = if by[0] != 0.0 { by[0] } else { by[1] };
         }
