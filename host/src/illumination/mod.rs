@@ -14,6 +14,7 @@
 //! The 1988 paper, equations 4 and 5.
 
 pub mod distribution;
+pub mod fresnel;
 
 use distribution::{Directions, Distribution, Lambert, Phong};
 use glam::DVec3;
