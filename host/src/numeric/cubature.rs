@@ -68,9 +68,9 @@ fn cell(f: &impl Fn([f64; 2]) -> f64, corner: [f64; 2], size: [f64; 2]) -> Cell 
     }
     // Second and third differences along each axis.
     let bend = |v: [f64; 4]| (v[0] - v[1] - v[2] + v[3]).abs() + (v[0] - 3.0 * v[1] + 3.0 * v[2] - v[3]).abs();
-    for i in 0..4 {
-        bends[0] += bend(values[i]);
-        bends[1] += bend([0, 1, 2, 3].map(|row| values[row][i]));
+    for (i, row) in values.iter().enumerate() {
+        bends[0] += bend(*row);
+        bends[1] += bend(values.map(|row| row[i]));
     }
     Cell { corner, size, value: sum * size[0] * size[1], axis: usize::from(bends[1] > bends[0]), error: 0.0 }
 }

@@ -91,7 +91,7 @@ impl Facets {
                 // Counted from the azimuth opposite to the direction.
                 let across = (around * cos + around.perp() * sin) * -radius;
                 let normal = across.extend(z) + stretched;
-                if !(normal.z > 0.0) {
+                if normal.z <= 0.0 {
                     return None;
                 }
                 normal.truncate() / normal.z

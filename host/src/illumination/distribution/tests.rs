@@ -17,7 +17,7 @@ fn row(name: &str, roughness: f64) -> Box<dyn Distribution> {
 }
 
 fn share(distribution: &dyn Distribution, degrees: f64) -> f64 {
-    emitted_share(distribution, light(degrees), 1e-5, 40_000).value
+    emitted_share(distribution, light(degrees), 1e-5, 20_000).value
 }
 
 /// The integral of a function of the viewer over the hemisphere by the midpoint rule, with no help of a sample.

@@ -57,5 +57,5 @@ fn checked(n: f64, k: f64) -> Result<(f64, f64), IndexError> {
 
 /// A cosine of incidence in 0..=1; 0 for one that is not a number.
 fn cosine_of(cosine: f64) -> f64 {
-    cosine.max(0.0).min(1.0)
+    if cosine.is_nan() { 0.0 } else { cosine.clamp(0.0, 1.0) }
 }
