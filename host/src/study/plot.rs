@@ -166,7 +166,7 @@ impl Plot {
         // Tens, or their like for other magnitudes; thirty at the most.
         let mut step = 10f64.powf((greatest / 2.0).log10().floor());
         step *= if greatest / step > 15.0 { 2.0 } else { 1.0 };
-        let numbers = (-15..=15).map(|i| f64::from(i) * step).filter(|x| *x <= greatest);
+        let numbers = (-15..=15).map(|i| f64::from(i) * step).filter(|x| *x <= greatest * 1.001);
         numbers.map(|x| (self.place(x), x)).filter(|(place, _)| (low..=high).contains(place)).collect()
     }
 
@@ -187,6 +187,8 @@ impl Plot {
         embed_font();
         let failed = |e: &dyn std::fmt::Display| PlotError::Draw(e.to_string());
         let (x0, x1) = self.range(|p| self.place(p.x)).ok_or(PlotError::Empty)?;
+        // On even steps curves end anywhere: the legend gets a place of its own beside them.
+        let x1 = if self.x_axis == Axis::Linear { x1 * 4.0 } else { x1 };
         let (y0, y1) = self.range(|p| p.y).ok_or(PlotError::Empty)?;
         let points = |n: u32| f64::from(n * scale);
         let x_ticks = self.x_ticks(x0, x1);
