@@ -125,6 +125,7 @@ impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Failure {
         let exit = match error {
             StudyError::Interrupted => Exit::Interrupted,
+            StudyError::Distribution(_) => Exit::Usage,
             StudyError::Scene(_) | StudyError::Nothing(_) => Exit::Scene,
             _ => Exit::Failed,
         };

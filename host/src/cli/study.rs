@@ -3,7 +3,7 @@
 use super::source::stem;
 use super::{Definitions, Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
 use crate::render::Watch;
-use crate::study::{KNOBS, KnobRow};
+use crate::study::{KNOBS, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -41,8 +41,28 @@ struct Arguments {
     json: bool,
 }
 
+/// The study that needs no scene.
+const ILLUMINATION: &str = "illumination";
+
+#[derive(Args, Debug)]
+struct IlluminationArguments {
+    /// Roughness of the facets: root mean square slope times root 2, 1e-8 to 1000
+    #[arg(long, value_name = "M,...", value_delimiter = ',', default_values_t = [0.1, 0.3, 1.0])]
+    roughness: Vec<f64>,
+    /// Folder for the table (.csv) and the plots (.svg and .png); it is made if need be
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    output: PathBuf,
+    /// Reports as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
 fn arguments(command: Command) -> Command {
-    let command = command.subcommand_required(true).arg_required_else_help(true);
+    let command = command.subcommand_required(true).arg_required_else_help(true).subcommand(
+        IlluminationArguments::augment_args(Command::new(ILLUMINATION))
+            .about("Measures how light is distributed: every D over incidence and roughness, and what it costs.")
+            .after_help(super::exit::table()),
+    );
     KNOBS.iter().fold(command, |command, knob| {
         command.subcommand(
             Arguments::augment_args(Command::new(knob.name))
@@ -54,8 +74,35 @@ fn arguments(command: Command) -> Command {
 
 fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let (name, matches) = matches.subcommand().ok_or_else(|| anyhow::anyhow!("no study is named"))?;
+    if name == ILLUMINATION {
+        return measure(&IlluminationArguments::from_arg_matches(matches)?);
+    }
     let knob = KNOBS.iter().find(|k| k.name == name).ok_or_else(|| anyhow::anyhow!("no study {name}"))?;
     sweep(knob, &Arguments::from_arg_matches(matches)?)
+}
+
+fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
+    let cancelled = watch_interrupts();
+    std::fs::create_dir_all(&arguments.output)?;
+    let progress = Progress::new("studying", arguments.json);
+    let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
+    let study = illumination(&arguments.roughness, &watch);
+    progress.finish();
+    let study = study?;
+    let csv = arguments.output.join(format!("{ILLUMINATION}.csv"));
+    std::fs::write(&csv, study.csv())?;
+    let mut written = vec![csv];
+    for (roughness, plot) in study.plots() {
+        written.extend(plot.write(&arguments.output, &format!("{ILLUMINATION}-{roughness}"))?);
+    }
+    if arguments.json {
+        say!("{}", serde_json::to_string_pretty(&study)?);
+    } else {
+        say_on!("{}", study.table());
+        let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+        say!("{}", names.join(", "));
+    }
+    Ok(())
 }
 
 fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {

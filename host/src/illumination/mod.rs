@@ -14,8 +14,9 @@
 //! The 1988 paper, equations 4 and 5.
 
 pub mod distribution;
+pub mod fresnel;
 
-use distribution::{Directions, Distribution, Lambert, Phong};
+use distribution::{Distribution, Frame, Lambert, Phong};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -123,19 +124,21 @@ pub struct Terms {
 /// - `normal`, `view`: unit vectors at the surface element, `view` towards the eye.
 /// - Returns W/(m² sr); zero where the light is below the horizon.
 pub fn reflected(material: &Material, beam: &Beam, normal: DVec3, view: DVec3, terms: Terms) -> Bands {
-    let directions = Directions::new(normal, beam.towards, view);
-    if directions.n_l <= 0.0 || directions.n_v <= 0.0 {
+    let frame = Frame::about(normal);
+    let (light, view) = (frame.local(beam.towards), frame.local(view));
+    if light.z <= 0.0 || view.z <= 0.0 {
         return Bands::ZERO;
     }
-    let flux_density = beam.irradiance * directions.n_l;
+    let flux_density = beam.irradiance * light.z;
     let mut fraction = Bands::ZERO;
     if terms.diffuse {
-        fraction += material.diffuse * Lambert.density(&directions);
+        fraction += material.diffuse * Lambert.density(light, view);
     }
     if terms.specular {
-        fraction += material.specular * Phong { exponent: material.exponent }.density(&directions);
+        let exponent = material.exponent.clamp(0.0, Material::MAX_EXPONENT);
+        fraction += material.specular * Phong::new(exponent).map_or(0.0, |phong| phong.density(light, view));
     }
-    fraction * flux_density / directions.n_v
+    fraction * flux_density / view.z
 }
 
 /// Luminance from the ambient term: uniform radiance `ambient` from the hemisphere, diffusely reflected.

@@ -1,6 +1,7 @@
 //! Numbers: rays, exact predicates, seeded sampling.
 
 pub mod bounds;
+pub mod cubature;
 pub mod exact;
 pub mod implicit;
 pub mod plane;

@@ -4,6 +4,7 @@
 
 mod composite;
 mod division;
+mod illumination;
 mod meeting;
 mod octree;
 mod plot;
@@ -15,9 +16,11 @@ mod tessellation;
 #[cfg(test)]
 mod tests;
 
-pub use plot::{Plot, PlotError, Point, Series};
+pub use illumination::{IlluminationRow, IlluminationStudy, illumination};
+pub use plot::{Axis, Plot, PlotError, Point, Series};
 pub use sweep::{Knob, Row, Study, Trial, sweep};
 
+use crate::illumination::distribution::DistributionError;
 use crate::octree::OctreeError;
 use crate::picture::PictureError;
 use crate::render::{RenderError, Watch};
@@ -136,6 +139,9 @@ pub enum StudyError {
     /// A surface cannot be approximated by grids, or not be measured.
     #[error(transparent)]
     Tessellation(#[from] TessellationError),
+    /// A distribution cannot be made.
+    #[error(transparent)]
+    Distribution(#[from] DistributionError),
     /// There is nothing to be studied.
     #[error("nothing to study: {0}")]
     Nothing(&'static str),

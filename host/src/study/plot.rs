@@ -1,4 +1,4 @@
-//! Log-log plots as SVG and PNG, with a font of their own: nothing needs to be installed.
+//! Plots over logarithmic axes, or a linear and a logarithmic one, as SVG and PNG, with a font of their own: nothing needs to be installed.
 
 use plotters::coord::combinators::IntoLogRange;
 use plotters::prelude::*;
@@ -13,10 +13,29 @@ const PNG_SCALE: u32 = 2;
 /// Name under which the embedded font is known to the plotting library, and a generic family in SVG.
 const FONT: &str = "sans-serif";
 /// Colours of the series: dark enough on white, and told apart by people who do not tell red from green.
-const COLORS: [RGBColor; 4] =
-    [RGBColor(0, 90, 160), RGBColor(200, 80, 0), RGBColor(0, 130, 90), RGBColor(150, 60, 140)];
+const COLORS: [RGBColor; 10] = [
+    RGBColor(0, 90, 160),
+    RGBColor(200, 80, 0),
+    RGBColor(0, 130, 90),
+    RGBColor(150, 60, 140),
+    RGBColor(190, 20, 40),
+    RGBColor(80, 170, 220),
+    RGBColor(150, 120, 0),
+    RGBColor(120, 120, 120),
+    RGBColor(0, 0, 90),
+    RGBColor(100, 190, 60),
+];
 
-/// Curves over logarithmic axes.
+/// How an axis is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Even steps.
+    Linear,
+    /// Even ratios.
+    Logarithmic,
+}
+
+/// Curves over a logarithmic vertical axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
     /// The heading.
@@ -27,6 +46,8 @@ pub struct Plot {
     pub y_label: String,
     /// A remark under the heading.
     pub note: String,
+    /// How the horizontal axis is divided.
+    pub x_axis: Axis,
     /// The curves.
     pub series: Vec<Series>,
 }
@@ -115,13 +136,43 @@ impl Plot {
         Ok([svg, png])
     }
 
-    fn visible(series: &Series) -> impl Iterator<Item = &Point> {
-        series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0 && p.x.is_finite() && p.y.is_finite())
+    /// The points that have a place on the axes.
+    fn visible<'a>(&self, series: &'a Series) -> impl Iterator<Item = &'a Point> {
+        let linear = self.x_axis == Axis::Linear;
+        let seen = move |p: &&Point| (linear || p.x > 0.0) && p.y > 0.0 && p.x.is_finite() && p.y.is_finite();
+        series.points.iter().filter(seen)
+    }
+
+    /// The decades of the logarithmic axis that stand for one unit of a linear one: two for the greatest number.
+    fn decades(&self) -> f64 {
+        let greatest = self.series.iter().flat_map(|s| self.visible(s)).map(|p| p.x.abs()).fold(0.0, f64::max);
+        if greatest > 0.0 { 2.0 / greatest } else { 1.0 }
+    }
+
+    /// The place of a number on the horizontal axis, which the plotting library takes for logarithmic.
+    fn place(&self, x: f64) -> f64 {
+        match self.x_axis {
+            Axis::Linear => 10f64.powf(x * self.decades()),
+            Axis::Logarithmic => x,
+        }
+    }
+
+    /// Places and numbers of the ticks of the horizontal axis.
+    fn x_ticks(&self, low: f64, high: f64) -> Vec<(f64, f64)> {
+        if self.x_axis == Axis::Logarithmic {
+            return ticks(low, high).into_iter().map(|x| (x, x)).collect();
+        }
+        let greatest = 2.0 / self.decades();
+        // Tens, or their like for other magnitudes; thirty at the most.
+        let mut step = 10f64.powf((greatest / 2.0).log10().floor());
+        step *= if greatest / step > 15.0 { 2.0 } else { 1.0 };
+        let numbers = (-15..=15).map(|i| f64::from(i) * step).filter(|x| *x <= greatest * 1.001);
+        numbers.map(|x| (self.place(x), x)).filter(|(place, _)| (low..=high).contains(place)).collect()
     }
 
     /// Least and greatest value on an axis, with a margin; at least a factor of four apart.
     fn range(&self, of: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
-        let values = self.series.iter().flat_map(Plot::visible).map(of);
+        let values = self.series.iter().flat_map(|series| self.visible(series)).map(of);
         let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v), h.max(v)));
         let middle = (low * high).sqrt();
         let (low, high) = (low.min(middle / 2.0), high.max(middle * 2.0));
@@ -135,9 +186,14 @@ impl Plot {
     ) -> Result<(), PlotError> {
         embed_font();
         let failed = |e: &dyn std::fmt::Display| PlotError::Draw(e.to_string());
-        let (x0, x1) = self.range(|p| p.x).ok_or(PlotError::Empty)?;
+        let (x0, x1) = self.range(|p| self.place(p.x)).ok_or(PlotError::Empty)?;
+        // On even steps curves end anywhere: the legend gets a place of its own beside them.
+        let x1 = if self.x_axis == Axis::Linear { x1 * 4.0 } else { x1 };
         let (y0, y1) = self.range(|p| p.y).ok_or(PlotError::Empty)?;
         let points = |n: u32| f64::from(n * scale);
+        let x_ticks = self.x_ticks(x0, x1);
+        let places: Vec<f64> = x_ticks.iter().map(|tick| tick.0).collect();
+        let number = |place: &f64| x_ticks.iter().find(|tick| tick.0 == *place).map_or(*place, |tick| tick.1);
         area.fill(&WHITE).map_err(|e| failed(&e))?;
         let (head, body) = area.split_vertically(54 * scale);
         let dark = RGBColor(30, 30, 30);
@@ -151,7 +207,7 @@ impl Plot {
             .x_label_area_size(46 * scale)
             .y_label_area_size(74 * scale)
             .build_cartesian_2d(
-                (x0..x1).log_scale().with_key_points(ticks(x0, x1)),
+                (x0..x1).log_scale().with_key_points(places),
                 (y0..y1).log_scale().with_key_points(ticks(y0, y1)),
             )
             .map_err(|e| failed(&e))?;
@@ -159,7 +215,7 @@ impl Plot {
             .configure_mesh()
             .x_desc(self.x_label.as_str())
             .y_desc(self.y_label.as_str())
-            .x_label_formatter(&|x| tick_text(*x))
+            .x_label_formatter(&|x| tick_text(number(x)))
             .y_label_formatter(&|y| tick_text(*y))
             .label_style(text(13))
             .axis_desc_style(text(15))
@@ -170,7 +226,7 @@ impl Plot {
             .draw()
             .map_err(|e| failed(&e))?;
         for (series, color) in self.series.iter().zip(COLORS.into_iter().cycle()) {
-            let line: Vec<(f64, f64)> = Plot::visible(series).map(|p| (p.x, p.y)).collect();
+            let line: Vec<(f64, f64)> = self.visible(series).map(|p| (self.place(p.x), p.y)).collect();
             let style = color.stroke_width(2 * scale);
             let key = move |(x, y): (i32, i32)| PathElement::new([(x, y), (x + 18 * scale as i32, y)], style);
             chart
@@ -185,9 +241,10 @@ impl Plot {
             let place = Pos::new(HPos::Right, VPos::Top);
             let small = TextStyle::from((FONT, points(12))).color(&color).pos(place);
             let beside_point = (-6 * scale as i32, 3 * scale as i32);
-            let beside =
-                |p: &Point| EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), beside_point, small.clone());
-            chart.draw_series(Plot::visible(series).map(beside)).map_err(|e| failed(&e))?;
+            let beside = |p: &Point| {
+                EmptyElement::at((self.place(p.x), p.y)) + Text::new(p.label.clone(), beside_point, small.clone())
+            };
+            chart.draw_series(self.visible(series).map(beside)).map_err(|e| failed(&e))?;
         }
         chart
             .configure_series_labels()
@@ -222,7 +279,9 @@ fn ticks(low: f64, high: f64) -> Vec<f64> {
 }
 
 fn tick_text(x: f64) -> String {
-    if (0.999e-3..1e4).contains(&x) {
+    if x == 0.0 {
+        "0".into()
+    } else if (0.999e-3..1e4).contains(&x) {
         let rounded = format!("{x:.4}");
         rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
@@ -241,6 +300,7 @@ mod tests {
             x_label: "run time (s)".into(),
             y_label: "error".into(),
             note: "labels: samples".into(),
+            x_axis: Axis::Logarithmic,
             series: vec![Series { name: "RMSE".into(), points: (0..6).map(point).collect() }],
         }
     }
@@ -260,6 +320,15 @@ mod tests {
         let blue = bytes.chunks(3).filter(|p| *p == [0, 90, 160]).count();
         let dark = bytes.chunks(3).filter(|p| p.iter().all(|c| *c < 60)).count();
         assert!(blue > 500 && dark > 500, "{blue} of the curve, {dark} of text and axes");
+    }
+
+    #[test]
+    fn a_linear_axis_begins_at_zero_and_has_even_ticks() {
+        let mut plot = Plot { x_axis: Axis::Linear, ..sample() };
+        plot.series[0].points.iter_mut().enumerate().for_each(|(i, p)| p.x = 18.0 * i as f64);
+        let ticks: Vec<f64> = plot.x_ticks(plot.place(0.0), plot.place(90.0)).iter().map(|tick| tick.1).collect();
+        assert_eq!(ticks, [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0]);
+        assert!(plot.svg().expect("drawn").contains("\n70\n"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! One knob through all its settings: run time, errors, table, CSV and plot.
 
 use super::StudyError;
-use super::plot::{Plot, Point, Series};
+use super::plot::{Axis, Plot, Point, Series};
 use crate::render::Watch;
 use serde::Serialize;
 use std::sync::atomic::Ordering;
@@ -190,6 +190,7 @@ impl Study {
             x_label: "run time (s)".into(),
             y_label: "error".into(),
             note: format!("numbers at the last curve, for the points above too: {}", self.setting),
+            x_axis: Axis::Logarithmic,
             series: series.collect(),
         }
     }
@@ -210,13 +211,14 @@ impl Study {
             x_label: self.setting.clone(),
             y_label: "cost, in the unit of each curve".into(),
             note: format!("no setting has an error: {} 0 at all of them", self.error_names.join(", ")),
+            x_axis: Axis::Logarithmic,
             series: series.collect(),
         }
     }
 }
 
 /// A number in four digits.
-fn short(x: f64) -> String {
+pub(super) fn short(x: f64) -> String {
     let magnitude = x.abs();
     if x == 0.0 {
         "0".into()

@@ -1,6 +1,8 @@
 //! Lambert's law: equal luminance in all directions.
 
-use super::{Directions, Distribution};
+use super::Distribution;
+use crate::numeric::sampling::cosine_hemisphere;
+use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
 /// Lambert's distribution, D = (N·V)/pi; normalised for every incidence.
@@ -11,24 +13,19 @@ use std::f64::consts::FRAC_1_PI;
 pub struct Lambert;
 
 impl Distribution for Lambert {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         "Lambert"
     }
 
-    fn density(&self, directions: &Directions) -> f64 {
-        directions.n_v * FRAC_1_PI
+    fn density(&self, _: DVec3, view: DVec3) -> f64 {
+        view.z * FRAC_1_PI
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::super::hemisphere_integral;
-    use super::*;
+    fn sample(&self, _: DVec3, point: [f64; 2]) -> Option<DVec3> {
+        Some(cosine_hemisphere(point, DVec3::Z)).filter(|view| view.z > 0.0)
+    }
 
-    #[test]
-    fn lambert_is_normalised_at_every_incidence() {
-        for incidence in [0.0, 0.5, 1.0, 1.5] {
-            assert!((hemisphere_integral(&Lambert, incidence, 100) - 1.0).abs() < 1e-4);
-        }
+    fn sample_density(&self, _: DVec3, view: DVec3) -> f64 {
+        view.z * FRAC_1_PI
     }
 }

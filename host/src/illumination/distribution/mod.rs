@@ -1,91 +1,128 @@
 //! The D family: how what a surface element emits is distributed over the outgoing hemisphere.
+//!
+//! Directions are unit vectors in the frame of the element: z is its normal, x and y lie along the surface. A
+//! distribution may be anything that has a density; [`measure`] says how far it is normalised and reciprocal, and
+//! [`FAMILY`] lists those that ship with the program.
 
+mod blinn;
+mod compensated;
+mod cook_torrance;
+mod error;
+mod facets;
+mod frame;
+mod improved;
 mod lambert;
+pub mod measure;
+mod microfacet;
 mod phong;
+mod special;
+mod tabulated;
+#[cfg(test)]
+mod tests;
 
+pub use blinn::Blinn;
+pub use compensated::Compensated;
+pub use cook_torrance::CookTorrance;
+pub use error::{DistributionError, LEAST_ROUGHNESS, MOST_ROUGHNESS};
+pub use facets::Facets;
+pub use frame::Frame;
+pub use improved::Improved;
 pub use lambert::Lambert;
-pub use phong::Phong;
+pub use microfacet::Microfacet;
+pub use phong::{MOST_EXPONENT, Phong, exponent_of_roughness};
+pub use tabulated::{Accuracy, Tabulated};
 
-use glam::DVec3;
-
-/// Cosines between the directions at a surface element.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Directions {
-    /// Normal and light.
-    pub n_l: f64,
-    /// Normal and viewer.
-    pub n_v: f64,
-    /// Mirrored light direction and viewer.
-    pub r_v: f64,
-}
-
-impl Directions {
-    /// From the unit vectors normal, towards the light, towards the viewer.
-    pub fn new(normal: DVec3, light: DVec3, view: DVec3) -> Directions {
-        let n_l = normal.dot(light);
-        let reflected = 2.0 * n_l * normal - light;
-        Directions { n_l, n_v: normal.dot(view), r_v: reflected.dot(view) }
-    }
-}
+use error::checked_roughness;
+use glam::{DVec2, DVec3};
 
 /// A distribution D of emitted flux over the outgoing hemisphere; the luminance is D K E / (N·V).
-pub trait Distribution {
-    /// Its name in tables.
-    fn name(&self) -> &'static str;
-
-    /// Emitted share per solid angle, 1/sr, for light and viewer above the horizon.
-    fn density(&self, directions: &Directions) -> f64;
-}
-
-/// Integrates D over the outgoing hemisphere by the midpoint rule.
 ///
-/// - `incidence`: angle between normal and light, radians, 0..pi/2.
-/// - `steps`: cells in the polar angle; four times as many in azimuth.
-/// - Returns the share of the flux that is emitted; 1 if D is normalised.
-pub fn hemisphere_integral(distribution: &dyn Distribution, incidence: f64, steps: u32) -> f64 {
-    use std::f64::consts::{FRAC_PI_2, TAU};
-    let light = DVec3::new(incidence.sin(), incidence.cos(), 0.0);
-    let (d_theta, d_phi) = (FRAC_PI_2 / f64::from(steps), TAU / f64::from(4 * steps));
-    let mut sum = 0.0;
-    for i in 0..steps {
-        let theta = (f64::from(i) + 0.5) * d_theta;
-        for j in 0..4 * steps {
-            let phi = (f64::from(j) + 0.5) * d_phi;
-            let view = DVec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
-            sum += distribution.density(&Directions::new(DVec3::Y, light, view)) * theta.sin();
-        }
-    }
-    sum * d_theta * d_phi
+/// Light and viewer are above the horizon: z above 0. Where the quotient D / (N·V) is the same for light and viewer
+/// exchanged, the distribution is reciprocal, and the two may be exchanged in [`Distribution::sample`] too: a tracer
+/// that comes from the eye gives the viewer and gets the light.
+pub trait Distribution: std::fmt::Debug + Send + Sync {
+    /// Its name in tables.
+    fn name(&self) -> &str;
+
+    /// Emitted share per solid angle, 1/sr.
+    fn density(&self, light: DVec3, view: DVec3) -> f64;
+
+    /// A direction to the viewer, drawn about as the density is, from a point of the unit square.
+    ///
+    /// None where what is drawn lies below the horizon: nothing is emitted then.
+    fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3>;
+
+    /// The density with which [`Distribution::sample`] draws a direction, 1/sr; it integrates to the part of the unit
+    /// square that gives one. Above 0 wherever D is.
+    fn sample_density(&self, light: DVec3, view: DVec3) -> f64;
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// A distribution that ships with the program.
+pub struct DistributionRow {
+    /// What it is called.
+    pub name: &'static str,
+    /// What it is.
+    pub summary: &'static str,
+    /// Makes it with a roughness m, the root mean square slope of facets times root 2, 1e-8..=1000.
+    pub make: fn(f64) -> Result<Box<dyn Distribution>, DistributionError>,
+}
 
-    fn family() -> Vec<Box<dyn Distribution>> {
-        vec![Box::new(Lambert), Box::new(Phong { exponent: 1.0 }), Box::new(Phong { exponent: 40.0 })]
-    }
+/// How much smoother along y than along x the anisotropic row of the table is.
+const ANISOTROPY: f64 = 4.0;
 
-    #[test]
-    fn every_distribution_emits_at_normal_incidence_what_arrives() {
-        for member in family() {
-            let share = hemisphere_integral(member.as_ref(), 0.0, 200);
-            assert!((share - 1.0).abs() < 1e-3, "{}: {share}", member.name());
-        }
-    }
+/// The family.
+pub const FAMILY: &[DistributionRow] = &[
+    DistributionRow { name: "Lambert", summary: "equal luminance everywhere", make: |_| Ok(Box::new(Lambert)) },
+    DistributionRow {
+        name: "Phong",
+        summary: "a lobe around the mirrored light",
+        make: |m| Ok(Box::new(Phong::new(exponent_of_roughness(m)?)?)),
+    },
+    DistributionRow {
+        name: "Blinn",
+        summary: "a lobe of facets, by a power of their cosine",
+        make: |m| Ok(Box::new(Blinn::new(exponent_of_roughness(m)?)?)),
+    },
+    DistributionRow {
+        name: "Cook-Torrance",
+        summary: "as published in 1982, with its masking",
+        make: |m| Ok(Box::new(CookTorrance::new(m)?)),
+    },
+    DistributionRow {
+        name: "improved (7)",
+        summary: "the paper's formula (7)",
+        make: |m| Ok(Box::new(Improved::new(m)?)),
+    },
+    DistributionRow {
+        name: "Beckmann",
+        summary: "Gaussian facets, exact, with Smith's masking; one reflection",
+        make: |m| Ok(Box::new(Microfacet::new(Facets::Beckmann, DVec2::splat(m))?)),
+    },
+    DistributionRow {
+        name: "GGX",
+        summary: "facets of an ellipsoid, exact, with Smith's masking; one reflection",
+        make: |m| Ok(Box::new(Microfacet::new(Facets::Ggx, DVec2::splat(m))?)),
+    },
+    DistributionRow {
+        name: "anisotropic",
+        summary: "Beckmann, four times smoother along y",
+        make: |m| {
+            Ok(Box::new(Microfacet::new(Facets::Beckmann, DVec2::new(m, (m / ANISOTROPY).max(LEAST_ROUGHNESS)))?))
+        },
+    },
+    DistributionRow {
+        name: "Beckmann, all",
+        summary: "Beckmann with all reflections between facets",
+        make: |m| Ok(Box::new(Compensated::new(Facets::Beckmann, m)?)),
+    },
+    DistributionRow {
+        name: "GGX, all",
+        summary: "GGX with all reflections between facets",
+        make: |m| Ok(Box::new(Compensated::new(Facets::Ggx, m)?)),
+    },
+];
 
-    #[test]
-    fn every_density_is_finite_and_not_negative() {
-        for member in family() {
-            for i in 1..20 {
-                for j in 1..20 {
-                    for r_v in [-1.0, -0.5, 0.0, 0.5, 1.0] {
-                        let directions = Directions { n_l: f64::from(i) / 20.0, n_v: f64::from(j) / 20.0, r_v };
-                        let density = member.density(&directions);
-                        assert!(density.is_finite() && density >= 0.0, "{}: {directions:?}", member.name());
-                    }
-                }
-            }
-        }
-    }
+/// The mirrored light direction.
+fn mirrored(light: DVec3) -> DVec3 {
+    DVec3::new(-light.x, -light.y, light.z)
 }

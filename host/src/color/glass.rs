@@ -1,0 +1,66 @@
+//! Refractive indices of transparent solids by Sellmeier's formula.
+
+use super::ColorError;
+
+/// A transparent solid: n² = 1 + Σ B w² / (w² − C), w the wavelength in micrometres.
+///
+/// # Source
+/// Sellmeier 1871; coefficients as the file `data/color/glasses.txt` states.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Glass {
+    /// What it is called.
+    pub name: String,
+    /// The shortest wavelength for which the coefficients hold, nm.
+    pub from: f64,
+    /// The longest, nm.
+    pub to: f64,
+    /// B, without unit, and C, square micrometres, of each term.
+    pub terms: Vec<[f64; 2]>,
+}
+
+impl Glass {
+    /// The refractive index at a wavelength, nm.
+    ///
+    /// # Errors
+    /// [`ColorError::OutOfRange`] where the coefficients do not hold.
+    pub fn index(&self, wavelength: f64) -> Result<f64, ColorError> {
+        let square = (wavelength / 1000.0).powi(2);
+        let n = (1.0 + self.terms.iter().map(|[b, c]| b * square / (square - c)).sum::<f64>()).sqrt();
+        if (self.from..=self.to).contains(&wavelength) && n.is_finite() {
+            return Ok(n);
+        }
+        Err(ColorError::OutOfRange { name: self.name.clone(), wavelength, from: self.from, to: self.to })
+    }
+
+    /// Abbe's number (n_d − 1) / (n_F − n_C): the less, the more the glass disperses.
+    ///
+    /// # Errors
+    /// [`ColorError::OutOfRange`] if the coefficients do not hold from 486 to 656 nm.
+    pub fn abbe_number(&self) -> Result<f64, ColorError> {
+        Ok((self.index(587.5618)? - 1.0) / (self.index(486.1327)? - self.index(656.2725)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::shipped::glass;
+
+    #[test]
+    fn indices_and_dispersion_are_those_of_the_catalogues() {
+        // n_d and Abbe's number of the Schott data sheets; silica from Malitson's table; diamond from Peter.
+        for (name, n_d, abbe) in
+            [("BK7", 1.51680, 64.17), ("SF11", 1.78472, 25.76), ("silica", 1.45846, 67.82), ("diamond", 2.4175, 55.3)]
+        {
+            let glass = glass(name).expect("a glass");
+            assert!((glass.index(587.5618).expect("an index") - n_d).abs() < 6e-5 * n_d, "{name}");
+            assert!((glass.abbe_number().expect("a number") / abbe - 1.0).abs() < 5e-3, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_wavelength_outside_is_an_error() {
+        let diamond = glass("diamond").expect("a glass");
+        assert!(diamond.index(800.0).is_err() && diamond.index(f64::NAN).is_err());
+        assert!(diamond.index(226.0).is_ok_and(|n| n > 2.6));
+    }
+}

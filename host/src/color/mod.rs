@@ -1,0 +1,22 @@
+//! Spectra, and what an eye and a screen make of them.
+//!
+//! Wavelengths are in nanometres. A spectrum is piecewise linear between its samples, and integrals of products of
+//! spectra are exact for that form. Colours are those of the CIE 1931 observer and of linear sRGB, whose white is D65.
+
+pub mod bins;
+pub mod blackbody;
+mod columns;
+pub mod daylight;
+mod error;
+pub mod glass;
+pub mod observer;
+pub mod reflectance;
+pub mod shipped;
+pub mod spectrum;
+pub mod srgb;
+
+pub use bins::Bins;
+pub use error::ColorError;
+pub use glass::Glass;
+pub use reflectance::SmoothReflectance;
+pub use spectrum::{Beyond, Spectrum, integral};

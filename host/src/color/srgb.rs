@@ -1,0 +1,60 @@
+//! Linear sRGB: the three bands of a screen.
+
+use super::{observer, shipped};
+use glam::{DMat3, DVec2, DVec3};
+use std::sync::LazyLock;
+
+/// Chromaticities x, y of the red, green and blue of sRGB (IEC 61966-2-1).
+pub const PRIMARIES: [DVec2; 3] = [DVec2::new(0.64, 0.33), DVec2::new(0.30, 0.60), DVec2::new(0.15, 0.06)];
+
+/// The matrix from red, green and blue to X, Y and Z, and its inverse.
+///
+/// White, (1, 1, 1), is a perfect reflector under D65 with Y = 1, by the very tables that this program uses: IEC
+/// 61966-2-1 rounds its chromaticity to (0.3127, 0.3290), from which the matrix here differs by less than 5e-4.
+static MATRICES: LazyLock<[DMat3; 2]> = LazyLock::new(|| {
+    let light = observer::tristimulus(&shipped::D65);
+    let white = light / light.y;
+    let [r, g, b] = PRIMARIES.map(|at| DVec3::new(at.x / at.y, 1.0, (1.0 - at.x - at.y) / at.y));
+    let directions = DMat3::from_cols(r, g, b);
+    // How much of each primary makes white.
+    let amounts = directions.inverse() * white;
+    let matrix = directions * DMat3::from_diagonal(amounts);
+    [matrix, matrix.inverse()]
+});
+
+/// X, Y and Z of linear sRGB; Y of white (1, 1, 1) is 1.
+pub fn to_xyz(rgb: DVec3) -> DVec3 {
+    MATRICES[0] * rgb
+}
+
+/// Linear sRGB of X, Y and Z; negative where the screen cannot show the colour.
+pub fn from_xyz(xyz: DVec3) -> DVec3 {
+    MATRICES[1] * xyz
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn white_is_d65_and_comes_back() {
+        let white = to_xyz(DVec3::ONE);
+        let xy = observer::chromaticity(white).expect("not black");
+        assert!((xy - DVec2::new(0.31272, 0.32903)).length() < 1e-4 && (white.y - 1.0).abs() < 1e-14);
+        assert!((from_xyz(white) - DVec3::ONE).length() < 1e-14);
+        for rgb in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.2, -0.1, 3.0)] {
+            assert!((from_xyz(to_xyz(rgb)) - rgb).length() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_matrix_is_that_of_the_standard_but_for_the_rounding_of_white() {
+        // IEC 61966-2-1, X, Y and Z to red, green and blue.
+        let standard = [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]];
+        for (row, numbers) in standard.iter().enumerate() {
+            for (column, number) in numbers.iter().enumerate() {
+                assert!((from_xyz(DVec3::AXES[column])[row] - number).abs() < 5e-4, "{row} {column}");
+            }
+        }
+    }
+}

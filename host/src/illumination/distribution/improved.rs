@@ -1,0 +1,48 @@
+//! Cook and Torrance's highlight as the 1988 paper improves it.
+//!
+//! The division by N·L is gone, so that it stays finite at grazing incidence. What is missing is the change 4 (V·H) from
+//! the solid angle of the normal to that of the viewer: for smooth facets its integral is 4 (N·L), not 1.
+
+use super::cook_torrance::{sample, sample_density};
+use super::{Distribution, DistributionError, Facets, checked_roughness};
+use glam::{DVec2, DVec3};
+
+/// D = exp(−tan²α / m²) / (π m² cos³α) for N·V > 0.
+///
+/// Its integral over the normals H, not over the viewer, is 1. It has no masking and is not reciprocal.
+///
+/// # Source
+/// The 1988 paper, equation 7.
+#[derive(Clone, Copy, Debug)]
+pub struct Improved {
+    roughness: f64,
+}
+
+impl Improved {
+    /// With a roughness m, 1e-8..=1000.
+    ///
+    /// # Errors
+    /// [`DistributionError::Roughness`].
+    pub fn new(roughness: f64) -> Result<Improved, DistributionError> {
+        Ok(Improved { roughness: checked_roughness(roughness)? })
+    }
+}
+
+impl Distribution for Improved {
+    fn name(&self) -> &str {
+        "improved (7)"
+    }
+
+    fn density(&self, light: DVec3, view: DVec3) -> f64 {
+        let half = light + view;
+        Facets::Beckmann.area(half, DVec2::splat(self.roughness)) * half.z / half.length()
+    }
+
+    fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3> {
+        sample(light, self.roughness, point)
+    }
+
+    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+        sample_density(light, view, self.roughness)
+    }
+}

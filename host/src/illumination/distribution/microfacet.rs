@@ -1,0 +1,59 @@
+//! The exact form of Cook and Torrance's idea: facets that are mirrors, seen and lit as Smith's masking says.
+
+use super::{Distribution, DistributionError, Facets, checked_roughness};
+use glam::{DVec2, DVec3};
+
+/// D = area(H) G₂ / (4 (N·L)): the facets' area, the change 4 (V·H) from their solid angle to the viewer's, and a
+/// masking that matches the facets.
+///
+/// With A the area that the facets show to a direction, A = (N·W) (1 + Λ), and heights of light and viewer correlated,
+/// G₂ = 1 / (1 + Λ_L + Λ_V). D integrates to 1 but for what strikes a second facet: that is lost here, and kept in
+/// [`super::Compensated`]. It never exceeds 1, and is reciprocal. Different roughness along x and y is anisotropic.
+///
+/// # Source
+/// Walter et al. 2007, equation 20; Heitz 2014, equation 99.
+#[derive(Clone, Copy, Debug)]
+pub struct Microfacet {
+    facets: Facets,
+    roughness: DVec2,
+}
+
+impl Microfacet {
+    /// With a roughness m along x and along y, each 1e-8..=1000: the root mean square slope times root 2.
+    ///
+    /// # Errors
+    /// [`DistributionError::Roughness`].
+    pub fn new(facets: Facets, roughness: DVec2) -> Result<Microfacet, DistributionError> {
+        let roughness = DVec2::new(checked_roughness(roughness.x)?, checked_roughness(roughness.y)?);
+        Ok(Microfacet { facets, roughness })
+    }
+
+    /// The part of what a drawn facet reflects to a viewer that no other facet masks: the density over that of the
+    /// sample, 0..=1.
+    pub(super) fn weight(&self, light: DVec3, view: DVec3) -> f64 {
+        let [l, v] = [light, view].map(|towards| self.facets.projected(towards, self.roughness));
+        view.z * l / (view.z * l + light.z * (v - view.z))
+    }
+}
+
+impl Distribution for Microfacet {
+    fn name(&self) -> &str {
+        match self.facets {
+            Facets::Beckmann => "Beckmann",
+            Facets::Ggx => "GGX",
+        }
+    }
+
+    fn density(&self, light: DVec3, view: DVec3) -> f64 {
+        self.weight(light, view) * self.sample_density(light, view)
+    }
+
+    fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3> {
+        let normal = self.facets.visible(light, self.roughness, point)?;
+        (normal * (2.0 * normal.dot(light)) - light).try_normalize().filter(|view| view.z > 0.0)
+    }
+
+    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+        self.facets.area(light + view, self.roughness) / (4.0 * self.facets.projected(light, self.roughness))
+    }
+}

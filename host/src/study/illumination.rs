@@ -1,0 +1,175 @@
+//! The study of the D family: how far each member is normalised and reciprocal, and what it costs.
+//!
+//! It needs no scene. It walks the table of the family and knows no member by name.
+
+use super::StudyError;
+use super::plot::{Axis, Plot, Point, Series};
+use super::sweep::short;
+use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual};
+use crate::illumination::distribution::{Distribution, FAMILY};
+use crate::numeric::sampling::{Stream, even};
+use crate::render::Watch;
+use serde::Serialize;
+use std::hint::black_box;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Angles of incidence in degrees, to just above the surface.
+const INCIDENCES: [f64; 12] = [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 85.0, 89.0, 89.9999];
+/// Error to which the integrals are found, and the most evaluations for each.
+const TOLERANCE: f64 = 1e-5;
+const MOST_EVALUATIONS: u32 = 60_000;
+/// Random pairs of directions for the residual of reciprocity, and their seed.
+const PAIRS: u64 = 20_000;
+const SEED: u64 = 7;
+/// Calls that are timed.
+const TIMED: u32 = 40_000;
+
+/// What was found out about the family.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct IlluminationStudy {
+    /// The angles of incidence, degrees.
+    pub incidences: Vec<f64>,
+    /// One row for each member and roughness.
+    pub rows: Vec<IlluminationRow>,
+}
+
+/// One member of the family at one roughness.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct IlluminationRow {
+    /// The member.
+    pub name: String,
+    /// Its roughness m.
+    pub roughness: f64,
+    /// The integral of D over the outgoing hemisphere at each incidence; 1 if it is normalised.
+    pub shares: Vec<f64>,
+    /// The greatest error that the cubature states for them.
+    pub error: f64,
+    /// Greatest |f − f'| / (f + f') with light and viewer exchanged; 0 if it is reciprocal.
+    pub reciprocity: f64,
+    /// Time for one evaluation of D, nanoseconds.
+    pub evaluation: f64,
+    /// Time for one sampled direction, nanoseconds.
+    pub sample: f64,
+}
+
+/// Measures every member of the family.
+///
+/// - `roughness`: the values of m to try, 1e-8..=1000.
+///
+/// # Errors
+/// [`StudyError::Distribution`] for a roughness that is not provided for, or [`StudyError::Interrupted`].
+pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<IlluminationStudy, StudyError> {
+    let steps = (roughness.len() * FAMILY.len()) as u64;
+    let mut rows = Vec::new();
+    for &m in roughness {
+        for member in FAMILY {
+            if watch.cancelled.load(Ordering::Relaxed) {
+                return Err(StudyError::Interrupted);
+            }
+            rows.push(row(member.name, m, (member.make)(m)?.as_ref()));
+            (watch.progress)(rows.len() as u64, steps);
+        }
+    }
+    Ok(IlluminationStudy { incidences: INCIDENCES.to_vec(), rows })
+}
+
+fn row(name: &str, roughness: f64, distribution: &dyn Distribution) -> IlluminationRow {
+    let integrals =
+        INCIDENCES.map(|d| emitted_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS));
+    let light = light_at(0.5);
+    let views: Vec<_> = (0..TIMED).filter_map(|index| distribution.sample(light, even(index, [0.3, 0.7]))).collect();
+    let start = Instant::now();
+    let sum: f64 = views.iter().map(|view| distribution.density(black_box(light), *view)).sum();
+    black_box(sum);
+    let evaluation = start.elapsed().as_secs_f64() * 1e9 / views.len().max(1) as f64;
+    let mut stream = Stream::new(SEED, 0);
+    let points: Vec<[f64; 2]> = (0..TIMED).map(|_| stream.point()).collect();
+    let start = Instant::now();
+    let found = points.iter().filter_map(|point| distribution.sample(black_box(light), *point)).count();
+    black_box(found);
+    let sample = start.elapsed().as_secs_f64() * 1e9 / f64::from(TIMED);
+    IlluminationRow {
+        name: name.to_owned(),
+        roughness,
+        shares: integrals.iter().map(|integral| integral.value).collect(),
+        error: integrals.iter().map(|integral| integral.error).fold(0.0, f64::max),
+        reciprocity: reciprocity_residual(distribution, PAIRS, SEED),
+        evaluation,
+        sample,
+    }
+}
+
+impl IlluminationStudy {
+    fn header(&self) -> Vec<String> {
+        let angles = self.incidences.iter().map(|degrees| format!("{degrees}"));
+        let rest = ["cubature error", "reciprocity", "evaluation (ns)", "sample (ns)"];
+        ["D", "m"].into_iter().map(str::to_owned).chain(angles).chain(rest.map(str::to_owned)).collect()
+    }
+
+    fn cells(row: &IlluminationRow) -> Vec<f64> {
+        let rest = [row.error, row.reciprocity, row.evaluation, row.sample];
+        [row.roughness].into_iter().chain(row.shares.iter().copied()).chain(rest).collect()
+    }
+
+    /// The study as a table for people: the integral of D at each incidence in degrees, and the rest.
+    pub fn table(&self) -> String {
+        let header = self.header();
+        let width = |name: &str| name.len().max(9);
+        let mut text = format!("{:<14}", header[0]);
+        header[1..].iter().for_each(|name| text.push_str(&format!("{name:>w$}  ", w = width(name))));
+        text.push('\n');
+        for row in &self.rows {
+            text.push_str(&format!("{:<14}", row.name));
+            for (name, cell) in header[1..].iter().zip(IlluminationStudy::cells(row)) {
+                text.push_str(&format!("{:>w$}  ", short(cell), w = width(name)));
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The study as comma-separated values, with a header line.
+    pub fn csv(&self) -> String {
+        let mut text = self.header().join(",") + "\n";
+        for row in &self.rows {
+            // A name may hold a comma.
+            text.push_str(&format!("\"{}\"", row.name));
+            IlluminationStudy::cells(row).iter().for_each(|cell| text.push_str(&format!(",{cell}")));
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The integrals over the incidence, one plot for each roughness, with that roughness.
+    pub fn plots(&self) -> Vec<(f64, Plot)> {
+        let mut all: Vec<f64> = self.rows.iter().map(|row| row.roughness).collect();
+        all.dedup();
+        let plot = |m: f64| {
+            let of_row = |row: &IlluminationRow| Series {
+                name: row.name.clone(),
+                points: self
+                    .incidences
+                    .iter()
+                    .zip(&row.shares)
+                    // A member that leaves the picture would make the others flat.
+                    .filter(|(_, share)| (LOWEST..HIGHEST).contains(*share))
+                    .map(|(x, y)| Point { x: *x, y: *y, label: String::new() })
+                    .collect(),
+            };
+            Plot {
+                title: format!("emitted share of the flux, roughness {m}"),
+                x_label: "incidence (degrees)".into(),
+                y_label: "integral of D over the viewer".into(),
+                note: format!("1 is normalised; more creates energy; cut at {LOWEST} and {HIGHEST}"),
+                x_axis: Axis::Linear,
+                series: self.rows.iter().filter(|row| row.roughness == m).map(of_row).collect(),
+            }
+        };
+        all.into_iter().map(|m| (m, plot(m))).collect()
+    }
+}
+
+/// The range of the plots.
+const LOWEST: f64 = 0.05;
+const HIGHEST: f64 = 20.0;
