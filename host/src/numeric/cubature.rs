@@ -57,7 +57,7 @@ impl Ord for Cell {
 }
 
 /// The cell, by Gauss and Legendre's rule of four points a side.
-fn cell(f: &impl Fn([f64; 2]) -> f64, corner: [f64; 2], size: [f64; 2]) -> Cell {
+fn cell(f: &dyn Fn([f64; 2]) -> f64, corner: [f64; 2], size: [f64; 2]) -> Cell {
     let mut values = [[0.0; 4]; 4];
     let (mut sum, mut bends) = (0.0, [0.0; 2]);
     for (row, (y, of_y)) in values.iter_mut().zip(GAUSS) {
@@ -79,7 +79,7 @@ fn cell(f: &impl Fn([f64; 2]) -> f64, corner: [f64; 2], size: [f64; 2]) -> Cell 
 const SLOWEST: f64 = 1.0 / 8.0;
 
 /// The two halves of a cell. Their error is half of what the division changed.
-fn halves(f: &impl Fn([f64; 2]) -> f64, whole: &Cell) -> [Cell; 2] {
+fn halves(f: &dyn Fn([f64; 2]) -> f64, whole: &Cell) -> [Cell; 2] {
     let mut size = whole.size;
     size[whole.axis] /= 2.0;
     let mut cells = [0.0, size[whole.axis]].map(|offset| {
@@ -93,7 +93,7 @@ fn halves(f: &impl Fn([f64; 2]) -> f64, whole: &Cell) -> [Cell; 2] {
 }
 
 /// The quarters of a cell. Their error is a quarter of what the divisions changed.
-fn quarters(f: &impl Fn([f64; 2]) -> f64, whole: &Cell) -> Vec<Cell> {
+fn quarters(f: &dyn Fn([f64; 2]) -> f64, whole: &Cell) -> Vec<Cell> {
     let mut cells: Vec<Cell> = Vec::with_capacity(4);
     let half = whole.size.map(|side| side / 2.0);
     for i in 0..4 {
@@ -117,26 +117,27 @@ fn gather_slope(x: f64) -> f64 {
 
 /// The integral of a function over the unit square.
 ///
-/// The cell with the largest error is halved, across the axis along which the function bends more, until the errors add up to no more than `tolerance`, or `most` values of
-/// the function have been asked for. Kinks and steps are found and followed; a peak narrower than a thirtieth of the
-/// square may be missed: map it away.
+/// The cell with the largest error is halved, across the axis along which the function bends more, until the errors add
+/// up to no more than `tolerance`, or `most` values of the function have been asked for. Kinks and steps are found and
+/// followed; a peak narrower than a thirtieth of the square may be missed: map it away.
 ///
 /// Points gather at the border of the square, where maps from it to directions have their rare ones.
 ///
 /// - `f`: finite everywhere inside the square; it is not asked on the border.
 pub fn unit_square(f: impl Fn([f64; 2]) -> f64, tolerance: f64, most: u32) -> Integral {
-    let f = |[x, y]: [f64; 2]| gather_slope(x) * gather_slope(y) * f([gather(x), gather(y)]);
+    // Not copied into each of the places that ask it: these are many, and it may be long.
+    let f: &dyn Fn([f64; 2]) -> f64 = &|[x, y]| gather_slope(x) * gather_slope(y) * f([gather(x), gather(y)]);
     let side = 1.0 / f64::from(START);
     let mut cells = BinaryHeap::new();
     for i in 0..START * START {
         let corner = [f64::from(i % START) * side, f64::from(i / START) * side];
-        cells.extend(quarters(&f, &cell(&f, corner, [side; 2])));
+        cells.extend(quarters(f, &cell(f, corner, [side; 2])));
     }
     let mut evaluations = START * START * 5 * 16;
     let mut error: f64 = cells.iter().map(|cell| cell.error).sum();
     while error > tolerance && evaluations + 32 <= most {
         let Some(worst) = cells.pop() else { break };
-        let parts = halves(&f, &worst);
+        let parts = halves(f, &worst);
         error += parts.iter().map(|cell| cell.error).sum::<f64>() - worst.error;
         cells.extend(parts);
         evaluations += 32;
