@@ -2,6 +2,7 @@
 
 use super::light::{TILE_HEIGHT, TILE_WIDTH};
 use super::optics::Optics;
+use super::widest::{self, Work};
 use crate::traversal::Stroke;
 use rayon::prelude::*;
 
@@ -67,13 +68,9 @@ impl Chunk {
 
     /// Counts the strokes of each tile.
     fn count(&mut self, optics: &Optics, strokes: &[Stroke], columns: usize, rows: usize) {
-        let tiles = |[low, high]: [usize; 2], size: usize| [(low / size) as u16, (high / size) as u16];
         let Self { touched, starts, .. } = self;
         touched.clear();
-        touched.extend(strokes.iter().map(|stroke| match optics.touched(stroke) {
-            Some([x, y]) => [tiles(x, TILE_WIDTH), tiles(y, TILE_HEIGHT)],
-            None => [[1, 0]; 2],
-        }));
+        widest::run(Touching { optics, strokes, touched });
         starts.clear();
         starts.resize(columns * rows + 1, 0);
         for (stroke, touched) in strokes.iter().zip(touched) {
@@ -96,6 +93,28 @@ impl Chunk {
             each_tile(optics, stroke, touched, columns, |tile| {
                 starts[tile] -= 1;
                 members[starts[tile] as usize] = *stroke;
+            });
+        }
+    }
+}
+
+/// Finding the tiles that strokes touch.
+struct Touching<'a> {
+    optics: &'a Optics,
+    strokes: &'a [Stroke],
+    touched: &'a mut Vec<[[u16; 2]; 2]>,
+}
+
+impl Work for Touching<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for stroke in self.strokes {
+            self.touched.push(match self.optics.touched(stroke) {
+                Some([[left, right], [top, bottom]]) => [
+                    [(left / TILE_WIDTH) as u16, (right / TILE_WIDTH) as u16],
+                    [(top / TILE_HEIGHT) as u16, (bottom / TILE_HEIGHT) as u16],
+                ],
+                None => [[1, 0]; 2],
             });
         }
     }

@@ -2,7 +2,7 @@
 
 use super::bins::Bins;
 use super::optics::Optics;
-use super::track::{LANES, Track};
+use super::track::{LANES, Room, Track};
 use super::widest::{self, Work};
 use crate::traversal::Stroke;
 use rayon::prelude::*;
@@ -146,17 +146,15 @@ impl Work for Writing<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { optics, guns, corner, bins, index, tile } = self;
+        let mut room = Room::new();
         for stroke in bins.members(index).flatten() {
             let Some(track) = Track::new(optics, stroke, corner) else { continue };
             if !tile.lit {
                 tile.lit = true;
-                tile.planes.clear();
                 tile.planes.resize(guns * PLANE, 0.0);
+                tile.planes.fill(0.0);
             }
-            match guns {
-                1 => track.write::<1>(&mut tile.planes),
-                _ => track.write::<3>(&mut tile.planes),
-            }
+            track.write(&mut room, &mut tile.planes);
         }
     }
 }

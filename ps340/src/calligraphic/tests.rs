@@ -222,7 +222,7 @@ fn every_tile_knows_all_strokes_that_reach_it() {
             tile.planes.resize(3 * light::PLANE, 0.0);
             tile.lit = true;
             if let Some(track) = track::Track::new(&wide, stroke, corner) {
-                track.write::<3>(&mut tile.planes);
+                track.write(&mut track::Room::new(), &mut tile.planes);
             }
         }
         pixels(&light).iter().zip(&mut sum).for_each(|(light, sum)| *sum += light);

@@ -95,37 +95,53 @@ impl Track {
         })
     }
 
-    /// Adds the light to the planes of a tile, as many as it has guns.
+    /// Adds the light to the planes of a tile: one, or three for red, green and blue.
     #[inline(always)]
-    pub fn write<const GUNS: usize>(&self, planes: &mut [f32]) {
-        match self.current {
-            Current::Point(terms) => self.fill::<GUNS>(planes, Point { terms }),
-            Current::Both(current, 0.0) => self.fill::<GUNS>(planes, EvenBetween { current }),
-            Current::Both(current, gain) => self.fill::<GUNS>(planes, Between { current, gain }),
-            Current::Nearer(current, 0.0) => self.fill::<GUNS>(planes, EvenLong { current }),
-            Current::Nearer(current, gain) => self.fill::<GUNS>(planes, Long { current, gain }),
+    pub fn write(&self, room: &mut Room, planes: &mut [f32]) {
+        let (planes, _) = planes.as_chunks_mut();
+        if let [plane] = planes {
+            self.draw(room, std::array::from_mut(plane));
+        } else if let Some(planes) = planes.first_chunk_mut::<3>() {
+            self.draw(room, planes);
         }
     }
 
     #[inline(always)]
-    fn fill<const GUNS: usize>(&self, planes: &mut [f32], profile: impl Profile) {
-        let mut places = [0; PLACES];
-        let count = self.places(&mut places);
+    fn draw<const GUNS: usize>(&self, room: &mut Room, planes: &mut [[f32; PLANE]; GUNS]) {
+        match self.current {
+            Current::Point(terms) => self.fill(room, planes, Point { terms }),
+            Current::Both(current, 0.0) => self.fill(room, planes, EvenBetween { current }),
+            Current::Both(current, gain) => self.fill(room, planes, Between { current, gain }),
+            Current::Nearer(current, 0.0) => self.fill(room, planes, EvenLong { current }),
+            Current::Nearer(current, gain) => self.fill(room, planes, Long { current, gain }),
+        }
+    }
+
+    #[inline(always)]
+    fn fill<const GUNS: usize>(
+        &self,
+        Room { rows, places }: &mut Room,
+        planes: &mut [[f32; PLANE]; GUNS],
+        profile: impl Profile,
+    ) {
+        self.look(rows);
+        let count = self.list(rows, places);
         for packed in &places[..count] {
-            let (y, column) = (usize::from(packed / ROW), usize::from(packed % ROW));
-            let (down, right) = (y as i32 as f32, column as i32 as f32);
-            let lanes = Lanes {
-                u: right.mul_add(self.step[0], down.mul_add(self.step[1], self.u)),
-                rest: right.mul_add(-self.step[0], down.mul_add(-self.step[1], self.rest)),
-                v: right.mul_add(-self.step[1], down.mul_add(self.step[0], self.v)),
-                step: self.step,
-            };
-            let light = lanes.light(&profile);
+            // The remainders change nothing and spare the checks of what follows.
+            let (y, column) = (usize::from(packed / ROW) % TILE_HEIGHT, usize::from(packed % ROW) % TILE_WIDTH);
+            let (u, rest, v) = (rows.u[y], rows.rest[y], rows.v[y]);
+            let mut light = [0.0; LANES];
+            for (light, right) in light.iter_mut().zip(&COLUMNS[column..column + LANES]) {
+                let (u, rest) = (right.mul_add(self.step[0], u), right.mul_add(-self.step[0], rest));
+                *light = profile.light(u, rest, right.mul_add(-self.step[1], v));
+            }
             let place = y * STRIDE + column;
-            for gun in 0..GUNS {
+            for (plane, color) in planes.iter_mut().zip(self.color) {
                 // A single gun draws every colour alike.
-                let strength = if GUNS == 1 { 1.0 } else { self.color[gun] };
-                add(&light, strength, &mut planes[gun * PLANE + place..]);
+                let strength = if GUNS == 1 { 1.0 } else { color };
+                for (sum, light) in plane[place..place + LANES].iter_mut().zip(&light) {
+                    *sum = light.mul_add(strength, *sum);
+                }
             }
         }
     }
@@ -135,11 +151,10 @@ impl Track {
     ///
     /// A list, because the processor can foresee the way through it, and not where in each row the light ends.
     #[inline(always)]
-    fn places(&self, places: &mut [u16; PLACES]) -> usize {
-        let (firsts, eights) = self.spans();
+    fn list(&self, rows: &Rows, places: &mut [u16; PLACES]) -> usize {
         let mut count = 0;
-        let rows = self.rows[0]..self.rows[1] + 1;
-        for (first, eights) in firsts[rows.clone()].iter().zip(&eights[rows]) {
+        let range = self.rows[0]..self.rows[1] + 1;
+        for (first, eights) in rows.first[range.clone()].iter().zip(&rows.eights[range]) {
             // Two are noted always, and counted if they are there.
             let Some([one, other]) = places[count..].first_chunk_mut() else { break };
             (*one, *other) = (*first as u16, *first as u16 + LANES as u16);
@@ -152,19 +167,18 @@ impl Track {
         count
     }
 
-    /// For each row of the tile where the light begins, as in [`Track::places`], and how many times eight pixels it
-    /// can reach.
+    /// Finds what is the same for all pixels of a row, eight rows at a time, for the rows that light can reach.
     #[inline(always)]
-    fn spans(&self) -> ([i32; TILE_HEIGHT], [i32; TILE_HEIGHT]) {
+    fn look(&self, rows: &mut Rows) {
         // -reach <= u + step[0] x <= length + reach, and -reach <= v - step[1] x <= reach.
         let width = |step: f32| if step.abs() > 1.0 / ENDLESS { step.recip() } else { ENDLESS };
         let (along, across) = (width(self.step[0]), width(self.step[1]));
-        let (mut firsts, mut eights) = ([0; TILE_HEIGHT], [0; TILE_HEIGHT]);
         for block in self.rows[0] / LANES..self.rows[1] / LANES + 1 {
-            let top = (block * LANES) as i32;
-            let (mut first, mut count) = ([0; LANES], [0; LANES]);
-            for (lane, (first, count)) in first.iter_mut().zip(&mut count).enumerate() {
-                let y = top + lane as i32;
+            let top = block * LANES;
+            let [mut us, mut rests, mut vs] = [[0.0; LANES]; 3];
+            let [mut firsts, mut counts] = [[0; LANES]; 2];
+            for lane in 0..LANES {
+                let y = (top + lane) as i32;
                 let down = y as f32;
                 let u = down.mul_add(self.step[1], self.u);
                 let v = down.mul_add(self.step[0], self.v);
@@ -176,14 +190,58 @@ impl Track {
                 let begin = whole(greater(lesser(low, TILE_WIDTH as f32), 0.0) + 0.499);
                 let end = whole(greater(lesser(high, (TILE_WIDTH - 1) as f32), -1.0) - 0.499);
                 let eights = (end - begin + LANES as i32) >> LANES.ilog2();
-                *first = y * i32::from(ROW) + begin;
-                *count = if eights > 0 { eights } else { 0 };
+                firsts[lane] = y * i32::from(ROW) + begin;
+                counts[lane] = if eights > 0 { eights } else { 0 };
+                us[lane] = u;
+                rests[lane] = down.mul_add(-self.step[1], self.rest);
+                vs[lane] = v;
             }
-            firsts[block * LANES..][..LANES].copy_from_slice(&first);
-            eights[block * LANES..][..LANES].copy_from_slice(&count);
+            rows.first[top..top + LANES].copy_from_slice(&firsts);
+            rows.eights[top..top + LANES].copy_from_slice(&counts);
+            rows.u[top..top + LANES].copy_from_slice(&us);
+            rows.rest[top..top + LANES].copy_from_slice(&rests);
+            rows.v[top..top + LANES].copy_from_slice(&vs);
         }
-        (firsts, eights)
     }
+}
+
+/// The numbers of the columns of a tile, and of the room beyond.
+const COLUMNS: [f32; STRIDE] = {
+    let mut columns = [0.0; STRIDE];
+    let mut column = 0;
+    while column < STRIDE {
+        columns[column] = column as f32;
+        column += 1;
+    }
+    columns
+};
+
+/// Room for what writing a stroke notes; what it held before does not matter.
+pub(super) struct Room {
+    rows: Rows,
+    places: [u16; PLACES],
+}
+
+impl Room {
+    /// Empty room.
+    #[inline(always)]
+    pub fn new() -> Self {
+        let [u, rest, v] = [[0.0; TILE_HEIGHT]; 3];
+        let [first, eights] = [[0; TILE_HEIGHT]; 2];
+        Self { rows: Rows { first, eights, u, rest, v }, places: [0; PLACES] }
+    }
+}
+
+/// What is the same for all pixels of a row of a tile, row after row.
+struct Rows {
+    /// Where the light begins, as in [`Track::list`].
+    first: [i32; TILE_HEIGHT],
+    /// How many times eight pixels it can reach from there.
+    eights: [i32; TILE_HEIGHT],
+    /// u at the first pixel, distance from there to the end, and v.
+    u: [f32; TILE_HEIGHT],
+    rest: [f32; TILE_HEIGHT],
+    v: [f32; TILE_HEIGHT],
 }
 
 /// The whole number next to one that is much less than 2^22. One addition, unlike a cast.
@@ -192,18 +250,6 @@ fn whole(x: f32) -> i32 {
     /// 1.5 * 2^23: adding it rounds to a whole number and leaves that in the low bits.
     const ROUND: f32 = 12_582_912.0;
     (x + ROUND).to_bits() as i32 - ROUND.to_bits() as i32
-}
-
-/// Adds light to the first eight pixels of a plane.
-#[inline(always)]
-fn add(light: &[f32; LANES], strength: f32, plane: &mut [f32]) {
-    if let Some(pixels) = plane.first_chunk_mut::<LANES>() {
-        let mut sum = *pixels;
-        for (sum, light) in sum.iter_mut().zip(light) {
-            *sum = light.mul_add(strength, *sum);
-        }
-        *pixels = sum;
-    }
 }
 
 /// How the light of a pixel follows from its distances from the start, from the end and across, in spots.
@@ -288,33 +334,6 @@ impl Profile for EvenLong {
     #[inline(always)]
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
         greater(self.current * (0.5 + spot::half_written(spot::within(lesser(u, rest)))), 0.0) * spot::across(v)
-    }
-}
-
-/// Where eight neighbouring pixels lie, seen from the first one.
-struct Lanes {
-    /// In spots: distance from the start, from the end (both positive inside), and across.
-    u: f32,
-    rest: f32,
-    v: f32,
-    /// Growth of u for a pixel to the right, and fall of v.
-    step: [f32; 2],
-}
-
-impl Lanes {
-    /// Light of each pixel.
-    #[inline(always)]
-    fn light(&self, profile: &impl Profile) -> [f32; LANES] {
-        let mut lights = [0.0; LANES];
-        for (lane, value) in lights.iter_mut().enumerate() {
-            let right = lane as f32;
-            *value = profile.light(
-                right.mul_add(self.step[0], self.u),
-                right.mul_add(-self.step[0], self.rest),
-                right.mul_add(-self.step[1], self.v),
-            );
-        }
-        lights
     }
 }
 
