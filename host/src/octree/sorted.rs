@@ -106,12 +106,24 @@ impl Sorted {
             })
             .collect();
         let order: Vec<u32> = radix_sorted(keys).into_iter().map(|key| key as u32).collect();
-        let group = |some: &[u32]| {
-            let mut boxes = [Bounds::EMPTY; FAN];
-            boxes.iter_mut().zip(some).for_each(|(slot, &t)| *slot = bounds(&triangles[t as usize]));
-            Group::of(&boxes)
-        };
-        let mut levels: Vec<Vec<Group>> = vec![order.par_chunks(FAN).with_min_len(1024).map(group).collect()];
+        let boxes = order.par_iter().with_min_len(4096).map(|&t| bounds(&triangles[t as usize])).collect();
+        Sorted::filed(order, boxes)
+    }
+
+    /// Those of the triangles that `is_kept` accepts.
+    pub fn only(&self, is_kept: impl Fn(u32) -> bool) -> Sorted {
+        let kept = |place: &usize| is_kept(self.order[*place]);
+        let places: Vec<usize> = (0..self.order.len()).filter(kept).collect();
+        let boxes = places.iter().map(|&place| self.levels[0][place / FAN].at(place % FAN)).collect();
+        Sorted::filed(places.into_iter().map(|place| self.order[place]).collect(), boxes)
+    }
+
+    /// Triangles in order with their boxes.
+    fn filed(order: Vec<u32>, boxes: Vec<Bounds>) -> Sorted {
+        if order.is_empty() {
+            return Sorted::default();
+        }
+        let mut levels: Vec<Vec<Group>> = vec![boxes.par_chunks(FAN).with_min_len(1024).map(Group::of).collect()];
         while let Some(groups) = levels.last().filter(|groups| groups.len() > 1) {
             let around = |some: &[Group]| {
                 let mut boxes = [Bounds::EMPTY; FAN];

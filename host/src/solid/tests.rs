@@ -246,6 +246,52 @@ fn many_turned_cubes_keep_the_identities() {
     }
 }
 
+/// A random ball, with a hollow in every third.
+fn random_shell(random: &mut rand_pcg::Pcg64Mcg) -> Mesh {
+    let center = DVec3::from([0; 3].map(|_| random.random_range(-1.0..1.0)));
+    let shell = ball(center, random.random_range(0.7..1.3), 0.02);
+    if random.random_range(0..3) > 0 {
+        return shell;
+    }
+    let hollow = ball(center, 0.45, 0.02);
+    let less = Expression::difference(Expression::Operand(0), Expression::Operand(1));
+    evaluate(vec![&shell, &hollow], &less).mesh
+}
+
+/// An expression evaluated operation by operation, two operands at a time.
+fn by_steps(meshes: &[Mesh], expression: &Expression) -> Mesh {
+    let [one, two] = [0, 1].map(Expression::Operand);
+    let (parts, step): (&[Expression], _) = match expression {
+        Expression::Operand(k) => return meshes[*k].clone(),
+        Expression::Union(parts) => (parts, Expression::Union(vec![one, two])),
+        Expression::Intersection(parts) => (parts, Expression::Intersection(vec![one, two])),
+        Expression::Difference(parts) => (&parts[..], Expression::difference(one, two)),
+        Expression::SymmetricDifference(parts) => (parts, Expression::SymmetricDifference(vec![one, two])),
+    };
+    let parts: Vec<Mesh> = parts.iter().map(|part| by_steps(meshes, part)).collect();
+    parts.into_iter().reduce(|one, two| evaluate(vec![&one, &two], &step).mesh).unwrap()
+}
+
+#[test]
+fn what_is_buried_is_not_missed() {
+    let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(13);
+    for round in 0..12 {
+        let count = random.random_range(3..9);
+        let meshes: Vec<Mesh> = (0..count).map(|_| random_shell(&mut random)).collect();
+        let expression = match round {
+            0..4 => Expression::Union((0..count).map(Expression::Operand).collect()),
+            _ => random_expression(&mut random, 0..count),
+        };
+        let outcome = evaluate(meshes.iter().collect(), &expression);
+        let steps = by_steps(&meshes, &expression);
+        assert!(balanced(&outcome.mesh), "{round} {expression:?}");
+        for (one, other) in [(outcome.mesh.signed_volume(), steps.signed_volume()), (outcome.mesh.area(), steps.area())]
+        {
+            assert!((one - other).abs() < 1e-10 * (1.0 + other), "{round} {expression:?}: {one} {other}");
+        }
+    }
+}
+
 #[test]
 fn results_serve_as_operands() {
     let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(31);

@@ -4,10 +4,12 @@
 //! for all faces that share it; so no two faces ever disagree about their border.
 
 use super::Expression;
+use super::burial::Burial;
 use super::contact::{Common, Contact, Edge, Face, Feature, Key, crossing};
 use super::faces::{Faces, contacts, touching};
 use super::operand::Operands;
 use super::relevance::relevant;
+use super::standing::Standing;
 use super::union_find::UnionFind;
 use crate::numeric::implicit::{Definition, Point, coincide, compare, turn};
 use glam::DVec3;
@@ -117,7 +119,9 @@ impl Arrangement {
     ///
     /// Those that cannot matter to an expression are left out.
     pub fn new(operands: &Operands, expression: &Expression) -> Arrangement {
-        let mut pairs = operands.pairs();
+        let standing = Standing::outside(expression, operands.meshes().len());
+        let burial = Burial::of(operands, &standing);
+        let mut pairs = operands.pairs(|operand| burial.visible(operands, operand));
         let count = pairs.len() as u64;
         if !operands.are_simple {
             (0..operands.meshes().len() as u32).for_each(|operand| pairs.extend(operands.overlaps(operand)));
@@ -125,7 +129,7 @@ impl Arrangement {
         let mut faces = Faces::default();
         faces.add(operands, pairs.as_flattened());
         let mut contacts = contacts(&faces, &pairs);
-        let is_relevant = relevant(operands, expression, &touching(operands, &faces, &contacts));
+        let is_relevant = relevant(operands, &standing, &burial, &touching(operands, &faces, &contacts));
         // Names are given to what is left only: a vertex of a face that was left out is no vertex of the others.
         let matters: Vec<bool> = faces
             .triangles

@@ -8,7 +8,8 @@
 //! operands are in front of it and behind it, and a part is kept if the result is on one side only. Where divided faces
 //! lie beside each other in one plane, points that bound nothing are left out again. Only then are the points rounded.
 //!
-//! All operands of an expression are worked on at once: no intermediate result is made or rounded.
+//! All operands of an expression are worked on at once: no intermediate result is made or rounded. Where there are many,
+//! what lies deep inside others is found by cells first, and left out.
 //!
 //! # Semantics
 //! Results are regularised: the closure of the interior of the set. Where surfaces coincide, what counts is whether the
@@ -18,7 +19,9 @@
 //! n log n in the triangles near other operands, linear in the others.
 
 mod arrangement;
+mod burial;
 mod contact;
+mod core;
 mod faces;
 mod facets;
 mod merge;
@@ -30,6 +33,7 @@ mod result;
 mod rounding;
 mod simple;
 mod snapping;
+mod standing;
 mod triangulation;
 mod union_find;
 mod winding;

@@ -135,15 +135,17 @@ impl<'a> Operands<'a> {
     }
 
     /// Pairs of faces of different operands, by their lower triangles, of which the boxes of triangles touch.
-    pub fn pairs(&self) -> Vec<[u32; 2]> {
+    ///
+    /// - `sorted`: the triangles of an operand that are looked at.
+    pub fn pairs<'b>(&self, sorted: impl Fn(u32) -> &'b Sorted + Sync) -> Vec<[u32; 2]> {
         let count = self.meshes.len() as u32;
-        let touching = |&(i, j): &(u32, u32)| self.sorted(i).bounds().touches(self.sorted(j).bounds());
+        let touching = |&(i, j): &(u32, u32)| sorted(i).bounds().touches(sorted(j).bounds());
         let tasks: Vec<(u32, u32)> =
             (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).filter(touching).collect();
         let found: Vec<Vec<[u32; 2]>> = tasks
             .into_par_iter()
             .map(|(i, j)| {
-                let mut pairs = self.sorted(i).pairs(self.sorted(j));
+                let mut pairs = sorted(i).pairs(sorted(j));
                 let [one, two] = [i, j].map(|k| &self.operands[k as usize]);
                 if !(one.mates.is_empty() && two.mates.is_empty()) {
                     pairs.iter_mut().for_each(|pair| *pair = [one.first_half(pair[0]), two.first_half(pair[1])]);

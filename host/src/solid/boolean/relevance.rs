@@ -4,72 +4,20 @@
 //! operand or outside another, and the expression then no longer depends on the operand of the triangle, neither the
 //! triangle nor what it crosses need be looked at: on both sides of a line that it would draw the result is the same.
 
-use super::Expression;
+use super::burial::Burial;
 use super::operand::Operands;
+use super::standing::Standing;
 use super::union_find::UnionFind;
 use super::winding::winding;
+use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::{Definition, Point};
 use rayon::prelude::*;
 
-impl Expression {
-    /// Whether the set may still depend on an operand.
-    ///
-    /// - `known`: whether a point is in each operand, as far as that is known.
-    pub fn depends_on(&self, operand: usize, known: &[Option<bool>]) -> bool {
-        // A child decides if no other child has the value that settles all.
-        let among = |all: &[Expression], settled: bool| {
-            let mut settling = all.iter().filter(|e| e.value(known) == Some(settled));
-            match (settling.next(), settling.next()) {
-                (None, _) => all.iter().any(|e| e.depends_on(operand, known)),
-                (Some(only), None) => only.depends_on(operand, known),
-                _ => false,
-            }
-        };
-        match self {
-            Expression::Operand(index) => *index == operand,
-            Expression::Union(all) => among(all, true),
-            Expression::Intersection(all) => among(all, false),
-            Expression::Difference(both) => {
-                both[1].value(known) != Some(true) && both[0].depends_on(operand, known)
-                    || both[0].value(known) != Some(false) && both[1].depends_on(operand, known)
-            }
-            Expression::SymmetricDifference(all) => all.iter().any(|e| e.depends_on(operand, known)),
-        }
-    }
-
-    /// Whether the point is in the set, if that is known.
-    fn value(&self, known: &[Option<bool>]) -> Option<bool> {
-        let among = |all: &[Expression], settled: bool| {
-            let mut value = Some(!settled);
-            for e in all {
-                match e.value(known) {
-                    Some(v) if v == settled => return Some(settled),
-                    None => value = None,
-                    _ => {}
-                }
-            }
-            value
-        };
-        match self {
-            Expression::Operand(index) => known.get(*index).copied().unwrap_or(Some(false)),
-            Expression::Union(all) => among(all, true),
-            Expression::Intersection(all) => among(all, false),
-            Expression::Difference(both) => match (both[0].value(known), both[1].value(known)) {
-                (Some(false), _) | (_, Some(true)) => Some(false),
-                (Some(true), Some(false)) => Some(true),
-                _ => None,
-            },
-            Expression::SymmetricDifference(all) => {
-                all.iter().try_fold(false, |odd, e| e.value(known).map(|value| odd ^ value))
-            }
-        }
-    }
-}
-
 /// For each triangle, counted over all operands, whether it may matter.
 ///
-/// - `touching`: pairs of triangles of different operands that have a point in common.
-pub fn relevant(operands: &Operands, expression: &Expression, touching: &[[u32; 2]]) -> Vec<bool> {
+/// - `standing`: of a point outside all operands.
+/// - `touching`: pairs of triangles of different operands that have a point in common, none of them buried.
+pub fn relevant(operands: &Operands, standing: &Standing, burial: &Burial, touching: &[[u32; 2]]) -> Vec<bool> {
     let count = operands.meshes().len();
     if count < 3 {
         return vec![true; operands.triangle_count()];
@@ -86,7 +34,7 @@ pub fn relevant(operands: &Operands, expression: &Expression, touching: &[[u32; 
     let of_operand = |operand: u32| {
         let begin = touched.partition_point(|t| t.0 < operand);
         let end = touched.partition_point(|t| t.0 <= operand);
-        relevant_of(operands, expression, operand, &touched[begin..end])
+        relevant_of(operands, standing.clone(), burial, operand, &touched[begin..end])
     };
     let found: Vec<Vec<bool>> = (0..count as u32).into_par_iter().map(of_operand).collect();
     found.concat()
@@ -95,7 +43,13 @@ pub fn relevant(operands: &Operands, expression: &Expression, touching: &[[u32; 
 /// A triangle, an operand, and whether the triangle lies in it, if that is known.
 type Place = (u32, u32, Option<bool>);
 
-fn relevant_of(operands: &Operands, expression: &Expression, operand: u32, touched: &[(u32, u32, u32)]) -> Vec<bool> {
+fn relevant_of(
+    operands: &Operands,
+    mut standing: Standing,
+    burial: &Burial,
+    operand: u32,
+    touched: &[(u32, u32, u32)],
+) -> Vec<bool> {
     let mesh = operands.meshes()[operand as usize];
     let bounds = operands.sorted(operand).bounds();
     let near = |other: &u32| *other != operand && operands.sorted(*other).bounds().touches(bounds);
@@ -105,28 +59,28 @@ fn relevant_of(operands: &Operands, expression: &Expression, operand: u32, touch
         let begin = touched.partition_point(|t| t.1 < partner);
         let end = touched.partition_point(|t| t.1 <= partner);
         let touched = touched[begin..end].iter().map(|t| t.2);
-        known_places(operands, operand, partner, touched, |triangle, place| places.push((triangle, partner, place)));
+        let tell = |triangle, place| places.push((triangle, partner, place));
+        known_places(operands, burial, operand, partner, touched, tell);
     }
     places.par_sort_unstable_by_key(|&(triangle, partner, _)| (triangle, partner));
-    let mut known = vec![Some(false); operands.meshes().len()];
-    known[operand as usize] = None;
-    let mut answers = vec![expression.depends_on(operand as usize, &known); mesh.triangles.len()];
-    let mut last: (&[Place], bool) = (&[], answers.first().copied().unwrap_or(true));
+    standing.set(operand, None);
+    let first = operands.first_triangle(operand);
+    let is_seen = |triangle: u32| !burial.is_buried(first + triangle);
+    let depends = standing.depends_on(operand);
+    let mut answers: Vec<bool> = (0..mesh.triangles.len() as u32).map(|t| depends && is_seen(t)).collect();
     for group in places.chunk_by(|a, b| a.0 == b.0) {
-        // Neighbours are mostly alike.
-        if !group.iter().map(|&(_, partner, place)| (partner, place)).eq(last.0.iter().map(|t| (t.1, t.2))) {
-            group.iter().for_each(|&(_, partner, place)| known[partner as usize] = place);
-            last = (group, expression.depends_on(operand as usize, &known));
-            group.iter().for_each(|&(_, partner, _)| known[partner as usize] = Some(false));
-        }
-        answers[group[0].0 as usize] = last.1;
+        group.iter().for_each(|&(_, partner, place)| standing.set(partner, place));
+        answers[group[0].0 as usize] = standing.depends_on(operand);
+        group.iter().for_each(|&(_, partner, _)| standing.set(partner, Some(false)));
     }
     answers
 }
 
-/// Tells of the triangles of an operand near another whether they lie in that; it is not known of those that it touches.
+/// Tells of the triangles of an operand near another that are not buried whether they lie in that; it is not known of
+/// those that it touches, or that may touch what is buried of it.
 fn known_places(
     operands: &Operands,
+    burial: &Burial,
     operand: u32,
     other: u32,
     touched: impl Iterator<Item = u32>,
@@ -134,9 +88,12 @@ fn known_places(
 ) {
     let mesh = operands.meshes()[operand as usize];
     let mut near = Vec::new();
-    operands.sorted(operand).touching(operands.sorted(other).bounds(), |triangle| near.push(triangle));
     let mut is_touched = vec![false; mesh.triangles.len()];
     touched.for_each(|triangle| is_touched[triangle as usize] = true);
+    burial.visible(operands, operand).touching(operands.sorted(other).bounds(), |triangle| {
+        near.push(triangle);
+        is_touched[triangle as usize] |= burial.is_beside(Bounds::of(mesh.corners(triangle as usize)), other);
+    });
     let mut parts = UnionFind::new(mesh.vertices.len());
     for &triangle in near.iter().filter(|&&triangle| !is_touched[triangle as usize]) {
         let corners = mesh.triangles[triangle as usize];

@@ -1,0 +1,105 @@
+//! Triangles that lie so deep in other operands that they need not even be compared with others.
+//!
+//! In a union of many solids most of the surface of each lies deep inside others. A triangle in the [`Core`] of operands
+//! is known to lie in these; where the expression then no longer depends on its own operand, it is buried. What would
+//! cross it draws no line that matters: on both sides of that the result is the same.
+
+use super::core::Core;
+use super::operand::Operands;
+use super::standing::Standing;
+use crate::numeric::bounds::Bounds;
+use crate::octree::Sorted;
+use rayon::prelude::*;
+
+/// Which triangles are buried.
+#[derive(Default)]
+pub struct Burial {
+    /// For each triangle, counted over all operands; empty if none is.
+    is_buried: Vec<bool>,
+    /// Of each operand with buried triangles, the others by place; empty if there is none.
+    visible: Vec<Option<Sorted>>,
+    /// Of each operand, its cells, those marked that its buried triangles touch.
+    cores: Vec<Option<Core>>,
+}
+
+impl Burial {
+    /// Finds buried triangles. With two operands there are none.
+    ///
+    /// - `standing`: of a point outside all operands.
+    pub fn of(operands: &Operands, standing: &Standing) -> Burial {
+        let count = operands.meshes().len() as u32;
+        if count < 3 {
+            return Burial::default();
+        }
+        let mut cores: Vec<Option<Core>> =
+            (0..count).into_par_iter().map(|operand| Core::of(operands, operand)).collect();
+        let of_operand = |operand: u32| buried_of(operands, &cores, standing.clone(), operand);
+        let found: Vec<Vec<u32>> = (0..count).into_par_iter().map(of_operand).collect();
+        let mut is_buried = vec![false; operands.triangle_count()];
+        for (operand, found) in (0..count).zip(&found) {
+            found.iter().for_each(|t| is_buried[(operands.first_triangle(operand) + t) as usize] = true);
+        }
+        let visible = |(operand, found): (u32, &Vec<u32>)| {
+            let first = operands.first_triangle(operand);
+            let is_seen = |triangle| !is_buried[(first + triangle) as usize];
+            (!found.is_empty()).then(|| operands.sorted(operand).only(is_seen))
+        };
+        let visible = (0..count).into_par_iter().zip(&found).map(visible).collect();
+        cores.par_iter_mut().zip(found).enumerate().for_each(|(operand, (core, found))| {
+            let mesh = operands.meshes()[operand];
+            core.iter_mut()
+                .for_each(|core| found.iter().for_each(|&t| core.mark(Bounds::of(mesh.corners(t as usize)))));
+        });
+        Burial { is_buried, visible, cores }
+    }
+
+    /// Whether a triangle, counted over all operands, is buried.
+    pub fn is_buried(&self, triangle: u32) -> bool {
+        self.is_buried.get(triangle as usize).is_some_and(|is_buried| *is_buried)
+    }
+
+    /// The triangles of an operand that are not buried, by place.
+    pub fn visible<'a>(&'a self, operands: &'a Operands, operand: u32) -> &'a Sorted {
+        let visible = self.visible.get(operand as usize).and_then(|visible| visible.as_ref());
+        visible.unwrap_or_else(|| operands.sorted(operand))
+    }
+
+    /// Whether a box may touch a buried triangle of an operand.
+    pub fn is_beside(&self, bounds: Bounds, operand: u32) -> bool {
+        let core = self.cores.get(operand as usize).and_then(|core| core.as_ref());
+        core.is_some_and(|core| core.is_marked(bounds))
+    }
+}
+
+/// The buried triangles of an operand. Two that make one face are both buried, or neither.
+fn buried_of(operands: &Operands, cores: &[Option<Core>], mut standing: Standing, operand: u32) -> Vec<u32> {
+    // Without cells of its own it could not be told who is beside them.
+    if cores[operand as usize].is_none() {
+        return Vec::new();
+    }
+    let mesh = operands.meshes()[operand as usize];
+    let sorted = operands.sorted(operand);
+    let near = |other: &u32| *other != operand && operands.sorted(*other).bounds().touches(sorted.bounds());
+    standing.set(operand, None);
+    // A triangle, and an operand that holds it.
+    let mut held: Vec<(u32, u32)> = Vec::new();
+    for other in (0..operands.meshes().len() as u32).filter(near) {
+        standing.set(other, None);
+        let Some(core) = cores[other as usize].as_ref().filter(|core| !core.bounds().is_empty()) else { continue };
+        sorted.touching(core.bounds(), |triangle| {
+            if core.holds(Bounds::of(mesh.corners(triangle as usize))) {
+                held.push((triangle, other));
+            }
+        });
+    }
+    held.sort_unstable();
+    let mut is_buried = vec![false; mesh.triangles.len()];
+    for group in held.chunk_by(|a, b| a.0 == b.0) {
+        group.iter().for_each(|&(_, other)| standing.set(other, Some(true)));
+        is_buried[group[0].0 as usize] = !standing.depends_on(operand);
+        group.iter().for_each(|&(_, other)| standing.set(other, None));
+    }
+    let first = operands.first_triangle(operand);
+    let whole = |triangle: &u32| operands.halves(first + triangle).all(|half| is_buried[(half - first) as usize]);
+    (0..mesh.triangles.len() as u32).filter(|&triangle| is_buried[triangle as usize]).filter(whole).collect()
+}
