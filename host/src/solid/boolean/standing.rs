@@ -119,7 +119,7 @@ impl Standing {
         }
     }
 
-    /// Whether the set may still depend on an operand.
+    /// Whether the set may still depend on an operand of which nothing is known.
     pub fn depends_on(&self, operand: u32) -> bool {
         self.places[operand as usize].iter().any(|&place| self.decides(place as usize))
     }
@@ -188,7 +188,9 @@ mod tests {
                 for own in 0..4 {
                     let mut others = known;
                     others[own] = None;
+                    standing.set(own as u32, None);
                     let (depends, is_settled) = (standing.depends_on(own as u32), is_settled(&expression, own, others));
+                    standing.set(own as u32, known[own]);
                     assert!(depends || is_settled, "{expression:?} {known:?} {own}");
                     // The opposite holds where each operand occurs once, as mostly.
                     settled[usize::from(depends == is_settled)] += 1;
