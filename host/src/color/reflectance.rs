@@ -33,8 +33,8 @@ pub struct SmoothReflectance {
 pub struct Fit {
     /// The reflectance.
     pub reflectance: SmoothReflectance,
-    /// Distance from the colour that was asked for, in linear sRGB. Below 1e-7 for all colours of sRGB, most of them below 1e-13; greater for
-    /// colours that no surface has.
+    /// Distance from the colour that was asked for, in linear sRGB. Below 1e-7 for all colours of sRGB, most of them below
+    /// 1e-13; greater for colours that no surface has.
     pub error: f64,
 }
 

@@ -22,10 +22,9 @@ const LEAST_COSINE: f64 = 1e-9;
 /// Beckmann's or GGX's facets, exactly normalised at every incidence: D + (1 − E_L)(1 − E_V)(N·V) / (π (1 − E)).
 ///
 /// E_L is the integral of D for the light's direction, E its mean over the hemisphere, weighted with the cosine. The
-/// second term is reciprocal, and its integral is what D lost, 1 − E_L, to 1e-4 for roughness up to 1, and to 2e-4
-/// up to 10; never more. It
-/// says where the light goes only roughly: over the whole hemisphere. In a metal each further reflection has its own
-/// K: then the two terms are needed apart, see [`Compensated::parts`].
+/// second term is reciprocal, and its integral is what D lost, 1 − E_L, to 1e-4 for roughness up to 1, and to 2e-4 up to
+/// 10; never more. It says where the light goes only roughly: over the whole hemisphere. In a metal each further
+/// reflection has its own K: then the two terms are needed apart, see [`Compensated::parts`].
 ///
 /// # Source
 /// Kelemen and Szirmay-Kalos 2001; Kulla and Conty 2017. The table is ours.
@@ -44,8 +43,8 @@ pub struct Compensated {
 }
 
 impl Compensated {
-    /// With a roughness m, 1e-8..=1000, the same along x and y. Its table takes some tenths of a
-    /// second on two cores: keep what is made.
+    /// With a roughness m, 1e-8..=1000, the same along x and y. Its table takes some tenths of a second on two cores: keep
+    /// what is made.
     ///
     /// # Errors
     /// [`DistributionError::Roughness`].
