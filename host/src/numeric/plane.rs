@@ -44,6 +44,13 @@ impl Plane {
         is_clear.then(|| -height.signum())
     }
 
+    /// Which way the points turn, seen along an axis with the other two in cyclic order: 1.0 counter-clockwise, -1.0
+    /// clockwise, 0.0 where roundings leave a doubt.
+    pub fn facing(&self, axis: usize) -> f64 {
+        let is_clear = self.normal[axis].abs() > self.sizes[axis] * (4.0 * f64::EPSILON) + 1e-300;
+        if is_clear { self.normal[axis].signum() } else { 0.0 }
+    }
+
     /// On which side a point lies, exactly, as [`side`] tells.
     pub fn side(&self, point: DVec3) -> f64 {
         let [a, b, c] = self.corners;

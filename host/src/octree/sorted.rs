@@ -142,10 +142,16 @@ impl Sorted {
 
     /// Pairs of triangles, one of this set and one of another, whose boxes have a point in common, in a fixed order.
     pub fn pairs(&self, other: &Sorted) -> Vec<[u32; 2]> {
+        self.pairs_if(other, |_, _| true)
+    }
+
+    /// Those of [`Sorted::pairs`] that `keep` accepts.
+    pub fn pairs_if(&self, other: &Sorted, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let (Some(one), Some(two)) = (self.top(), other.top()) else { return Vec::new() };
         let under = |pair, found: &mut Vec<_>| self.pairs_under(other, pair, found);
         searched((one, two), under, |(one, two)| {
-            Some([self.order[one.index as usize], other.order[two.index as usize]])
+            let (a, b) = (self.order[one.index as usize], other.order[two.index as usize]);
+            keep(a, b).then_some([a, b])
         })
     }
 

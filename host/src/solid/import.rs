@@ -1,7 +1,7 @@
 //! From meshes to solids: what must hold is checked, what does no harm is put right.
 
 use super::Solid;
-use super::boolean::{Resolution, UnionFind, overlaps, resolve};
+use super::boolean::{Lattice, Resolution, UnionFind, overlaps, resolve};
 use crate::mesh::{Fault, Mesh};
 use crate::numeric::implicit::projection;
 use glam::DVec3;
@@ -46,13 +46,39 @@ pub enum SolidError {
     },
 }
 
+impl SolidError {
+    /// The same error of the mesh that was put on a lattice.
+    fn brought_back(mut self, lattice: &Lattice) -> SolidError {
+        match &mut self {
+            SolidError::Mesh(_) => {}
+            SolidError::NotClosed { edges, .. } => {
+                edges.iter_mut().flatten().for_each(|end| *end = lattice.place(*end));
+            }
+            SolidError::InsideOut { volume } => *volume = lattice.volume(*volume),
+            SolidError::Crossing { near, .. } => *near = lattice.place(*near),
+        }
+        self
+    }
+}
+
 fn list(edges: &[[DVec3; 2]]) -> String {
     edges.iter().map(|[a, b]| format!("{a} to {b}")).collect::<Vec<_>>().join(", ")
 }
 
 /// Checks and cleans a mesh. Where its surface crosses itself, that of what it bounds is given, and the error.
-pub fn imported(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
+///
+/// Coordinates below 2^-203 of the largest are rounded to 2^-256 of that.
+pub fn imported(mut mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
     mesh.validate()?;
+    let Some(lattice) = Lattice::of(std::iter::once(&mesh)) else { return imported_on_lattice(mesh) };
+    lattice.lay(&mut mesh);
+    let back = |error: SolidError| error.brought_back(&lattice);
+    let (mut solid, crossing) = imported_on_lattice(mesh).map_err(back)?;
+    lattice.bring_back(&mut solid.mesh);
+    Ok((Solid::of(solid.mesh), crossing.map(back)))
+}
+
+fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
     let mut mesh = without_collapsed(mesh);
     let sheets = check_edges(&mesh)?;
     dissolve(&mut mesh);

@@ -289,51 +289,6 @@ impl Contact {
     }
 }
 
-/// Whether two triangles with an area have more in common than corners, and the edge between two of these.
-pub fn overlap(one: [DVec3; 3], two: [DVec3; 3]) -> bool {
-    // Which corner of the first each corner of the second is.
-    let shared = two.map(|corner| one.iter().position(|&c| c == corner));
-    if shared.iter().all(Option::is_some) {
-        return true;
-    }
-    let is_own = |of: [DVec3; 3], corner: &DVec3| !of.contains(corner);
-    // Whether all of a triangle that is not common lies on one side of the other.
-    let is_beside = |plane: &Plane, corners: [DVec3; 3]| {
-        let mut sides = corners.iter().filter(|c| is_own(plane.corners, c)).map(|&corner| plane.rounded_side(corner));
-        let first = sides.next().flatten().filter(|side| *side != 0.0);
-        first.is_some() && sides.all(|side| side == first)
-    };
-    let plane = Plane::through(one);
-    if is_beside(&plane, two) || is_beside(&Plane::through(two), one) || are_apart_in_view(plane.normal, one, two) {
-        return false;
-    }
-    let names = [0, 1, 2].map(|k| shared[k].map_or(3 + k as u32, |own| own as u32));
-    let (Some(one), Some(two)) = (Face::new(0, [0, 1, 2], one), Face::new(1, names, two)) else { return false };
-    let contact = Contact::of(&one, &two);
-    contact.points.len() > 2
-        || contact.points.iter().any(|point| !matches!(point.features, [Feature::Corner(_), Feature::Corner(_)]))
-}
-
-/// Whether an edge of one of two triangles parts them where both are seen along an axis, so that they have no more in
-/// common than corners, and the edge between two of these.
-///
-/// Neighbours in one plane or nearly so, of which a division is full, mostly are.
-///
-/// - `normal`: of the first, to see it from the side where it is largest.
-fn are_apart_in_view(normal: DVec3, one: [DVec3; 3], two: [DVec3; 3]) -> bool {
-    let normal = normal.abs();
-    let axis = if normal.max_element() == normal.x { 0 } else { if normal.y >= normal.z { 1 } else { 2 } };
-    let parts = |one: [DVec3; 3], two: [DVec3; 3]| {
-        let facing = flat_turn(axis, one[0], one[1], one[2]);
-        facing != 0.0
-            && [(0, 1), (1, 2), (2, 0)].into_iter().any(|(p, q)| {
-                let (p, q) = (one[p], one[q]);
-                two.into_iter().all(|c| c == p || c == q || flat_turn(axis, p, q, c) * facing < 0.0)
-            })
-    };
-    parts(one, two) || parts(two, one)
-}
-
 /// The name of the point where two edges cross.
 pub fn crossing(one: Edge, two: Edge) -> Key {
     if one < two { Key::Edges(one, two) } else { Key::Edges(two, one) }

@@ -11,6 +11,10 @@
 //! All operands of an expression are worked on at once: no intermediate result is made or rounded. Where there are many,
 //! what lies deep inside others is found by cells first, and left out.
 //!
+//! # Numbers
+//! Exact is what lies within 2^-203 of the largest coordinate of all operands, whatever that is; smaller coordinates are
+//! rounded to 2^-256 of it, see [`lattice`].
+//!
 //! # Semantics
 //! Results are regularised: the closure of the interior of the set. Where surfaces coincide, what counts is whether the
 //! result lies on one side of them only; so two cubes with a common face unite without it, and a solid less itself is empty.
@@ -24,8 +28,10 @@ mod contact;
 mod core;
 mod faces;
 mod facets;
+mod lattice;
 mod merge;
 mod operand;
+mod overlap;
 mod parts;
 mod quads;
 mod relevance;
@@ -39,6 +45,7 @@ mod union_find;
 mod winding;
 
 pub use arrangement::Counts;
+pub(super) use lattice::Lattice;
 pub(crate) use contact::{Contact, Face, Key};
 pub(super) use operand::{Operand, overlaps};
 pub(super) use quads::mates;
@@ -87,6 +94,14 @@ impl Expression {
 
 /// Evaluates an expression over meshes that bound solids simply.
 pub(super) fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Outcome {
+    match Lattice::of(solids.iter().map(|solid| solid.mesh)) {
+        Some(lattice) => lattice.evaluate(&solids, expression),
+        None => evaluate_on_lattice(solids, expression),
+    }
+}
+
+/// The same for meshes with coordinates that predicates can be exact with.
+fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Outcome {
     let operands = Operands::new(solids, true);
     let Work { outcome, must_settle, .. } = work(&operands, expression);
     if must_settle { simple::settled(outcome) } else { outcome }

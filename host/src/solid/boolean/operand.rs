@@ -1,6 +1,7 @@
 //! The solids of an operation, with their vertices and triangles counted through.
 
-use super::contact::{Face, overlap};
+use super::contact::Face;
+use super::overlap::{Tile, overlap};
 use super::quads::ring;
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
@@ -172,6 +173,6 @@ impl<'a> Operands<'a> {
 ///
 /// - `sorted`: the triangles by place.
 pub fn overlaps(mesh: &Mesh, sorted: &Sorted) -> Vec<[u32; 2]> {
-    let corners = |triangle: u32| mesh.corners(triangle as usize);
-    sorted.pairs_within(|a, b| overlap(corners(a), corners(b)))
+    let tile = |triangle: u32| Tile::new(mesh.triangles[triangle as usize], mesh.corners(triangle as usize));
+    sorted.pairs_within(|a, b| overlap(&tile(a), &tile(b)))
 }

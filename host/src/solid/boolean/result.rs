@@ -91,7 +91,8 @@ pub fn assemble(
         is_whole[(operands.first_triangle(operand) + triangle) as usize]
             && parts.of_vertex(vertex + operands.first_vertex(operand)) != Fate::Dropped
     };
-    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, is_kept);
+    let number = |vertex: u32| of_vertex[vertex as usize];
+    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, number, is_kept);
     (outcome, crosses)
 }
 
@@ -150,6 +151,16 @@ impl Tables {
             normals: all(|mesh| !mesh.corner_normals.is_empty()),
             parameters: all(|mesh| !mesh.corner_parameters.is_empty()),
             surfaces,
+        }
+    }
+
+    /// Gives the triangles of a result the surfaces of their sources.
+    pub fn name_surfaces(&self, outcome: &mut Outcome, meshes: &[&Mesh]) {
+        if !self.surfaces.is_empty() {
+            let name = |&[operand, triangle]: &[u32; 2]| {
+                self.surfaces[operand as usize] + meshes[operand as usize].surfaces[triangle as usize]
+            };
+            outcome.mesh.surfaces = outcome.sources.iter().map(name).collect();
         }
     }
 
