@@ -15,6 +15,8 @@ use wide::f64x4;
 
 /// Boxes under a box.
 const FAN: usize = 4;
+/// The lanes of all of them, a bit for each.
+const ALL: u8 = (1 << FAN) - 1;
 /// Digits of the codes by which triangles are sorted.
 const DIGITS: u32 = 10;
 /// Pairs of boxes from which on the search goes on in parallel.
@@ -27,6 +29,22 @@ pub struct Sorted {
     order: Vec<u32>,
     /// Boxes by level, some at a time: those of triangles, in order, then those around each group of the level before.
     levels: Vec<Vec<Group>>,
+}
+
+/// Some of the triangles that were sorted.
+#[derive(Clone, Debug)]
+pub struct Part<'a> {
+    sorted: &'a Sorted,
+    /// By level, of each group of boxes, the lanes that hold some of them, a bit for each; empty for all.
+    lanes: Vec<Vec<u8>>,
+}
+
+impl Part<'_> {
+    #[inline]
+    fn touching_under(&self, place: Place, near: Bounds) -> impl Iterator<Item = Place> + use<> {
+        let lanes = self.lanes.get(place.level as usize - 1).map_or(ALL, |level| level[place.index as usize]);
+        self.sorted.touching_among(place, near, lanes)
+    }
 }
 
 /// As many boxes as are under a box, coordinate by coordinate, to be compared at once. Where there are fewer, the last are
@@ -47,6 +65,7 @@ impl Group {
         Group { min: coordinates(|bounds| bounds.min), max: coordinates(|bounds| bounds.max) }
     }
 
+    #[inline]
     fn at(&self, lane: usize) -> Bounds {
         let coordinate = |of: &[f64x4; 3]| DVec3::from([0, 1, 2].map(|axis| of[axis].as_array()[lane]));
         Bounds { min: coordinate(&self.min), max: coordinate(&self.max) }
@@ -57,17 +76,18 @@ impl Group {
         (0..FAN).fold(Bounds::EMPTY, |all, lane| all.union(self.at(lane)))
     }
 
-    /// The boxes that have a point in common with another.
-    fn touching(&self, other: Bounds) -> impl Iterator<Item = usize> + use<> {
+    /// The boxes of some lanes, a bit for each, that have a point in common with another, the last first.
+    #[inline]
+    fn touching(&self, other: Bounds, lanes: u8) -> impl Iterator<Item = usize> + use<> {
         let apart = |axis: usize| {
             self.min[axis].simd_gt(f64x4::splat(other.max[axis]))
                 | self.max[axis].simd_lt(f64x4::splat(other.min[axis]))
         };
-        let mut left = !(apart(0) | apart(1) | apart(2)).to_bitmask() & ((1 << FAN) - 1);
+        let mut left = !(apart(0) | apart(1) | apart(2)).to_bitmask() & u32::from(lanes);
         std::iter::from_fn(move || {
-            let lane = (left != 0).then_some(left.trailing_zeros() as usize);
-            left &= left.wrapping_sub(1);
-            lane
+            let lane = left.checked_ilog2()?;
+            left ^= 1 << lane;
+            Some(lane as usize)
         })
     }
 }
@@ -140,18 +160,40 @@ impl Sorted {
         self.levels.last().map_or(Bounds::EMPTY, |top| top[0].union())
     }
 
-    /// Pairs of triangles, one of this set and one of another, whose boxes have a point in common, in a fixed order.
-    pub fn pairs(&self, other: &Sorted) -> Vec<[u32; 2]> {
-        self.pairs_if(other, |_, _| true)
+    /// All of them.
+    pub fn all(&self) -> Part<'_> {
+        Part { sorted: self, lanes: Vec::new() }
     }
 
-    /// Those of [`Sorted::pairs`] that `keep` accepts.
-    pub fn pairs_if(&self, other: &Sorted, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
-        let (Some(one), Some(two)) = (self.top(), other.top()) else { return Vec::new() };
-        let under = |pair, found: &mut Vec<_>| self.pairs_under(other, pair, found);
-        searched((one, two), under, |(one, two)| {
-            let (a, b) = (self.order[one.index as usize], other.order[two.index as usize]);
-            keep(a, b).then_some([a, b])
+    /// Those of the triangles that `is_in` accepts, to be found among all.
+    pub fn part(&self, is_in: impl Fn(u32) -> bool) -> Part<'_> {
+        let lanes = |all: &[bool]| all.iter().rev().fold(0, |lanes, is_in| lanes << 1 | u8::from(*is_in));
+        let mut of_level: Vec<bool> = self.order.iter().map(|&triangle| is_in(triangle)).collect();
+        let mut levels = Vec::new();
+        for _ in &self.levels {
+            let level: Vec<u8> = of_level.chunks(FAN).map(lanes).collect();
+            of_level = level.iter().map(|lanes| *lanes != 0).collect();
+            levels.push(level);
+        }
+        Part { sorted: self, lanes: levels }
+    }
+
+    /// Pairs of triangles, one of this set and one of another, whose boxes have a point in common, in a fixed order.
+    pub fn pairs(&self, other: &Sorted) -> Vec<[u32; 2]> {
+        self.pairs_if(&other.all(), |_, _| true)
+    }
+
+    /// Such pairs with triangles of a part of another set that `keep` accepts.
+    pub fn pairs_if(&self, part: &Part, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
+        let (Some(one), Some(two)) = (self.top(), part.sorted.top()) else { return Vec::new() };
+        let open = |pair, found: &mut Vec<_>| self.open(part, pair, |pair| found.push(pair));
+        searched((one, two), open, |pair, found| {
+            self.descend(part, pair, &mut |(one, two)| {
+                let (a, b) = (self.order[one.index as usize], part.sorted.order[two.index as usize]);
+                if keep(a, b) {
+                    found.push([a, b]);
+                }
+            });
         })
     }
 
@@ -159,23 +201,29 @@ impl Sorted {
     /// fixed order.
     pub fn pairs_within(&self, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let Some(top) = self.top() else { return Vec::new() };
-        let under = |pair, found: &mut Vec<_>| self.own_pairs_under(pair, found);
-        searched((top, top), under, |(one, two)| {
-            let (a, b) = (self.order[one.index as usize], self.order[two.index as usize]);
-            (one.index != two.index && keep(a.min(b), a.max(b))).then(|| [a.min(b), a.max(b)])
+        let open = |pair, found: &mut Vec<_>| self.open_own(pair, |pair| found.push(pair));
+        searched((top, top), open, |pair, found| {
+            self.descend_own(pair, &mut |(one, two)| {
+                let (a, b) = (self.order[one.index as usize], self.order[two.index as usize]);
+                if one.index != two.index && keep(a.min(b), a.max(b)) {
+                    found.push([a.min(b), a.max(b)]);
+                }
+            });
         })
     }
 
     /// Calls for every triangle whose box touches another.
     pub fn touching(&self, near: Bounds, mut visit: impl FnMut(u32)) {
-        let mut stack = Vec::with_capacity(64);
-        stack.extend(self.top());
-        while let Some(place) = stack.pop() {
-            if place.level == 0 {
-                visit(self.order[place.index as usize]);
-            } else {
-                stack.extend(self.touching_under(place, near));
-            }
+        if let Some(top) = self.top() {
+            self.descend_touching(top, near, &mut visit);
+        }
+    }
+
+    fn descend_touching(&self, place: Place, near: Bounds, visit: &mut impl FnMut(u32)) {
+        if place.level == 0 {
+            visit(self.order[place.index as usize]);
+        } else {
+            self.touching_under(place, near).for_each(|place| self.descend_touching(place, near, visit));
         }
     }
 
@@ -196,6 +244,7 @@ impl Sorted {
             let first = stack.len();
             let below = self.touching_under(place, self.at(place));
             stack.extend(below.map(|place| (distance(self.at(place)), place)));
+            stack[first..].reverse();
             stack[first..].sort_by(|(a, _), (b, _)| b.total_cmp(a));
         }
     }
@@ -205,6 +254,7 @@ impl Sorted {
         (!self.levels.is_empty()).then_some(Place { level: self.levels.len() as u32, index: 0 })
     }
 
+    #[inline]
     fn at(&self, place: Place) -> Bounds {
         let index = place.index as usize;
         match self.levels.get(place.level as usize) {
@@ -213,62 +263,85 @@ impl Sorted {
         }
     }
 
-    /// The boxes under a box that touch another.
+    /// The boxes under a box that touch another, the last first.
+    #[inline]
     fn touching_under(&self, place: Place, near: Bounds) -> impl Iterator<Item = Place> + use<> {
+        self.touching_among(place, near, ALL)
+    }
+
+    /// Those of some lanes, a bit for each.
+    #[inline]
+    fn touching_among(&self, place: Place, near: Bounds, lanes: u8) -> impl Iterator<Item = Place> + use<> {
         let level = place.level - 1;
-        let lanes = self.levels[level as usize][place.index as usize].touching(near);
+        let lanes = self.levels[level as usize][place.index as usize].touching(near, lanes);
         lanes.map(move |lane| Place { level, index: place.index * FAN as u32 + lane as u32 })
     }
 
-    /// Finds the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch.
-    fn pairs_under(&self, other: &Sorted, (one, two): Pair, found: &mut Vec<Pair>) {
+    /// Visits the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch.
+    #[inline]
+    fn open(&self, other: &Part, (one, two): Pair, mut visit: impl FnMut(Pair)) {
         match one.level.cmp(&two.level) {
-            Ordering::Greater => self.touching_under(one, other.at(two)).for_each(|one| found.push((one, two))),
-            Ordering::Less => other.touching_under(two, self.at(one)).for_each(|two| found.push((one, two))),
+            Ordering::Greater => self.touching_under(one, other.sorted.at(two)).for_each(|one| visit((one, two))),
+            Ordering::Less => other.touching_under(two, self.at(one)).for_each(|two| visit((one, two))),
             Ordering::Equal => {
-                for one in self.touching_under(one, other.at(two)) {
-                    other.touching_under(two, self.at(one)).for_each(|two| found.push((one, two)));
+                for one in self.touching_under(one, other.sorted.at(two)) {
+                    other.touching_under(two, self.at(one)).for_each(|two| visit((one, two)));
                 }
             }
         }
     }
 
-    /// Finds the pairs under two boxes of one level, the second not before the first, that touch; the second never before
+    /// Visits the pairs under two boxes of one level, the second not before the first, that touch; the second never before
     /// the first.
-    fn own_pairs_under(&self, (one, two): Pair, found: &mut Vec<Pair>) {
+    #[inline]
+    fn open_own(&self, (one, two): Pair, mut visit: impl FnMut(Pair)) {
         for a in self.touching_under(one, self.at(two)) {
-            self.touching_under(two, self.at(a)).filter(|b| b.index >= a.index).for_each(|b| found.push((a, b)));
+            self.touching_under(two, self.at(a)).filter(|b| b.index >= a.index).for_each(|b| visit((a, b)));
         }
     }
+
+    /// Visits the pairs of triangles under a pair of boxes.
+    fn descend(&self, other: &Part, pair: Pair, visit: &mut impl FnMut(Pair)) {
+        if is_open(&pair) { self.open(other, pair, |pair| self.descend(other, pair, visit)) } else { visit(pair) }
+    }
+
+    /// Visits the pairs of triangles under two boxes of one level, the second not before the first.
+    fn descend_own(&self, pair: Pair, visit: &mut impl FnMut(Pair)) {
+        if is_open(&pair) { self.open_own(pair, |pair| self.descend_own(pair, visit)) } else { visit(pair) }
+    }
+}
+
+/// Whether a pair is not of two triangles.
+fn is_open((one, two): &Pair) -> bool {
+    one.level + two.level > 0
 }
 
 /// Searches from a pair of boxes on, in a fixed order.
 ///
-/// - `under`: finds the pairs under a pair.
-/// - `take`: what to keep of a pair of triangles.
+/// - `open`: finds the pairs under a pair, the last first.
+/// - `below`: finds what to keep of the pairs of triangles under a pair.
 fn searched(
     top: Pair,
-    under: impl Fn(Pair, &mut Vec<Pair>) + Sync,
-    take: impl Fn(Pair) -> Option<[u32; 2]> + Sync,
+    open: impl Fn(Pair, &mut Vec<Pair>) + Sync,
+    below: impl Fn(Pair, &mut Vec<[u32; 2]>) + Sync,
 ) -> Vec<[u32; 2]> {
-    let is_open = |(one, two): &Pair| one.level + two.level > 0;
     // Breadth first, until there is work for many threads.
     let mut tasks = vec![top];
     while !tasks.is_empty() && tasks.len() < TASKS && tasks.iter().any(is_open) {
-        let mut next = Vec::new();
-        tasks.into_iter().for_each(|task| if is_open(&task) { under(task, &mut next) } else { next.push(task) });
+        let mut next = Vec::with_capacity(4 * tasks.len());
+        for task in tasks {
+            let first = next.len();
+            if is_open(&task) { open(task, &mut next) } else { next.push(task) }
+            next[first..].reverse();
+        }
         tasks = next;
     }
-    let below = |task: Pair| {
+    let found = |task: Pair| {
         let mut pairs = Vec::new();
-        let mut stack = Vec::with_capacity(256);
-        stack.push(task);
-        while let Some(task) = stack.pop() {
-            if is_open(&task) { under(task, &mut stack) } else { pairs.extend(take(task)) }
-        }
+        below(task, &mut pairs);
         pairs
     };
-    let found: Vec<Vec<[u32; 2]>> = tasks.into_par_iter().map(below).collect();
+    let found: Vec<Vec<[u32; 2]>> = tasks.into_par_iter().map(found).collect();
     found.concat()
 }
 
@@ -348,5 +421,10 @@ mod tests {
         found.sort_unstable();
         assert_eq!(found, (0..1000).filter(touches).collect::<Vec<u32>>());
         assert!(found.len() > 5 && sorted.bounds() == Bounds::of(vertices));
+        let probe = Sorted::new(&[near.min, near.max], &[[0, 1, 1]]);
+        let odd = sorted.part(|triangle| triangle % 7 == 1);
+        let mut some = probe.pairs_if(&odd, |_, triangle| triangle % 2 == 0);
+        some.sort_unstable();
+        assert!(some.into_iter().map(|[_, t]| t).eq(found.into_iter().filter(|t| t % 14 == 8)));
     }
 }

@@ -8,6 +8,7 @@ use super::arrangement::Arrangement;
 use super::facets::{Facet, Region};
 use super::operand::Operands;
 use super::parts::{Fate, Parts};
+use super::sides::{Sides, of_triangles};
 use super::union_find::UnionFind;
 use crate::numeric::implicit::side;
 use rayon::prelude::*;
@@ -69,17 +70,11 @@ struct Plan {
 
 impl Plan {
     fn new(operands: &Operands, arrangement: &Arrangement, kept: &[Piece]) -> Plan {
-        let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * kept.len());
-        for (piece, index) in kept.iter().zip(0..) {
-            for k in 0..3 {
-                let (a, b) = (piece.corners[k], piece.corners[(k + 1) % 3]);
-                sides.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), index));
-            }
-        }
-        sides.par_sort_unstable();
+        let corners = kept.iter().map(|piece| piece.corners);
+        let sides = Sides::new(arrangement.points.len(), of_triangles(corners, 0));
         let mut regions = UnionFind::new(kept.len());
-        for group in sides.chunk_by(|a, b| a.0 == b.0) {
-            if let [one, two] = group
+        for (_, beside) in sides.edges() {
+            if let [one, two] = beside
                 && are_one(operands, arrangement, &kept[one.1 as usize], &kept[two.1 as usize])
             {
                 regions.join(one.1, two.1);
@@ -100,12 +95,12 @@ impl Plan {
                 }
             }
         }
-        for group in sides.chunk_by(|a, b| a.0 == b.0) {
-            let is_inner = matches!(group, [one, two] if regions.find(one.1) == regions.find(two.1));
+        for (ends, beside) in sides.edges() {
+            let is_inner = matches!(beside, [one, two] if regions.find(one.1) == regions.find(two.1));
             // A border of one region with itself, or of several pieces, stays as it is.
-            let weight = if is_inner { 0 } else { if group.len() == 2 { 1 } else { 3 } };
-            for point in [group[0].0 >> 32, group[0].0 & 0xffff_ffff] {
-                if let Some((.., borders)) = around.get_mut(&(point as u32)) {
+            let weight = if is_inner { 0 } else { if beside.len() == 2 { 1 } else { 3 } };
+            for point in ends {
+                if let Some((.., borders)) = around.get_mut(&point) {
                     *borders += weight;
                 }
             }

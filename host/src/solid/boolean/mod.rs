@@ -37,6 +37,7 @@ mod quads;
 mod relevance;
 mod result;
 mod rounding;
+mod sides;
 mod simple;
 mod snapping;
 mod standing;

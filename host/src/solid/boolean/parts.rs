@@ -3,6 +3,7 @@
 use super::arrangement::Arrangement;
 use super::facets::Facet;
 use super::operand::Operands;
+use super::sides::{Sides, of_triangles};
 use super::union_find::UnionFind;
 use super::winding::winding;
 use crate::numeric::implicit::{Definition, Point, turn};
@@ -72,8 +73,7 @@ impl Parts {
             let first = operands.first_vertex(operand as u32);
             let whole = &is_whole[operands.first_triangle(operand as u32) as usize..];
             for (triangle, _) in mesh.triangles.iter().zip(whole).filter(|(_, whole)| **whole) {
-                nodes.join(triangle[0] + first, triangle[1] + first);
-                nodes.join(triangle[1] + first, triangle[2] + first);
+                nodes.join_three(triangle.map(|vertex| vertex + first));
             }
         }
         let free = |point: u32| {
@@ -130,16 +130,9 @@ fn join_neighbours(nodes: &mut UnionFind, operands: &Operands, arrangement: &Arr
         let cover = |index: u32| facets[(index - first) as usize].cover().map(|c| (operand(c.face), c.is_along));
         cover(one).eq(cover(two))
     };
-    let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * facets.len());
-    for (facet, index) in facets.iter().zip(first..) {
-        for k in 0..3 {
-            let (a, b) = (facet.corners[k], facet.corners[(k + 1) % 3]);
-            sides.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), index));
-        }
-    }
-    sides.par_sort_unstable();
-    for group in sides.chunk_by(|a, b| a.0 == b.0) {
-        if let [one, two] = group
+    let sides = Sides::new(arrangement.points.len(), of_triangles(facets.iter().map(|facet| facet.corners), first));
+    for (_, beside) in sides.edges() {
+        if let [one, two] = beside
             && are_alike(one.1, two.1)
         {
             nodes.join(one.1, two.1);

@@ -5,6 +5,7 @@
 
 use super::contact::Face;
 use super::operand::NONE;
+use super::sides::Sides;
 use crate::mesh::Mesh;
 use rayon::prelude::*;
 
@@ -13,21 +14,19 @@ use rayon::prelude::*;
 ///
 /// Two triangles make one only across a side that is the longest of both.
 pub fn mates(mesh: &Mesh) -> Vec<u32> {
-    // The longest side of each triangle as one number.
+    // The longest side of each triangle.
     let longest = |triangle: usize| {
         let corners = mesh.corners(triangle);
         let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
         let k = if length(0) >= length(1) { 0 } else { 1 };
         let k = if length(k) >= length(2) { k } else { 2 };
-        let [a, b] = [k, (k + 1) % 3].map(|k| u64::from(mesh.triangles[triangle][k]));
-        (a.min(b) << 32 | a.max(b), triangle as u32)
+        [k, (k + 1) % 3].map(|k| mesh.triangles[triangle][k])
     };
-    let mut sides: Vec<(u64, u32)> =
-        (0..mesh.triangles.len()).into_par_iter().with_min_len(4096).map(longest).collect();
-    sides.par_sort_unstable();
+    let longest: Vec<[u32; 2]> = (0..mesh.triangles.len()).into_par_iter().with_min_len(4096).map(longest).collect();
+    let sides = Sides::new(mesh.vertices.len(), longest.iter().copied().zip(0..));
     let mut mates = Vec::new();
-    for pair in sides.chunk_by(|a, b| a.0 == b.0) {
-        if let &[(_, one), (_, two)] = pair
+    for (_, beside) in sides.edges() {
+        if let &[(_, one), (_, two)] = beside
             && is_face(mesh, one, two)
         {
             mates.resize(mesh.triangles.len(), NONE);

@@ -6,7 +6,7 @@ use super::facets::Facet;
 use super::merge::pieces;
 use super::operand::Operands;
 use super::parts::{Fate, Parts};
-use super::rounding;
+use super::rounding::{self, Kept};
 use crate::mesh::Mesh;
 use crate::numeric::triangle;
 use glam::DVec3;
@@ -36,6 +36,7 @@ pub fn assemble(
     let tables = Tables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
+    let mut is_kept = vec![false; operands.triangle_count()];
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let operand = operand as u32;
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
@@ -55,6 +56,7 @@ pub fn assemble(
                 }
                 *number
             });
+            is_kept[first as usize + index] = true;
             outcome.push(corners, fate, [operand, index as u32]);
             tables.copy(&mut outcome.mesh, mesh, operand, index, fate);
         }
@@ -86,13 +88,7 @@ pub fn assemble(
         let mesh = operands.meshes()[operand as usize];
         tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
-    let is_kept = |operand: u32, triangle: u32| {
-        let vertex = operands.meshes()[operand as usize].triangles[triangle as usize][0];
-        is_whole[(operands.first_triangle(operand) + triangle) as usize]
-            && parts.of_vertex(vertex + operands.first_vertex(operand)) != Fate::Dropped
-    };
-    let number = |vertex: u32| of_vertex[vertex as usize];
-    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, number, is_kept);
+    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &Kept { is_kept, of_vertex });
     (outcome, crosses)
 }
 

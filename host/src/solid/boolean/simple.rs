@@ -5,6 +5,7 @@
 
 use super::operand::{Operand, Operands, overlaps};
 use super::result::Outcome;
+use super::sides::Sides;
 use super::snapping::snapped;
 use super::union_find::UnionFind;
 use super::{Expression, Work, work};
@@ -12,7 +13,6 @@ use crate::mesh::Mesh;
 use crate::octree::Sorted;
 use crate::solid::import::is_closed;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// What counts as near when a surface is drawn together, in units in the last place, one attempt after the other.
 const ROUNDINGS: [f64; 4] = [2.0, 16.0, 128.0, 1024.0];
@@ -130,19 +130,13 @@ fn overlapping(mesh: &Mesh) -> Vec<[u32; 2]> {
 
 /// The mesh with vertices of their own for all that is not joined by edges of two triangles.
 fn separated(mesh: &Mesh) -> Mesh {
-    let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
-    for (t, triangle) in mesh.triangles.iter().zip(0..) {
-        for k in 0..3 {
-            let (a, b) = (u64::from(t[k]), u64::from(t[(k + 1) % 3]));
-            sides.push((a.min(b) << 32 | a.max(b), 3 * triangle + k as u32));
-        }
-    }
-    sides.par_sort_unstable();
+    let of_triangle = |(&[a, b, c], k): (&[u32; 3], u32)| [([a, b], 3 * k), ([b, c], 3 * k + 1), ([c, a], 3 * k + 2)];
+    let sides = Sides::new(mesh.vertices.len(), mesh.triangles.iter().zip(0..).flat_map(of_triangle));
     let next = |corner: u32| if corner % 3 == 2 { corner - 2 } else { corner + 1 };
     let vertex = |corner: u32| mesh.triangles[corner as usize / 3][corner as usize % 3];
     let mut corners = UnionFind::new(3 * mesh.triangles.len());
-    for group in sides.chunk_by(|a, b| a.0 == b.0) {
-        if let &[(_, one), (_, two)] = group
+    for (_, beside) in sides.edges() {
+        if let &[(_, one), (_, two)] = beside
             && vertex(one) != vertex(two)
         {
             corners.join(one, next(two));

@@ -35,6 +35,15 @@ impl UnionFind {
         member
     }
 
+    /// Joins the sets of three numbers.
+    pub fn join_three(&mut self, [one, two, three]: [u32; 3]) {
+        let [one, two, three] = [self.find(one), self.find(two), self.find(three)];
+        if one != two || two != three {
+            let lowest = one.min(two).min(three);
+            [one, two, three].into_iter().for_each(|root| self.parent[root as usize] = lowest);
+        }
+    }
+
     /// Joins the sets of two numbers.
     pub fn join(&mut self, one: u32, two: u32) {
         let (one, two) = (self.find(one), self.find(two));
