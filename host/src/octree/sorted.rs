@@ -10,7 +10,6 @@ use super::{LocationalCode, MAX_DEPTH};
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::cmp::Ordering;
 use wide::f64x4;
 
 /// Boxes under a box.
@@ -40,10 +39,10 @@ pub struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// The lanes under a box.
     #[inline]
-    fn touching_under(&self, place: Place, near: Bounds) -> impl Iterator<Item = Place> + use<> {
-        let lanes = self.lanes.get(place.level as usize - 1).map_or(ALL, |level| level[place.index as usize]);
-        self.sorted.touching_among(place, near, lanes)
+    fn lanes(&self, place: Place) -> u8 {
+        self.lanes.get(place.level as usize - 1).map_or(ALL, |level| level[place.index as usize])
     }
 }
 
@@ -65,7 +64,7 @@ impl Group {
         Group { min: coordinates(|bounds| bounds.min), max: coordinates(|bounds| bounds.max) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, lane: usize) -> Bounds {
         let coordinate = |of: &[f64x4; 3]| DVec3::from([0, 1, 2].map(|axis| of[axis].as_array()[lane]));
         Bounds { min: coordinate(&self.min), max: coordinate(&self.max) }
@@ -77,7 +76,7 @@ impl Group {
     }
 
     /// The boxes of some lanes, a bit for each, that have a point in common with another, the last first.
-    #[inline]
+    #[inline(always)]
     fn touching(&self, other: Bounds, lanes: u8) -> impl Iterator<Item = usize> + use<> {
         let apart = |axis: usize| {
             self.min[axis].simd_gt(f64x4::splat(other.max[axis]))
@@ -97,6 +96,14 @@ impl Group {
 struct Place {
     level: u32,
     index: u32,
+}
+
+impl Place {
+    /// The place under it in a lane.
+    #[inline]
+    fn under(self, lane: usize) -> Place {
+        Place { level: self.level - 1, index: self.index * FAN as u32 + lane as u32 }
+    }
 }
 
 /// Two boxes.
@@ -186,9 +193,11 @@ impl Sorted {
     /// Such pairs with triangles of a part of another set that `keep` accepts.
     pub fn pairs_if(&self, part: &Part, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let (Some(one), Some(two)) = (self.top(), part.sorted.top()) else { return Vec::new() };
-        let open = |pair, found: &mut Vec<_>| self.open(part, pair, |pair| found.push(pair));
+        let open = |pair: Pair, found: &mut Vec<_>| {
+            self.open(part, pair, part.sorted.at(pair.1), |pair, _| found.push(pair));
+        };
         searched((one, two), open, |pair, found| {
-            self.descend(part, pair, &mut |(one, two)| {
+            self.descend(part, pair, part.sorted.at(pair.1), &mut |(one, two)| {
                 let (a, b) = (self.order[one.index as usize], part.sorted.order[two.index as usize]);
                 if keep(a, b) {
                     found.push([a, b]);
@@ -201,9 +210,11 @@ impl Sorted {
     /// fixed order.
     pub fn pairs_within(&self, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let Some(top) = self.top() else { return Vec::new() };
-        let open = |pair, found: &mut Vec<_>| self.open_own(pair, |pair| found.push(pair));
+        let open = |pair: Pair, found: &mut Vec<_>| {
+            self.open_own(pair, self.at(pair.1), |pair, _| found.push(pair));
+        };
         searched((top, top), open, |pair, found| {
-            self.descend_own(pair, &mut |(one, two)| {
+            self.descend_own(pair, self.at(pair.1), &mut |(one, two)| {
                 let (a, b) = (self.order[one.index as usize], self.order[two.index as usize]);
                 if one.index != two.index && keep(a.min(b), a.max(b)) {
                     found.push([a.min(b), a.max(b)]);
@@ -266,48 +277,66 @@ impl Sorted {
     /// The boxes under a box that touch another, the last first.
     #[inline]
     fn touching_under(&self, place: Place, near: Bounds) -> impl Iterator<Item = Place> + use<> {
-        self.touching_among(place, near, ALL)
+        self.under(place).touching(near, ALL).map(move |lane| place.under(lane))
     }
 
-    /// Those of some lanes, a bit for each.
+    /// The boxes under a box.
     #[inline]
-    fn touching_among(&self, place: Place, near: Bounds, lanes: u8) -> impl Iterator<Item = Place> + use<> {
-        let level = place.level - 1;
-        let lanes = self.levels[level as usize][place.index as usize].touching(near, lanes);
-        lanes.map(move |lane| Place { level, index: place.index * FAN as u32 + lane as u32 })
+    fn under(&self, place: Place) -> &Group {
+        &self.levels[place.level as usize - 1][place.index as usize]
     }
 
-    /// Visits the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch.
-    #[inline]
-    fn open(&self, other: &Part, (one, two): Pair, mut visit: impl FnMut(Pair)) {
-        match one.level.cmp(&two.level) {
-            Ordering::Greater => self.touching_under(one, other.sorted.at(two)).for_each(|one| visit((one, two))),
-            Ordering::Less => other.touching_under(two, self.at(one)).for_each(|two| visit((one, two))),
-            Ordering::Equal => {
-                for one in self.touching_under(one, other.sorted.at(two)) {
-                    other.touching_under(two, self.at(one)).for_each(|two| visit((one, two)));
-                }
+    /// Visits the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch; the last
+    /// first.
+    ///
+    /// - `beside`: the second box.
+    #[inline(always)]
+    fn open(&self, other: &Part, (one, two): Pair, beside: Bounds, mut visit: impl FnMut(Pair, Bounds)) {
+        if one.level < two.level {
+            let group = other.sorted.under(two);
+            for b in group.touching(self.at(one), other.lanes(two)) {
+                visit((one, two.under(b)), group.at(b));
             }
+            return;
+        }
+        let group = self.under(one);
+        if one.level > two.level {
+            group.touching(beside, ALL).for_each(|a| visit((one.under(a), two), beside));
+            return;
+        }
+        let (others, lanes) = (other.sorted.under(two), other.lanes(two));
+        for a in group.touching(beside, ALL) {
+            others.touching(group.at(a), lanes).for_each(|b| visit((one.under(a), two.under(b)), others.at(b)));
         }
     }
 
-    /// Visits the pairs under two boxes of one level, the second not before the first, that touch; the second never before
-    /// the first.
-    #[inline]
-    fn open_own(&self, (one, two): Pair, mut visit: impl FnMut(Pair)) {
-        for a in self.touching_under(one, self.at(two)) {
-            self.touching_under(two, self.at(a)).filter(|b| b.index >= a.index).for_each(|b| visit((a, b)));
+    /// Visits the pairs under two boxes of one level, the second not before the first, that touch, the last first; the
+    /// second never before the first.
+    ///
+    /// - `beside`: the second box.
+    #[inline(always)]
+    fn open_own(&self, (one, two): Pair, beside: Bounds, mut visit: impl FnMut(Pair, Bounds)) {
+        let (group, others) = (self.under(one), self.under(two));
+        for a in group.touching(beside, ALL) {
+            let lanes = if one.index == two.index { ALL << a & ALL } else { ALL };
+            others.touching(group.at(a), lanes).for_each(|b| visit((one.under(a), two.under(b)), others.at(b)));
         }
     }
 
-    /// Visits the pairs of triangles under a pair of boxes.
-    fn descend(&self, other: &Part, pair: Pair, visit: &mut impl FnMut(Pair)) {
-        if is_open(&pair) { self.open(other, pair, |pair| self.descend(other, pair, visit)) } else { visit(pair) }
+    /// Visits the pairs of triangles under a pair of boxes, of which the second is given.
+    fn descend(&self, other: &Part, pair: Pair, beside: Bounds, visit: &mut impl FnMut(Pair)) {
+        match is_open(&pair) {
+            true => self.open(other, pair, beside, |pair, beside| self.descend(other, pair, beside, visit)),
+            false => visit(pair),
+        }
     }
 
-    /// Visits the pairs of triangles under two boxes of one level, the second not before the first.
-    fn descend_own(&self, pair: Pair, visit: &mut impl FnMut(Pair)) {
-        if is_open(&pair) { self.open_own(pair, |pair| self.descend_own(pair, visit)) } else { visit(pair) }
+    /// Visits the pairs of triangles under two boxes of one level, the second not before the first, and given.
+    fn descend_own(&self, pair: Pair, beside: Bounds, visit: &mut impl FnMut(Pair)) {
+        match is_open(&pair) {
+            true => self.open_own(pair, beside, |pair, beside| self.descend_own(pair, beside, visit)),
+            false => visit(pair),
+        }
     }
 }
 
@@ -331,7 +360,11 @@ fn searched(
         let mut next = Vec::with_capacity(4 * tasks.len());
         for task in tasks {
             let first = next.len();
-            if is_open(&task) { open(task, &mut next) } else { next.push(task) }
+            if is_open(&task) {
+                open(task, &mut next)
+            } else {
+                next.push(task)
+            }
             next[first..].reverse();
         }
         tasks = next;

@@ -58,7 +58,8 @@ impl Lattice {
         let reach = power_above(largest);
         let is_on = RANGE.contains(&reach) && power_above(least) >= reach - (DIGITS - MANTISSA);
         let is_in_range = RANGE.contains(&reach);
-        let lattice = Lattice { power: if is_in_range { 0 } else { -reach }, reach: if is_in_range { reach } else { 0 } };
+        let lattice =
+            Lattice { power: if is_in_range { 0 } else { -reach }, reach: if is_in_range { reach } else { 0 } };
         (largest > 0.0 && !is_on).then_some(lattice)
     }
 

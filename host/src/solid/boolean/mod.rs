@@ -46,8 +46,8 @@ mod union_find;
 mod winding;
 
 pub use arrangement::Counts;
-pub(super) use lattice::Lattice;
 pub(crate) use contact::{Contact, Face, Key};
+pub(super) use lattice::Lattice;
 pub(super) use operand::{Operand, overlaps};
 pub(super) use quads::mates;
 pub use result::Outcome;

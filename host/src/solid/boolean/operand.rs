@@ -173,6 +173,7 @@ impl<'a> Operands<'a> {
 ///
 /// - `sorted`: the triangles by place.
 pub fn overlaps(mesh: &Mesh, sorted: &Sorted) -> Vec<[u32; 2]> {
-    let tile = |triangle: u32| Tile::new(mesh.triangles[triangle as usize], mesh.corners(triangle as usize));
-    sorted.pairs_within(|a, b| overlap(&tile(a), &tile(b)))
+    let tile =
+        |triangle: u32| Tile { names: mesh.triangles[triangle as usize], corners: mesh.corners(triangle as usize) };
+    sorted.pairs_within(|a, b| overlap(&tile(a).with_plane(), &tile(b), || tile(b).with_plane()))
 }

@@ -1,7 +1,7 @@
 //! Whether rounded points made a surface cross itself.
 
 use super::operand::Operands;
-use super::overlap::{Tile, overlap};
+use super::overlap::{PlaneTile, Tile, overlap};
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
 use rayon::prelude::*;
@@ -18,40 +18,37 @@ pub struct Kept {
 ///
 /// - `first`: the first triangle of the result that was made anew.
 /// - `is_moved`: whether rounding moved a vertex of the result.
-pub fn crosses(
-    operands: &Operands,
-    result: &Mesh,
-    first: usize,
-    is_moved: &[bool],
-    kept: &Kept,
-) -> bool {
+pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[bool], kept: &Kept) -> bool {
+    if !is_moved.contains(&true) {
+        return false;
+    }
     // What was not moved is where it was when all was exact.
     let has_moved = |triangle: &[u32; 3]| triangle.iter().any(|&vertex| is_moved[vertex as usize]);
     let (moved, still): (Vec<[u32; 3]>, Vec<[u32; 3]>) = result.triangles[first..].iter().partition(|t| has_moved(t));
-    let at = |vertex: u32| result.vertices[vertex as usize];
-    let tile = |&triangle: &[u32; 3]| Tile::new(triangle, triangle.map(at));
-    let tiles: Vec<Tile> = moved.par_iter().with_min_len(1024).map(tile).collect();
-    if tiles.par_iter().with_min_len(1024).any(Tile::is_flat) {
+    let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| result.vertices[vertex as usize]) };
+    let tiles = moved.par_iter().with_min_len(1024).map(|&triangle| tile(triangle).with_plane());
+    let tiles: Vec<PlaneTile> = tiles.collect();
+    if tiles.par_iter().with_min_len(1024).any(PlaneTile::is_flat) {
         return true;
     }
     let of_moved = |triangle: u32| &tiles[triangle as usize];
+    let is_overlap = |a: u32, two: Tile| overlap(of_moved(a), &two, || two.with_plane());
     let sorted = Sorted::new(&result.vertices, &moved);
-    if !sorted.pairs_within(|a, b| overlap(of_moved(a), of_moved(b))).is_empty() {
+    if !sorted.pairs_within(|a, b| overlap(of_moved(a), of_moved(b).tile(), || *of_moved(b))).is_empty() {
         return true;
     }
-    let is_overlap = |a: u32, b: u32| overlap(of_moved(a), &tile(&still[b as usize]));
-    if !sorted.pairs_if(&Sorted::new(&result.vertices, &still).all(), is_overlap).is_empty() {
+    let unmoved = Sorted::new(&result.vertices, &still);
+    if !sorted.pairs_if(&unmoved.all(), |a, b| is_overlap(a, tile(still[b as usize]))).is_empty() {
         return true;
     }
     (0..operands.meshes().len() as u32).any(|operand| {
         let mesh = operands.meshes()[operand as usize];
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
-        let of_kept = |triangle: u32| {
-            let corners = mesh.triangles[triangle as usize];
-            let names = corners.map(|vertex| kept.of_vertex[(first_vertex + vertex) as usize]);
-            Tile::new(names, mesh.corners(triangle as usize))
+        let of_kept = |triangle: u32| Tile {
+            names: mesh.triangles[triangle as usize].map(|vertex| kept.of_vertex[(first_vertex + vertex) as usize]),
+            corners: mesh.corners(triangle as usize),
         };
         let near = operands.sorted(operand).part(|triangle| kept.is_kept[(first + triangle) as usize]);
-        !sorted.pairs_if(&near, |a, b| overlap(of_moved(a), &of_kept(b))).is_empty()
+        !sorted.pairs_if(&near, |a, b| is_overlap(a, of_kept(b))).is_empty()
     })
 }
