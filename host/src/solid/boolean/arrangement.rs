@@ -145,19 +145,21 @@ impl Arrangement {
             (divided..faces.faces.len()).for_each(|face| _ = faces.name_face(face));
         }
         let all = faces.faces.len();
+        // Mostly each contact has an end of its own, and each face a corner.
+        let room = contacts.len() + divided;
         let mut arrangement = Arrangement {
             contents: vec![Content::default(); all],
-            points: Vec::new(),
-            vertices: Vec::new(),
-            on_other: Vec::new(),
+            points: Vec::with_capacity(room),
+            vertices: Vec::with_capacity(room),
+            on_other: Vec::with_capacity(room),
             sheets: UnionFind::new(all),
             is_relevant,
             counts: Counts { pairs: count, contacts: contacts.len() as u64, ..Counts::default() },
             same: UnionFind::new(0),
-            of_key: FxHashMap::default(),
-            carriers: Vec::new(),
-            of_edge: FxHashMap::default(),
-            of_faces: FxHashMap::default(),
+            of_key: FxHashMap::with_capacity_and_hasher(room, Default::default()),
+            carriers: Vec::with_capacity(room),
+            of_edge: FxHashMap::with_capacity_and_hasher(contacts.len(), Default::default()),
+            of_faces: FxHashMap::with_capacity_and_hasher(contacts.len(), Default::default()),
             place: faces.place,
             ambiguous: faces.ambiguous,
             faces: faces.faces,

@@ -50,6 +50,7 @@ impl Faces {
     /// Adds the faces with these lower triangles; their vertices have the names that the operands give them.
     pub fn add(&mut self, operands: &Operands, triangles: &[u32]) {
         self.of_triangle.resize(operands.triangle_count(), NONE);
+        self.faces.reserve(triangles.len() / 8);
         for &triangle in triangles {
             if self.of_triangle[triangle as usize] == NONE
                 && let Some(face) = operands.face(self.faces.len() as u32, triangle)

@@ -1,7 +1,7 @@
 //! Touched faces, divided along all that lies in them.
 
 use super::arrangement::Arrangement;
-use super::triangulation::{NONE, Triangulation};
+use super::triangulation::{NONE, ROOM, Triangulation};
 use crate::numeric::implicit::{Definition, Point, others};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -135,9 +135,10 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
     let mut sheet = Sheet {
         arrangement,
         triangulation: Triangulation::new(shape.axis, &places),
-        inside: corners.iter().copied().zip(0..).collect(),
+        inside: FxHashMap::with_capacity_and_hasher(ROOM, Default::default()),
         outside: corners,
     };
+    sheet.inside.extend(sheet.outside.iter().copied().zip(0..));
     for k in shape.numbers() {
         // Sides in the order of the corners here.
         let side = if is_turned { shape.sides as u8 - 1 - k } else { k };

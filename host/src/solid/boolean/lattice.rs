@@ -121,3 +121,107 @@ impl Lattice {
         outcome
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::{Primitive, Solid, SolidError};
+    use crate::surface::{Tolerance, box_faces, tessellate};
+    use glam::DVec2;
+
+    fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+        tessellate(&box_faces(low.into(), high.into()), Tolerance::new(1.0, 90.0)).unwrap()
+    }
+
+    fn block(low: [f64; 3], high: [f64; 3]) -> Solid {
+        Solid::new(cuboid(low, high)).unwrap()
+    }
+
+    fn turned(contour: [[f64; 2]; 3]) -> Solid {
+        let contours = vec![contour.map(DVec2::from).to_vec()];
+        let body = Primitive::Turning { contours, turn: 1.0 }.body().unwrap();
+        Solid::resolved(body.tessellate(Tolerance::new(0.02, 90.0)).unwrap()).unwrap().0
+    }
+
+    fn scaled(mesh: &Mesh, size: f64) -> Mesh {
+        let mut mesh = mesh.clone();
+        mesh.vertices.iter_mut().for_each(|vertex| *vertex *= size);
+        mesh
+    }
+
+    #[test]
+    fn usual_coordinates_are_on_the_lattice_as_they_are() {
+        let of = |sizes: [f64; 3]| Lattice::of([cuboid([0.0; 3], sizes)].iter());
+        for sizes in [[1.0; 3], [1e-12, 1e7, 1.0], [1e-6, 1e6, 6e-17], [1e-30; 3], [1e30, 1e-30, 1.0]] {
+            assert_eq!(of(sizes), None, "{sizes:?}");
+        }
+        assert_eq!(Lattice::of([Mesh::default()].iter()), None);
+        assert_eq!(of([1.0, 1.0, 1e-62]), Some(Lattice { power: 0, reach: 1 }));
+        assert_eq!(of([1.0, 1e300, 1.0]).map(|lattice| lattice.reach), Some(0));
+        assert_eq!([1.0, 1.5, 0.5, f64::MAX].map(power_above), [1, 1, 0, 1024]);
+        assert_eq!(times(5e-324, 1074), 1.0);
+    }
+
+    #[test]
+    fn corners_that_nearly_touch_an_axis_do_no_harm() {
+        let one = turned([[1.0, 3.0], [0.5, 0.25], [0.25, 1.5]]);
+        let on_axis = one.union(&turned([[3.0, 3.0], [1.0, 3.0], [0.0, 1.5]])).mesh().signed_volume();
+        for x in [1e-17, 1e-40, 1e-60, 1e-70, 1e-77, 1e-100, 1e-200, 1e-300, 5e-324] {
+            let both = one.union(&turned([[3.0, 3.0], [1.0, 3.0], [x, 1.5]]));
+            assert!((both.mesh().signed_volume() / on_axis - 1.0).abs() < 1e-12, "{x}");
+            assert!(Solid::new(both.into_mesh()).is_ok(), "{x}");
+        }
+    }
+
+    #[test]
+    fn sizes_of_all_kinds_may_be_mixed() {
+        let one = block([0.0; 3], [1.0; 3]);
+        for [x, y, z] in [[1e-300, -1e-200, 5e-324], [1e-100, 1e-70, -1e-62], [-1e-310, 1e-17, 0.0]] {
+            let two = block([x, y, z], [2.0, 1.0 + y, 0.5]);
+            let all = Expression::Union(vec![Expression::Operand(0), Expression::Operand(1)]);
+            for (operation, volume) in
+                [(all, 1.5), (Expression::difference(Expression::Operand(0), Expression::Operand(1)), 0.5)]
+            {
+                let (result, outcome) = Solid::evaluate(&[&one, &two], &operation);
+                assert!((result.mesh().signed_volume() - volume).abs() < 1e-12, "{x} {y} {z}");
+                assert!(Solid::new(result.mesh().clone()).is_ok());
+                assert_eq!(outcome.sources.len(), result.mesh().triangles.len());
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_thinner_than_the_lattice_is_gone() {
+        let one = block([-1.0; 3], [1.0; 3]);
+        let speck = block([0.0; 3], [1e-300; 3]);
+        assert_eq!(one.difference(&speck).mesh().signed_volume(), 8.0);
+        assert_eq!(one.union(&speck).mesh().triangles.len(), 12);
+        assert!(one.intersection(&speck).mesh().triangles.is_empty());
+        let vast = block([-1e300; 3], [1e300; 3]);
+        assert_eq!(vast.union(&one).mesh().vertices.len(), 8);
+        assert!(block([0.0; 3], [1.0, 1.0, 1e-300]).mesh().triangles.is_empty());
+    }
+
+    #[test]
+    fn models_of_any_size_are_alike() {
+        let meshes = [cuboid([0.0; 3], [1.0; 3]), cuboid([0.3, 0.2, 0.1], [1.7, 0.9, 1.3])];
+        let difference = |size: f64| {
+            let [one, two] = meshes.each_ref().map(|mesh| Solid::new(scaled(mesh, size)).unwrap());
+            one.difference(&two).into_mesh()
+        };
+        let usual = difference(1.0);
+        for power in [-900, -400, -101, 99, 300, 1000] {
+            let size = f64::exp2(power.into());
+            assert_eq!(difference(size), scaled(&usual, size), "{power}");
+        }
+    }
+
+    #[test]
+    fn errors_name_places_of_the_model_and_not_of_the_lattice() {
+        let size = f64::exp2(-500.0);
+        let mut open = scaled(&cuboid([0.0; 3], [1.0; 3]), size);
+        open.triangles.pop();
+        let Err(SolidError::NotClosed { edges, .. }) = Solid::new(open) else { panic!("it is open") };
+        assert!(edges.as_flattened().iter().all(|end| end.max_element() <= size) && edges.len() == 3);
+    }
+}

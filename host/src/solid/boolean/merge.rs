@@ -32,15 +32,14 @@ pub fn pieces(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], 
     let kept: Vec<Piece> =
         facets.iter().enumerate().filter_map(|(index, facet)| piece(facet, parts.of_facet(index))).collect();
     let plan = Plan::new(operands, arrangement, &kept);
-    let mut members: Vec<Vec<u32>> = vec![Vec::new(); kept.len()];
-    for index in 0..kept.len() as u32 {
-        members[plan.regions.root(index) as usize].push(index);
-    }
-    let merged: Vec<Vec<Piece>> = members
-        .par_iter()
-        .filter(|members| !members.is_empty())
-        .map(|members| plan.merge(arrangement, &kept, members))
-        .collect();
+    let mut members: Vec<(u32, u32)> = (0..kept.len() as u32).map(|index| (plan.regions.root(index), index)).collect();
+    members.par_sort_unstable();
+    let regions: Vec<&[(u32, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
+    let merged = regions.par_iter().with_min_len(64).fold(Vec::new, |mut merged, members| {
+        plan.merge(arrangement, &kept, members, &mut merged);
+        merged
+    });
+    let merged: Vec<Vec<Piece>> = merged.collect();
     merged.concat()
 }
 
@@ -115,12 +114,22 @@ impl Plan {
         Plan { regions, needless }
     }
 
-    /// The pieces of a region, made anew if a point is not needed.
-    fn merge(&self, arrangement: &Arrangement, kept: &[Piece], members: &[u32]) -> Vec<Piece> {
-        let old: Vec<Piece> = members.iter().map(|&member| kept[member as usize]).collect();
-        if old.iter().flat_map(|piece| piece.corners).all(|point| !self.needless.contains(&point)) {
-            return old;
+    /// Adds the pieces of a region, made anew if a point is not needed.
+    ///
+    /// - `members`: the old pieces, each after the number of the region.
+    fn merge(&self, arrangement: &Arrangement, kept: &[Piece], members: &[(u32, u32)], merged: &mut Vec<Piece>) {
+        let old = members.iter().map(|&(_, member)| kept[member as usize]);
+        let is_needed = |point: u32| !self.needless.contains(&point);
+        if self.needless.is_empty() || old.clone().flat_map(|piece| piece.corners).all(is_needed) {
+            merged.extend(old);
+            return;
         }
+        let old: Vec<Piece> = old.collect();
+        merged.extend(self.straightened(arrangement, &old).unwrap_or(old));
+    }
+
+    /// The pieces of a region without the points that are not needed, if its borders allow.
+    fn straightened(&self, arrangement: &Arrangement, old: &[Piece]) -> Option<Vec<Piece>> {
         let sides = |piece: &Piece| [0, 1, 2].map(|k| [piece.corners[k], piece.corners[(k + 1) % 3]]);
         let all: FxHashSet<[u32; 2]> = old.iter().flat_map(sides).collect();
         let borders: Vec<[u32; 2]> = old.iter().flat_map(sides).filter(|[a, b]| !all.contains(&[*b, *a])).collect();
@@ -129,8 +138,7 @@ impl Plan {
         for &[from, mut to] in borders.iter().filter(|[from, _]| !self.needless.contains(from)) {
             // A needless point of a border has one way in and one way out.
             while self.needless.contains(&to) {
-                let Some(&next) = onward.get(&to) else { return old };
-                to = next;
+                to = *onward.get(&to)?;
             }
             straight.push([from, to]);
         }
@@ -143,7 +151,7 @@ impl Plan {
         let face_at = |point: u32| at[at.partition_point(|(other, _)| *other < point)].1;
         let first = old[0];
         let triangles = Region { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
-        triangles.into_iter().map(|corners| Piece { corners, at: corners.map(face_at), ..first }).collect()
+        Some(triangles.into_iter().map(|corners| Piece { corners, at: corners.map(face_at), ..first }).collect())
     }
 }
 

@@ -109,14 +109,33 @@ impl Parts {
         self.fates.values().all(|fate| *fate == Fate::Kept)
     }
 
-    /// What becomes of an undivided triangle with this vertex.
-    pub fn of_vertex(&self, vertex: u32) -> Fate {
-        self.fates.get(&self.nodes.root(vertex)).copied().unwrap_or(Fate::Dropped)
+    /// What becomes of each triangle, counted over all operands; those that are not whole are dropped.
+    pub fn of_triangles(&self, operands: &Operands, is_whole: &[bool]) -> Vec<Fate> {
+        let mut fates = vec![Fate::Dropped; is_whole.len()];
+        for (operand, mesh) in (0..).zip(operands.meshes()) {
+            let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
+            // Neighbours in the list are mostly of one part.
+            let mut last = (u32::MAX, Fate::Dropped);
+            let own = first as usize..first as usize + mesh.triangles.len();
+            let slots = fates[own.clone()].iter_mut().zip(&is_whole[own]);
+            for (triangle, (fate, _)) in mesh.triangles.iter().zip(slots).filter(|(_, (_, whole))| **whole) {
+                let root = self.nodes.root(triangle[0] + first_vertex);
+                if root != last.0 {
+                    last = (root, self.of_root(root));
+                }
+                *fate = last.1;
+            }
+        }
+        fates
     }
 
     /// What becomes of a facet.
     pub fn of_facet(&self, facet: usize) -> Fate {
-        self.of_vertex((self.vertices + facet) as u32)
+        self.of_root(self.nodes.root((self.vertices + facet) as u32))
+    }
+
+    fn of_root(&self, root: u32) -> Fate {
+        self.fates.get(&root).copied().unwrap_or(Fate::Dropped)
     }
 }
 

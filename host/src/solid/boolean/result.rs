@@ -36,15 +36,13 @@ pub fn assemble(
     let tables = Tables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
-    let mut is_kept = vec![false; operands.triangle_count()];
+    let fates = parts.of_triangles(operands, is_whole);
+    let is_kept: Vec<bool> = fates.iter().map(|fate| *fate != Fate::Dropped).collect();
+    outcome.reserve(is_kept.iter().filter(|kept| **kept).count() + facets.len());
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let operand = operand as u32;
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
-        for (index, triangle) in mesh.triangles.iter().enumerate() {
-            if !is_whole[first as usize + index] {
-                continue;
-            }
-            let fate = parts.of_vertex(triangle[0] + first_vertex);
+        for (index, (triangle, &fate)) in mesh.triangles.iter().zip(&fates[first as usize..]).enumerate() {
             if fate == Fate::Dropped {
                 continue;
             }
@@ -56,7 +54,6 @@ pub fn assemble(
                 }
                 *number
             });
-            is_kept[first as usize + index] = true;
             outcome.push(corners, fate, [operand, index as u32]);
             tables.copy(&mut outcome.mesh, mesh, operand, index, fate);
         }
@@ -115,6 +112,13 @@ impl Outcome {
         if !surfaces.is_empty() {
             self.mesh.surfaces = numbers.iter().map(|&n| surfaces[n as usize]).collect();
         }
+    }
+
+    /// Makes room for so many triangles, and half as many vertices.
+    fn reserve(&mut self, triangles: usize) {
+        self.mesh.triangles.reserve_exact(triangles);
+        self.sources.reserve_exact(triangles);
+        self.mesh.vertices.reserve(triangles / 2 + 2);
     }
 
     fn push(&mut self, [a, b, c]: [u32; 3], fate: Fate, source: [u32; 2]) {

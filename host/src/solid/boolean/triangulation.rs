@@ -31,6 +31,18 @@ pub struct Triangulation<'a> {
     at: Vec<u32>,
     fixed: FxHashSet<[u32; 2]>,
     last: u32,
+    /// Triangles that a point was put into, for the while that these are looked at.
+    changed: Vec<u32>,
+}
+
+/// Points that most triangulations have at most.
+pub const ROOM: usize = 13;
+
+/// A list with room for more.
+fn roomy<T: Clone>(first: &[T], room: usize) -> Vec<T> {
+    let mut list = Vec::with_capacity(first.len().max(room));
+    list.extend_from_slice(first);
+    list
 }
 
 fn sorted(a: u32, b: u32) -> [u32; 2] {
@@ -43,14 +55,15 @@ impl<'a> Triangulation<'a> {
         let is_quad = corners.len() == 4;
         Triangulation {
             axis,
-            points: corners.to_vec(),
-            sides: if is_quad { vec![0b1001, 0b0011, 0b0110, 0b1100] } else { vec![0b101, 0b011, 0b110] },
+            points: roomy(corners, ROOM),
+            sides: roomy(if is_quad { &[0b1001, 0b0011, 0b0110, 0b1100] } else { &[0b101, 0b011, 0b110] }, ROOM),
             corners: corners.len() as u32,
-            triangles: if is_quad { vec![[0, 1, 2], [2, 3, 0]] } else { vec![[0, 1, 2]] },
-            beyond: if is_quad { vec![[NONE, NONE, 1], [NONE, NONE, 0]] } else { vec![[NONE; 3]] },
-            at: vec![0, 0, 0, 1][..corners.len()].to_vec(),
+            triangles: roomy(if is_quad { &[[0, 1, 2], [2, 3, 0]] } else { &[[0, 1, 2]] }, 2 * ROOM),
+            beyond: roomy(if is_quad { &[[NONE, NONE, 1], [NONE, NONE, 0]] } else { &[[NONE; 3]] }, 2 * ROOM),
+            at: roomy(&[0, 0, 0, 1][..corners.len()], ROOM),
             fixed: FxHashSet::default(),
             last: 0,
+            changed: Vec::with_capacity(ROOM),
         }
     }
 
@@ -157,7 +170,8 @@ impl<'a> Triangulation<'a> {
         self.put(triangle, [a, b, p], [ab, second, third]);
         self.put(second, [b, c, p], [bc, third, triangle]);
         self.put(third, [c, a, p], [ca, triangle, second]);
-        self.legalize(p, [triangle, second, third].to_vec());
+        self.changed.extend([triangle, second, third]);
+        self.legalize(p);
     }
 
     fn split_side(&mut self, triangle: u32, k: usize, p: u32) {
@@ -169,7 +183,7 @@ impl<'a> Triangulation<'a> {
             self.fixed.extend([sorted(a, p), sorted(p, b)]);
         }
         let second = self.room();
-        let mut changed = vec![triangle, second];
+        self.changed.extend([triangle, second]);
         if across == NONE {
             self.put(triangle, [a, p, c], [NONE, second, ca]);
             self.put(second, [p, b, c], [NONE, bc, triangle]);
@@ -182,16 +196,16 @@ impl<'a> Triangulation<'a> {
             self.put(second, [p, b, c], [fourth, bc, triangle]);
             self.put(across, [p, a, d], [triangle, ad, fourth]);
             self.put(fourth, [b, p, d], [second, across, db]);
-            changed.extend([across, fourth]);
+            self.changed.extend([across, fourth]);
         }
-        self.legalize(p, changed);
+        self.legalize(p);
     }
 
     /// Exchanges diagonals opposite to a new point until all are as Delaunay wants them.
-    fn legalize(&mut self, p: u32, mut changed: Vec<u32>) {
+    fn legalize(&mut self, p: u32) {
         // Rounded places may disagree with each other; a bound makes that harmless.
-        let mut patience = 16 * changed.len() + 4 * self.triangles.len();
-        while let Some(triangle) = changed.pop() {
+        let mut patience = 16 * self.changed.len() + 4 * self.triangles.len();
+        while let Some(triangle) = self.changed.pop() {
             let k = self.side(triangle, p);
             let (opposite, across) = ((k + 1) % 3, self.beyond[triangle as usize][(k + 1) % 3]);
             let [_, a, b] = [0, 1, 2].map(|i| self.triangles[triangle as usize][(k + i) % 3]);
@@ -202,7 +216,7 @@ impl<'a> Triangulation<'a> {
             let d = self.triangles[across as usize][(j + 2) % 3];
             if self.is_in_circle([p, a, b], d) && self.turn(p, a, d) > 0.0 && self.turn(p, d, b) > 0.0 {
                 self.exchange(triangle, opposite);
-                changed.extend([triangle, across]);
+                self.changed.extend([triangle, across]);
                 patience -= 1;
             }
         }
@@ -238,33 +252,31 @@ impl<'a> Triangulation<'a> {
     }
 
     /// All triangles at a point, with the place of the point among their corners.
-    pub fn around(&self, p: u32) -> Vec<(u32, usize)> {
+    pub fn around(&self, p: u32) -> impl Iterator<Item = (u32, usize)> {
         let first = self.at[p as usize];
-        let mut found = Vec::new();
         let mut triangle = first;
-        loop {
-            let k = self.side(triangle, p);
-            found.push((triangle, k));
-            triangle = self.beyond[triangle as usize][(k + 2) % 3];
-            if triangle == first {
-                return found;
+        // To the left until it comes round or to the border, and then to the right from the first.
+        let mut step = 2;
+        std::iter::from_fn(move || {
+            if triangle == NONE && step == 2 {
+                step = 0;
+                triangle = self.beyond[first as usize][self.side(first, p)];
             }
             if triangle == NONE {
-                break;
+                return None;
             }
-        }
-        triangle = self.beyond[first as usize][self.side(first, p)];
-        while triangle != NONE {
-            let k = self.side(triangle, p);
-            found.push((triangle, k));
-            triangle = self.beyond[triangle as usize][k];
-        }
-        found
+            let (here, k) = (triangle, self.side(triangle, p));
+            triangle = self.beyond[here as usize][(k + step) % 3];
+            if step == 2 && triangle == first {
+                (step, triangle) = (0, NONE);
+            }
+            Some((here, k))
+        })
     }
 
     /// The triangle with a side from `a` to `b`, and that side.
     pub fn along(&self, a: u32, b: u32) -> Option<(u32, usize)> {
-        self.around(a).into_iter().find(|&(triangle, k)| self.triangles[triangle as usize][(k + 1) % 3] == b)
+        self.around(a).find(|&(triangle, k)| self.triangles[triangle as usize][(k + 1) % 3] == b)
     }
 
     /// Makes the straight line between two points consist of edges that stay.
