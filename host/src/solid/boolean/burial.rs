@@ -31,9 +31,16 @@ impl Burial {
         if count < 3 {
             return Burial::default();
         }
-        let mut cores: Vec<Option<Core>> =
-            (0..count).into_par_iter().map(|operand| Core::of(operands, operand)).collect();
-        let of_operand = |operand: u32| buried_of(operands, &cores, standing.clone(), operand);
+        // What lies deep inside the only neighbour touches nothing anyway.
+        let has_two: Vec<bool> = (0..count).map(|operand| operands.near(operand).nth(1).is_some()).collect();
+        let is_asked =
+            |operand: u32| has_two[operand as usize] || operands.near(operand).any(|other| has_two[other as usize]);
+        let core = |operand: u32| is_asked(operand).then(|| Core::of(operands, operand)).flatten();
+        let mut cores: Vec<Option<Core>> = (0..count).into_par_iter().map(core).collect();
+        let of_operand = |operand: u32| match has_two[operand as usize] {
+            true => buried_of(operands, &cores, standing.clone(), operand),
+            false => Vec::new(),
+        };
         let found: Vec<Vec<u32>> = (0..count).into_par_iter().map(of_operand).collect();
         let mut is_buried = vec![false; operands.triangle_count()];
         for (operand, found) in (0..count).zip(&found) {
@@ -79,11 +86,10 @@ fn buried_of(operands: &Operands, cores: &[Option<Core>], mut standing: Standing
     }
     let mesh = operands.meshes()[operand as usize];
     let sorted = operands.sorted(operand);
-    let near = |other: &u32| *other != operand && operands.sorted(*other).bounds().touches(sorted.bounds());
     standing.set(operand, None);
     // A triangle, and an operand that holds it.
     let mut held: Vec<(u32, u32)> = Vec::new();
-    for other in (0..operands.meshes().len() as u32).filter(near) {
+    for other in operands.near(operand) {
         standing.set(other, None);
         let Some(core) = cores[other as usize].as_ref().filter(|core| !core.bounds().is_empty()) else { continue };
         sorted.touching(core.bounds(), |triangle| {

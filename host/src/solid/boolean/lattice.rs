@@ -130,7 +130,11 @@ mod tests {
     use glam::DVec2;
 
     fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
-        tessellate(&box_faces(low.into(), high.into()), Tolerance::new(1.0, 90.0)).unwrap()
+        let mut mesh = tessellate(&box_faces(DVec3::ZERO, DVec3::ONE), Tolerance::new(1.0, 90.0)).unwrap();
+        for vertex in &mut mesh.vertices {
+            *vertex = DVec3::from([0, 1, 2].map(|axis| if vertex[axis] == 0.0 { low[axis] } else { high[axis] }));
+        }
+        mesh
     }
 
     fn block(low: [f64; 3], high: [f64; 3]) -> Solid {
@@ -219,8 +223,9 @@ mod tests {
     #[test]
     fn errors_name_places_of_the_model_and_not_of_the_lattice() {
         let size = f64::exp2(-500.0);
-        let mut open = scaled(&cuboid([0.0; 3], [1.0; 3]), size);
-        open.triangles.pop();
+        let Mesh { vertices, mut triangles, .. } = scaled(&cuboid([0.0; 3], [1.0; 3]), size);
+        triangles.pop();
+        let open = Mesh { vertices, triangles, ..Mesh::default() };
         let Err(SolidError::NotClosed { edges, .. }) = Solid::new(open) else { panic!("it is open") };
         assert!(edges.as_flattened().iter().all(|end| end.max_element() <= size) && edges.len() == 3);
     }

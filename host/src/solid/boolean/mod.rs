@@ -13,7 +13,7 @@
 //!
 //! # Numbers
 //! Exact is what lies within 2^-203 of the largest coordinate of all operands, whatever that is; smaller coordinates are
-//! rounded to 2^-256 of it, see [`lattice`].
+//! rounded to 2^-256 of it. Models of any size are worked on as ones of about the size of 1.
 //!
 //! # Semantics
 //! Results are regularised: the closure of the interior of the set. Where surfaces coincide, what counts is whether the

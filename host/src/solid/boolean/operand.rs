@@ -135,14 +135,20 @@ impl<'a> Operands<'a> {
         std::iter::once(low).chain(high)
     }
 
+    /// The other operands whose boxes touch that of an operand, in order.
+    pub fn near(&self, operand: u32) -> impl Iterator<Item = u32> {
+        let bounds = self.sorted(operand).bounds();
+        let others = (0..self.meshes.len() as u32).filter(move |other| *other != operand);
+        others.filter(move |other| self.sorted(*other).bounds().touches(bounds))
+    }
+
     /// Pairs of faces of different operands, by their lower triangles, of which the boxes of triangles touch.
     ///
     /// - `sorted`: the triangles of an operand that are looked at.
     pub fn pairs<'b>(&self, sorted: impl Fn(u32) -> &'b Sorted + Sync) -> Vec<[u32; 2]> {
         let count = self.meshes.len() as u32;
-        let touching = |&(i, j): &(u32, u32)| sorted(i).bounds().touches(sorted(j).bounds());
-        let tasks: Vec<(u32, u32)> =
-            (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).filter(touching).collect();
+        let pairs_of = |i: u32| self.near(i).filter(move |j| *j > i).map(move |j| (i, j));
+        let tasks: Vec<(u32, u32)> = (0..count).flat_map(pairs_of).collect();
         let found: Vec<Vec<[u32; 2]>> = tasks
             .into_par_iter()
             .map(|(i, j)| {

@@ -51,11 +51,9 @@ fn relevant_of(
     touched: &[(u32, u32, u32)],
 ) -> Vec<bool> {
     let mesh = operands.meshes()[operand as usize];
-    let bounds = operands.sorted(operand).bounds();
-    let near = |other: &u32| *other != operand && operands.sorted(*other).bounds().touches(bounds);
     // By triangle, the partners that it may lie in; it is outside of all others.
     let mut places: Vec<Place> = Vec::new();
-    for partner in (0..operands.meshes().len() as u32).filter(near) {
+    for partner in operands.near(operand) {
         let begin = touched.partition_point(|t| t.1 < partner);
         let end = touched.partition_point(|t| t.1 <= partner);
         let touched = touched[begin..end].iter().map(|t| t.2);
