@@ -181,10 +181,8 @@ fn all_threads(octree: &Octree, set: &RaySet) -> f64 {
     set.rays.len() as f64 / seconds[PASSES / 2] / 1e6
 }
 
-/// Processor time of this thread where the system tells it, else the time since some moment.
+/// Processor time of this thread.
 fn processor_seconds() -> f64 {
-    static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(|| START.elapsed().as_secs_f64(), |n| n * 1e-9)
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }

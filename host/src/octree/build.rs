@@ -9,8 +9,8 @@ use super::clip::{Bounds, FAT, clipped_bounds};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 
-/// A cell with more references than this shares the work on its eighths among threads.
-const PARALLEL_REFERENCES: usize = 4096;
+/// Work on more triangles than this is shared among threads.
+pub const PARALLEL_TRIANGLES: usize = 4096;
 
 /// A cell is not divided if so many times more triangles touch it than have their home in it.
 ///
@@ -79,6 +79,15 @@ impl Leaves {
     }
 }
 
+/// The terminal nodes, and what tells which cells are divided.
+#[derive(Clone, Debug, Default)]
+pub struct Nodes {
+    /// The homes of all triangles, sorted.
+    pub homes: Vec<LocationalCode>,
+    /// The terminal nodes.
+    pub leaves: Leaves,
+}
+
 /// What every cell needs to know.
 #[derive(Clone, Copy)]
 pub struct Division<'a> {
@@ -92,12 +101,14 @@ pub struct Division<'a> {
     pub depth: u32,
     /// No cell that is home to so few triangles is divided.
     pub leaf_triangles: usize,
+    /// Work on more triangles than this is shared among threads: [`PARALLEL_TRIANGLES`], or no number that there is.
+    pub grain: usize,
 }
 
 impl Division<'_> {
     /// Some triangles in the modelling cube, in order.
     pub fn references(&self, triangles: Range<usize>) -> Vec<Reference> {
-        triangles.into_par_iter().with_min_len(PARALLEL_REFERENCES).filter_map(|t| self.reference(t as u32)).collect()
+        triangles.into_par_iter().with_min_len(self.grain).filter_map(|t| self.reference(t as u32)).collect()
     }
 
     fn reference(&self, triangle: u32) -> Option<Reference> {
@@ -131,22 +142,22 @@ impl Division<'_> {
             let above = size.next_power_of_two().trailing_zeros();
             self.is_extended(index).then(|| LocationalCode::containing(middle, MAX_DEPTH.saturating_sub(above)))
         };
-        let mut homes: Vec<_> = triangles.into_par_iter().with_min_len(4096).filter_map(home).collect();
-        homes.par_sort_unstable();
+        let mut homes: Vec<_> = triangles.into_par_iter().with_min_len(self.grain).filter_map(home).collect();
+        if homes.len() > self.grain { homes.par_sort_unstable() } else { homes.sort_unstable() }
         homes
     }
 
     /// Divides the modelling cube; the result does not depend on the number of threads.
-    ///
-    /// - `homes`: those of all triangles, sorted.
-    pub fn leaves(&self, homes: &[LocationalCode]) -> Leaves {
+    pub fn nodes(&self) -> Nodes {
+        let all = 0..self.triangles.len();
+        let homes = self.homes(all.clone());
         let mut leaves = Leaves::default();
-        self.divide(LocationalCode::ROOT, self.references(0..self.triangles.len()), homes, &mut leaves);
-        leaves
+        self.divide(LocationalCode::ROOT, self.references(all), &homes, &mut leaves);
+        Nodes { homes, leaves }
     }
 
     /// A triangle with two corners in one point is never hit.
-    fn is_extended(&self, triangle: usize) -> bool {
+    pub fn is_extended(&self, triangle: usize) -> bool {
         let [a, b, c] = self.triangles[triangle].map(|i| self.vertices[i as usize]);
         a != b && b != c && c != a
     }
@@ -184,7 +195,7 @@ impl Division<'_> {
         }
         let eighths = eighths(cell).zip(self.distribute(cell, &references));
         drop(references);
-        if count > PARALLEL_REFERENCES {
+        if count > self.grain {
             let parts: Vec<Leaves> = eighths
                 .collect::<Vec<_>>()
                 .into_par_iter()

@@ -22,9 +22,6 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of nothing.
-    pub const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
-
     /// The box of points, rounded outwards.
     pub fn of(points: &[[f64; 3]]) -> Self {
         let mut low = [f64::INFINITY; 3];
@@ -36,17 +33,6 @@ impl Bounds {
             }
         }
         Self { low: low.map(round_down), high: high.map(round_up) }
-    }
-
-    /// The box around two boxes.
-    pub fn union(&self, other: &Self) -> Self {
-        // Bounds are never NaN; a plain comparison is one instruction, `min` is several.
-        let least = |a: f32, b: f32| if a < b { a } else { b };
-        let most = |a: f32, b: f32| if a > b { a } else { b };
-        Self {
-            low: [0, 1, 2].map(|axis| least(self.low[axis], other.low[axis])),
-            high: [0, 1, 2].map(|axis| most(self.high[axis], other.high[axis])),
-        }
     }
 
     /// Half the surface; proportional to the share of random lines that meet the box.

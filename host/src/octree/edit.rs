@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::build::{Division, Leaves, Reference, eighths, within};
+use super::build::{Division, Leaves, Nodes, Reference, eighths, within};
 use super::index::Index;
 use super::{LocationalCode, MAX_TRIANGLES, Object, Octree, OctreeError, Walk, check};
 
@@ -32,18 +32,19 @@ impl Octree {
         if let Some(&vertex) = triangles.iter().flatten().find(inside) {
             return Err(OctreeError::VertexOutside { vertex: vertex as usize });
         }
+        self.divide();
         let first = self.vertices.len() as u32;
         let added = self.triangles.len()..total;
         self.vertices.extend(vertices);
         self.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
         self.objects.push(Object { vertices: vertices.len(), triangles: triangles.len() });
         let division = self.division();
-        let homes = merged(&self.homes, &division.homes(added.clone()));
+        let homes = merged(&self.nodes().homes, &division.homes(added.clone()));
         let mut leaves = Leaves::default();
         let references = division.references(added);
-        let edit = Edit { division, old: &self.leaves, removed: 0..0, emptied: Vec::new() };
-        edit.cell(LocationalCode::ROOT, 0..self.leaves.codes.len(), &homes, references, &mut leaves);
-        (self.homes, self.leaves) = (homes, leaves);
+        let edit = Edit { division, old: self.leaves(), removed: 0..0, emptied: Vec::new() };
+        edit.cell(LocationalCode::ROOT, 0..self.leaves().codes.len(), &homes, references, &mut leaves);
+        self.nodes = Nodes { homes, leaves }.into();
         self.drop_index();
         Ok(self.objects.len() - 1)
     }
@@ -53,19 +54,20 @@ impl Octree {
     /// Cost: as for [`Octree::insert`].
     pub fn remove(&mut self, object: usize) -> bool {
         let Some(&Object { vertices, triangles }) = self.objects.get(object) else { return false };
+        self.divide();
         let before = &self.objects[..object];
         let first_vertex: usize = before.iter().map(|o| o.vertices).sum();
         let first: usize = before.iter().map(|o| o.triangles).sum();
         let removed = first..first + triangles;
         let division = self.division();
-        let homes = without(&self.homes, &division.homes(removed.clone()));
+        let homes = without(&self.nodes().homes, &division.homes(removed.clone()));
         let mut leaves = Leaves::default();
         let edit =
-            Edit { division, old: &self.leaves, removed: removed.clone(), emptied: self.leaves.naming(&removed) };
-        edit.cell(LocationalCode::ROOT, 0..self.leaves.codes.len(), &homes, Vec::new(), &mut leaves);
+            Edit { division, old: self.leaves(), removed: removed.clone(), emptied: self.leaves().naming(&removed) };
+        edit.cell(LocationalCode::ROOT, 0..self.leaves().codes.len(), &homes, Vec::new(), &mut leaves);
         let behind = leaves.triangles.iter_mut().filter(|triangle| **triangle as usize >= removed.end);
         behind.for_each(|triangle| *triangle -= triangles as u32);
-        (self.homes, self.leaves) = (homes, leaves);
+        self.nodes = Nodes { homes, leaves }.into();
         self.triangles.drain(removed);
         self.vertices.drain(first_vertex..first_vertex + vertices);
         self.triangles[first..].iter_mut().flatten().for_each(|corner| *corner -= vertices as u32);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use std::ops::Range;
 
-use super::build::{Division, Leaves, Reference, eighths};
+use super::build::{Division, Leaves, Nodes, Reference, eighths};
 use super::cube::Cube;
 use super::{LocationalCode, MAX_DEPTH, Object, Octree, OctreeError, Settings, Walk, check};
 
@@ -71,7 +71,7 @@ impl Octree {
     /// # Errors
     /// [`FileError::Fields`] if memory is short.
     pub fn to_bytes(&self) -> Result<Vec<u8>, FileError> {
-        let leaves = &self.leaves;
+        let leaves = self.leaves();
         let stored = Stored {
             origin: self.cube.origin.to_array(),
             side: self.cube.side,
@@ -163,12 +163,13 @@ impl Stored {
         let objects = self.objects(&vertices)?;
         let leaves = self.leaves()?;
         let settings = Settings { depth: self.depth, leaf_triangles, ..Settings::default() };
-        let mut octree = Octree { vertices, objects, leaves, ..Octree::of_cube(cube, &settings) };
+        let mut octree = Octree { vertices, objects, ..Octree::of_cube(cube, &settings) };
         octree.triangles = self.triangles;
         let division = octree.division();
         let all = division.references(0..octree.triangles.len());
-        check_nodes(&division, &octree.leaves, LocationalCode::ROOT, 0..octree.leaves.codes.len(), &all)?;
-        octree.homes = division.homes(0..octree.triangles.len());
+        check_nodes(&division, &leaves, LocationalCode::ROOT, 0..leaves.codes.len(), &all)?;
+        let homes = division.homes(0..octree.triangles.len());
+        octree.nodes = Nodes { homes, leaves }.into();
         Ok(octree.with_walk(Walk::Index))
     }
 

@@ -1,69 +1,111 @@
-//! The index: wide nodes over the sorted terminal nodes, for rays that start at the top.
+//! The index: wide nodes over the triangles in the order of their codes, for rays that start at the top.
 
-use glam::DVec3;
-use rayon::join;
+use rayon::current_num_threads;
+use rayon::prelude::*;
 use wide::f32x4;
 
-use super::clip::Bounds;
+use super::build::Division;
 use super::frame::Frame;
-use super::items::Item;
-use super::packet::{LANES, Packet};
-use super::partition::divide;
+use super::items::{self, Item};
+use super::lanes::{Eight, LANES, Lanes};
+use super::packet::Packet;
+use super::partition::{Part, divide};
 
-/// Children of a node.
-pub const WIDTH: usize = 4;
+/// So many cells or fewer are divided by their items.
+const FEW_CELLS: usize = 512;
 
-/// More items than this are split between threads.
-const PARALLEL_ITEMS: usize = 4096;
+/// Set where a child is a packet.
+const PACKET: u32 = 1 << 31;
 
-/// What single-precision division of lengths may lose, relative.
-const LENGTH_ERROR: f32 = 1.0 + 4.0 * f32::EPSILON;
+/// What is below a box: a node or a packet, by its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Child(pub u32);
 
-/// Up to four boxes, each of a node or of the packets of a terminal node.
+impl Child {
+    /// The place of a packet, or else of a node.
+    #[inline]
+    pub fn place(self) -> Result<usize, usize> {
+        let place = (self.0 & !PACKET) as usize;
+        if self.0 & PACKET != 0 { Ok(place) } else { Err(place) }
+    }
+
+    /// The same when so many nodes and packets come before.
+    fn moved(self, nodes: usize, packets: usize) -> Self {
+        Self(self.0 + if self.0 & PACKET != 0 { packets } else { nodes } as u32)
+    }
+}
+
+/// Up to eight boxes, each of a node or of a packet.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub struct Node {
     /// By axis, then low and high.
-    bounds: [[f32x4; 2]; 3],
-    /// Where each child begins, among the nodes or among the packets.
-    pub start: [u32; WIDTH],
-    /// Number of packets; 0 for a node.
-    pub packets: [u32; WIDTH],
+    bounds: [[Eight; 2]; 3],
+    /// What is in each.
+    pub children: [Child; LANES],
 }
 
 impl Node {
-    fn new(boxes: [Bounds; WIDTH]) -> Self {
-        let lanes = |number: &dyn Fn(&Bounds) -> f32| f32x4::new(std::array::from_fn(|lane| number(&boxes[lane])));
-        let bounds = std::array::from_fn(|axis| [lanes(&|b| b.low[axis]), lanes(&|b| b.high[axis])]);
-        Self { bounds, start: [0; WIDTH], packets: [0; WIDTH] }
+    const EMPTY: Self = Self {
+        bounds: [[Eight([f32::INFINITY; LANES]), Eight([f32::NEG_INFINITY; LANES])]; 3],
+        children: [Child(0); LANES],
+    };
+
+    fn set(&mut self, lane: usize, around: &Item, child: Child) {
+        let (low, high) = (around.low.to_array(), around.high.to_array());
+        for axis in 0..3 {
+            self.bounds[axis][0].0[lane] = low[axis];
+            self.bounds[axis][1].0[lane] = high[axis];
+        }
+        self.children[lane] = child;
     }
 
     /// The children that the ray may meet up to a limit, one bit each, and where it enters them.
-    #[inline]
-    pub fn meets(&self, frame: &Frame, limit: f32) -> (u32, [f32; WIDTH]) {
-        let side = |axis: usize, side: usize, origin: &[f32x4; 3]| {
-            (self.bounds[axis][side] - origin[axis]) * frame.inverse[axis]
-        };
-        let [x, y, z] = frame.down;
-        let near = side(0, x, &frame.near_origin)
-            .fast_max(side(1, y, &frame.near_origin))
-            .fast_max(side(2, z, &frame.near_origin).fast_max(f32x4::splat(frame.start)));
-        let far = side(0, 1 - x, &frame.far_origin).fast_min(side(1, 1 - y, &frame.far_origin)).fast_min(side(
-            2,
-            1 - z,
-            &frame.far_origin,
-        ));
-        let far = (far * f32x4::splat(LENGTH_ERROR)).fast_min(f32x4::splat(limit));
-        (near.simd_le(far).to_bitmask(), near.to_array())
+    #[inline(always)]
+    pub fn meets<L: Lanes>(&self, slabs: &Slabs<L>, limit: f32) -> (u32, L) {
+        let [x, y, z] = &self.bounds;
+        let near_z = slabs.near(z, 2).most(L::splat(0.0));
+        let enter = slabs.near(x, 0).most(slabs.near(y, 1)).most(near_z);
+        let far_z = slabs.far(z, 2).least(L::splat(limit));
+        let exit = slabs.far(x, 0).least(slabs.far(y, 1)).least(far_z);
+        (enter.is_at_most(exit), enter)
     }
 }
 
-/// Part of the binary tree that the nodes are gathered from.
-struct Branch {
-    bounds: Bounds,
-    /// Number of items.
-    items: usize,
-    /// The two parts; none where the items fit into one packet.
-    parts: Option<Box<[Branch; 2]>>,
+/// A frame as boxes see it.
+#[derive(Clone, Copy)]
+pub struct Slabs<L> {
+    inverse: [L; 3],
+    near: [L; 3],
+    far: [L; 3],
+    down: [usize; 3],
+}
+
+impl<L: Lanes> Slabs<L> {
+    /// The same in every lane.
+    #[inline(always)]
+    pub fn new(frame: &Frame) -> Self {
+        let [inverse, near, far] = [&frame.inverse, &frame.near, &frame.far];
+        let [x, y, z] = frame.down;
+        Self {
+            inverse: [L::splat(inverse[0]), L::splat(inverse[1]), L::splat(inverse[2])],
+            near: [L::splat(near[0]), L::splat(near[1]), L::splat(near[2])],
+            far: [L::splat(far[0]), L::splat(far[1]), L::splat(far[2])],
+            down: [x & 1, y & 1, z & 1],
+        }
+    }
+
+    /// Lengths to the near sides of boxes.
+    #[inline(always)]
+    fn near(&self, sides: &[Eight; 2], axis: usize) -> L {
+        L::load(&sides[self.down[axis]]).times_minus(self.inverse[axis], self.near[axis])
+    }
+
+    /// Lengths to the far sides of boxes.
+    #[inline(always)]
+    fn far(&self, sides: &[Eight; 2], axis: usize) -> L {
+        L::load(&sides[1 - self.down[axis]]).times_minus(self.inverse[axis], self.far[axis])
+    }
 }
 
 /// The index over items: nodes and packets.
@@ -76,69 +118,152 @@ pub struct Index {
 }
 
 impl Index {
-    /// Builds it; `corners` gives the local coordinates of a triangle.
-    pub fn new(mut items: Vec<Item>, corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
+    /// Builds it; the result does not depend on the number of threads.
+    pub fn new(division: &Division<'_>) -> Self {
+        let local = items::local(division);
+        let (items, mut cells) = items::items(division, &local);
         let mut index = Self::default();
         if items.is_empty() {
             return index;
         }
-        let tree = grow(&mut items);
-        index.gather(&tree, &items, &corners);
+        let builder = Builder { triangles: division.triangles, local: &local, items: &items };
+        let mut groups = Vec::new();
+        let part = Part::of(&cells);
+        index.of_cells(&mut cells, &part, &mut groups);
+        let build = |cells: &[Item], index: &mut Self| builder.of_group(cells, index);
+        if current_num_threads() == 1 {
+            index.nodes.reserve(items.len() / 24);
+            index.packets.reserve(items.len() / 4);
+            for (cells, place) in groups {
+                let child = build(cells, &mut index);
+                index.attach(child, place);
+            }
+        } else {
+            let made: Vec<Self> = groups
+                .par_iter()
+                .map(|(cells, _)| {
+                    let mut made = Self::default();
+                    build(cells, &mut made);
+                    made
+                })
+                .collect();
+            for (made, (_, place)) in made.iter().zip(groups) {
+                let child = index.append(made);
+                index.attach(child, place);
+            }
+        }
         index
     }
 
-    /// Gathers a branch into nodes, opening the largest part until the node is full; returns the first node.
-    fn gather(&mut self, branch: &Branch, items: &[Item], corners: &impl Fn(u32) -> [DVec3; 3]) -> u32 {
-        // Each part with the place of its first item.
-        let mut parts = vec![(branch, 0)];
-        while parts.len() < WIDTH {
-            let open = parts.iter().enumerate().filter(|(_, (part, _))| part.parts.is_some());
-            let Some((slot, _)) = open.max_by(|(i, (a, _)), (j, (b, _))| {
-                a.bounds.half_area().total_cmp(&b.bounds.half_area()).then(j.cmp(i))
-            }) else {
-                break;
-            };
-            let (part, first) = parts[slot];
-            if let Some([left, right]) = part.parts.as_deref() {
-                parts[slot] = (left, first);
-                parts.insert(slot + 1, (right, first + left.items));
+    /// Adds the nodes of many cells, and collects groups of few with the places that wait for their nodes.
+    fn of_cells<'a>(&mut self, cells: &'a mut [Item], part: &Part, groups: &mut Vec<Group<'a>>) -> Child {
+        let is_few = |part: &Part| part.items <= FEW_CELLS;
+        if is_few(part) {
+            groups.push((cells, None));
+            return Child(0);
+        }
+        let node = Child(self.nodes.len() as u32);
+        self.nodes.push(Node::EMPTY);
+        for (lane, (share, part)) in shares(cells, part).into_iter().enumerate() {
+            let place = (node.0 as usize, lane);
+            self.nodes[place.0].set(lane, &part.around, Child(0));
+            if is_few(&part) {
+                groups.push((share, Some(place)));
+            } else {
+                let child = self.of_cells(share, &part, groups);
+                self.attach(child, Some(place));
             }
         }
-        let place = self.nodes.len();
-        let bounds = std::array::from_fn(|lane| parts.get(lane).map_or(Bounds::EMPTY, |(part, _)| part.bounds));
-        self.nodes.push(Node::new(bounds));
-        for (lane, (part, first)) in parts.into_iter().enumerate() {
-            let items = &items[first..first + part.items];
-            let (start, packets) = match part.parts {
-                Some(_) => (self.gather(part, items, corners), 0),
-                None => self.pack(items, corners),
-            };
-            self.nodes[place].start[lane] = start;
-            self.nodes[place].packets[lane] = packets;
-        }
-        place as u32
+        node
     }
 
-    /// Packs items; returns the first packet and how many there are.
-    fn pack(&mut self, items: &[Item], corners: &impl Fn(u32) -> [DVec3; 3]) -> (u32, u32) {
-        let start = self.packets.len() as u32;
-        for chunk in items.chunks(LANES) {
-            self.packets.push(Packet::new(chunk.iter().map(|item| item.triangle), corners));
+    /// Puts a child in its place.
+    fn attach(&mut self, child: Child, place: Option<(usize, usize)>) {
+        if let Some((node, lane)) = place {
+            self.nodes[node].children[lane] = child;
         }
-        (start, self.packets.len() as u32 - start)
+    }
+
+    /// Adds what another one holds; returns its top.
+    fn append(&mut self, other: &Self) -> Child {
+        let (nodes, packets) = (self.nodes.len(), self.packets.len());
+        self.packets.extend_from_slice(&other.packets);
+        self.nodes.extend(other.nodes.iter().cloned().map(|mut node| {
+            node.children = node.children.map(|child| child.moved(nodes, packets));
+            node
+        }));
+        Child(nodes as u32)
     }
 }
 
-/// Sorts items into a tree.
-fn grow(items: &mut [Item]) -> Branch {
-    let count = items.len();
-    let bounds = items.iter().fold(Bounds::EMPTY, |all, item| all.union(&item.bounds));
-    if count <= LANES {
-        return Branch { bounds, items: count, parts: None };
+/// Some cells, and the lane of the node that they are below.
+type Group<'a> = (&'a mut [Item], Option<(usize, usize)>);
+
+/// Divides the largest part of some items again and again until a node is full.
+fn shares<'a>(mut items: &'a mut [Item], part: &Part) -> Vec<(&'a mut [Item], Part)> {
+    let mut parts = Vec::with_capacity(LANES);
+    parts.push(*part);
+    while parts.len() < LANES {
+        let mut largest = (0.0, None);
+        let mut first = 0;
+        for (slot, part) in parts.iter().enumerate() {
+            let area = part.around.half_area();
+            if part.weight > LANES && part.items > 1 && area >= largest.0 {
+                largest = (area, Some((slot, first)));
+            }
+            first += part.items;
+        }
+        let Some((slot, first)) = largest.1 else { break };
+        let [left, right] = divide(&mut items[first..first + parts[slot].items], &parts[slot]);
+        parts[slot] = left;
+        parts.insert(slot + 1, right);
     }
-    let middle = divide(items);
-    let (left, right) = items.split_at_mut(middle);
-    let (left, right) =
-        if count > PARALLEL_ITEMS { join(|| grow(left), || grow(right)) } else { (grow(left), grow(right)) };
-    Branch { bounds, items: count, parts: Some(Box::new([left, right])) }
+    let share = |part: Part| {
+        let (share, rest) = std::mem::take(&mut items).split_at_mut(part.items);
+        items = rest;
+        (share, part)
+    };
+    parts.into_iter().map(share).collect()
+}
+
+/// What all nodes are made of.
+struct Builder<'a> {
+    triangles: &'a [[u32; 3]],
+    local: &'a [f32x4],
+    items: &'a [Item],
+}
+
+impl Builder<'_> {
+    /// Adds the nodes of the items of some cells.
+    fn of_group(&self, cells: &[Item], index: &mut Index) -> Child {
+        let mut items = Vec::with_capacity(cells.iter().map(Item::weight).sum());
+        for cell in cells {
+            let first = cell.number() as usize;
+            items.extend_from_slice(&self.items[first..first + cell.weight()]);
+        }
+        let part = Part::of(&items);
+        self.node(&mut items, &part, index)
+    }
+
+    fn node(&self, items: &mut [Item], part: &Part, index: &mut Index) -> Child {
+        let node = index.nodes.len();
+        index.nodes.push(Node::EMPTY);
+        for (lane, (share, part)) in shares(items, part).into_iter().enumerate() {
+            let child =
+                if part.items > LANES { self.node(share, &part, index) } else { self.packet(share, index) };
+            index.nodes[node].set(lane, &part.around, child);
+        }
+        Child(node as u32)
+    }
+
+    fn packet(&self, items: &[Item], index: &mut Index) -> Child {
+        let corners = |triangle: u32| {
+            self.triangles[triangle as usize].map(|i| {
+                let [x, y, z, _] = self.local[i as usize].to_array();
+                [x, y, z]
+            })
+        };
+        index.packets.push(Packet::new(items.iter().map(Item::number), corners));
+        Child(PACKET | (index.packets.len() - 1) as u32)
+    }
 }

@@ -33,11 +33,11 @@ impl Octree {
         let mut ahead = Vec::new();
         loop {
             let (cell, leaf) = match self.locate_leaf(LocationalCode::containing(voxel, MAX_DEPTH)) {
-                Ok(leaf) => (self.leaves.codes[leaf], Some(leaf)),
+                Ok(leaf) => (self.leaves().codes[leaf], Some(leaf)),
                 Err(Location::Empty { code, .. }) => (code, None),
                 Err(_) => break,
             };
-            ahead.extend(leaf.map_or(&[][..], |leaf| self.leaves.of(leaf)));
+            ahead.extend(leaf.map_or(&[][..], |leaf| self.leaves().of(leaf)));
             voxel[0] = cell.corner()[0] + cell.side();
             if voxel[0] >= 1 << MAX_DEPTH {
                 break;

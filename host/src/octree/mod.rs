@@ -10,12 +10,14 @@ mod build;
 mod clip;
 mod code;
 mod cube;
+mod descend;
 mod edit;
 mod file;
 mod frame;
 mod index;
 mod inside;
 mod items;
+mod lanes;
 mod nearest;
 mod neighbours;
 mod packet;
@@ -27,12 +29,14 @@ mod walk;
 #[cfg(test)]
 mod tests;
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
 use crate::numeric::bounds::Bounds;
 pub use crate::numeric::ray::{Hit, Ray};
 use crate::numeric::triangle::MAX_MAGNITUDE;
-use build::{Division, Leaves};
+use build::{Division, Leaves, Nodes, PARALLEL_TRIANGLES};
 pub use code::{LocationalCode, MAX_DEPTH};
 use cube::Cube;
 pub use file::FileError;
@@ -161,9 +165,8 @@ pub struct Octree {
     vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     objects: Vec<Object>,
-    /// The homes of all triangles, sorted.
-    homes: Vec<LocationalCode>,
-    leaves: Leaves,
+    /// Made when they are first asked for: rays down the index do without.
+    nodes: OnceLock<Nodes>,
     /// Empty unless rays are to go down the index.
     index: Index,
 }
@@ -183,10 +186,6 @@ impl Octree {
         octree.vertices = vertices.to_vec();
         octree.triangles = triangles.to_vec();
         octree.objects = vec![Object { vertices: vertices.len(), triangles: triangles.len() }];
-        let division = octree.division();
-        let homes = division.homes(0..triangles.len());
-        let leaves = division.leaves(&homes);
-        (octree.homes, octree.leaves) = (homes, leaves);
         Ok(octree.with_walk(settings.walk))
     }
 
@@ -215,10 +214,26 @@ impl Octree {
             vertices: Vec::new(),
             triangles: Vec::new(),
             objects: Vec::new(),
-            homes: Vec::new(),
-            leaves: Leaves::default(),
+            nodes: OnceLock::new(),
             index: Index::default(),
         }
+    }
+
+    /// Makes the terminal nodes, unless they are there, on all threads.
+    fn divide(&mut self) {
+        if self.nodes.get().is_none() {
+            self.nodes = self.division().nodes().into();
+        }
+    }
+
+    /// The terminal nodes. Whoever asks first for them makes them on one thread: if it waited for others, they could be
+    /// waiting for the same nodes.
+    fn nodes(&self) -> &Nodes {
+        self.nodes.get_or_init(|| Division { grain: usize::MAX, ..self.division() }.nodes())
+    }
+
+    fn leaves(&self) -> &Leaves {
+        &self.nodes().leaves
     }
 
     fn division(&self) -> Division<'_> {
@@ -228,17 +243,25 @@ impl Octree {
             triangles: &self.triangles,
             depth: self.depth,
             leaf_triangles: self.leaf_triangles,
+            grain: PARALLEL_TRIANGLES,
         }
     }
 
-    /// The same octree, walked another way. Makes the index if the walk needs it, and else drops it.
-    pub fn with_walk(self, walk: Walk) -> Self {
+    /// The same octree with its terminal nodes, which else are made when they are first asked for, and then on one thread.
+    pub fn divided(mut self) -> Self {
+        self.divide();
+        self
+    }
+
+    /// The same octree, walked another way. Makes the index if the walk needs it; else drops it, and makes the terminal
+    /// nodes.
+    pub fn with_walk(mut self, walk: Walk) -> Self {
         let index = match walk {
-            Walk::Index => {
-                let division = self.division();
-                Index::new(items::items(&self.leaves, &division), |triangle| division.corners(triangle))
+            Walk::Index => Index::new(&self.division()),
+            Walk::LeadingDirection => {
+                self.divide();
+                Index::default()
             }
-            Walk::LeadingDirection => Index::default(),
         };
         Self { walk, index, ..self }
     }
@@ -270,12 +293,12 @@ impl Octree {
 
     /// The terminal nodes that hold surface, sorted.
     pub fn codes(&self) -> &[LocationalCode] {
-        &self.leaves.codes
+        &self.leaves().codes
     }
 
     /// The triangles that touch a terminal node, ascending; none for any other cube.
     pub fn triangles_in(&self, node: LocationalCode) -> &[u32] {
-        self.leaves.codes.binary_search(&node).map_or(&[], |leaf| self.leaves.of(leaf))
+        self.leaves().codes.binary_search(&node).map_or(&[], |leaf| self.leaves().of(leaf))
     }
 
     /// Lowest and highest corner of a cell, world units.
@@ -287,8 +310,8 @@ impl Octree {
     pub fn locate(&self, point: DVec3) -> Location {
         match self.cube.voxel(point) {
             Some(voxel) => match self.locate_leaf(LocationalCode::containing(voxel, MAX_DEPTH)) {
-                Ok(leaf) if self.leaves.codes[leaf].level() == self.depth => Location::Voxel(self.leaves.codes[leaf]),
-                Ok(leaf) => Location::Partial(self.leaves.codes[leaf]),
+                Ok(leaf) if self.leaves().codes[leaf].level() == self.depth => Location::Voxel(self.leaves().codes[leaf]),
+                Ok(leaf) => Location::Partial(self.leaves().codes[leaf]),
                 Err(empty) => empty,
             },
             None => Location::Outside,
@@ -300,14 +323,14 @@ impl Octree {
     /// If the longest run of digits that the voxel shares with a stored code has i of them, the cube of its first
     /// i + 1 digits holds no stored node: that is the empty region. A neighbour in the order shares the longest run.
     fn locate_leaf(&self, voxel: LocationalCode) -> Result<usize, Location> {
-        let after = self.leaves.codes.partition_point(|&code| code <= voxel);
-        let before = after.checked_sub(1).filter(|&leaf| self.leaves.codes[leaf].contains(voxel));
+        let after = self.leaves().codes.partition_point(|&code| code <= voxel);
+        let before = after.checked_sub(1).filter(|&leaf| self.leaves().codes[leaf].contains(voxel));
         if let Some(leaf) = before {
             return Ok(leaf);
         }
         let neighbours = [after.checked_sub(1), Some(after)].into_iter().flatten();
         let shared =
-            neighbours.filter_map(|leaf| self.leaves.codes.get(leaf)).map(|code| code.common_digits(voxel)).max();
+            neighbours.filter_map(|leaf| self.leaves().codes.get(leaf)).map(|code| code.common_digits(voxel)).max();
         let level = shared.map_or(0, |digits| digits + 1);
         Err(Location::Empty { code: voxel.ancestor(level), level })
     }

@@ -19,7 +19,7 @@ impl Octree {
         let mut found = Vec::new();
         let Some(beside) = cube.shifted(towards).filter(|&beside| beside != cube) else { return found };
         // The last node that begins before the neighbour of the same size ends is the only one that can contain it.
-        let codes = &self.leaves.codes;
+        let codes = &self.leaves().codes;
         let end = codes.partition_point(|&code| code.begins_before_end_of(beside));
         match end.checked_sub(1).map(|last| codes[last]).filter(|last| last.contains(beside)) {
             Some(larger) if !larger.contains(cube) => found.push(larger),
@@ -31,11 +31,11 @@ impl Octree {
 
     /// Adds the nodes in a cube that reach the sides turned away from `towards`.
     fn touching(&self, cube: LocationalCode, towards: [i8; 3], nodes: Range<usize>, found: &mut Vec<LocationalCode>) {
-        let nodes = self.leaves.within(cube, nodes);
+        let nodes = self.leaves().within(cube, nodes);
         if nodes.is_empty() {
             return;
         }
-        if self.leaves.codes[nodes.start] == cube {
+        if self.leaves().codes[nodes.start] == cube {
             found.push(cube);
             return;
         }

@@ -1,46 +1,46 @@
-//! Four triangles at a time: which of them can a ray hit?
+//! Eight triangles at a time: which of them can a ray hit?
 
-use glam::DVec3;
-use wide::f32x4;
-
-use super::clip::round_up;
 use super::frame::Frame;
-
-/// Triangles in a packet.
-pub const LANES: usize = 4;
+use super::lanes::{Eight, LANES, Lanes};
 
 /// A coordinate outside every cube, for lanes without a triangle.
 const NOWHERE: f32 = 1e18;
 
-/// Four triangles in local coordinates, rounded to single precision, lane by lane.
+/// What rounding the corners may add to the size of a triangle.
+const ROUNDING: f32 = 1.0 / (1_u32 << 22) as f32;
+
+/// Eight triangles in local coordinates, rounded to single precision, lane by lane.
 #[derive(Clone, Debug)]
 pub struct Packet {
     /// By corner, then axis.
-    corners: [[f32x4; 3]; 3],
+    corners: [[Eight; 3]; 3],
     /// Longest side of the box of each, rounded up.
-    size: f32x4,
+    size: Eight,
     /// Indices of the triangles.
     pub triangles: [u32; LANES],
 }
 
 impl Packet {
-    /// Packs up to four triangles; `corners` gives the local coordinates of one.
-    pub fn new(triangles: impl Iterator<Item = u32>, corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
-        let mut coordinates = [[[NOWHERE; LANES]; 3]; 3];
-        let mut size = [0.0; LANES];
-        let mut indices = [u32::MAX; LANES];
+    /// Packs up to eight triangles; `corners` gives the local coordinates of one.
+    pub fn new(triangles: impl Iterator<Item = u32>, corners: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
+        let nowhere = Eight([NOWHERE; LANES]);
+        let mut packet =
+            Self { corners: [[nowhere; 3]; 3], size: Eight([0.0; LANES]), triangles: [u32::MAX; LANES] };
         for (lane, triangle) in triangles.take(LANES).enumerate() {
-            let points = corners(triangle);
-            for (corner, point) in points.iter().enumerate() {
-                for axis in 0..3 {
-                    coordinates[corner][axis][lane] = point[axis] as f32;
+            let [a, b, c] = corners(triangle);
+            let mut size = 0.0_f32;
+            for axis in 0..3 {
+                for (corner, point) in [a, b, c].iter().enumerate() {
+                    packet.corners[corner][axis].0[lane] = point[axis];
                 }
+                let low = a[axis].min(b[axis]).min(c[axis]);
+                let high = a[axis].max(b[axis]).max(c[axis]);
+                size = size.max(high - low);
             }
-            let [a, b, c] = points;
-            size[lane] = round_up((a.max(b).max(c) - a.min(b).min(c)).max_element());
-            indices[lane] = triangle;
+            packet.size.0[lane] = size + ROUNDING;
+            packet.triangles[lane] = triangle;
         }
-        Self { corners: coordinates.map(|corner| corner.map(f32x4::new)), size: f32x4::new(size), triangles: indices }
+        packet
     }
 
     /// The triangles that the ray may hit between the start of the frame and `limit`: one bit a lane.
@@ -49,29 +49,68 @@ impl Packet {
     /// tolerance of the frame, by which a sheared coordinate may be off, and s the size of the triangle. If the ray
     /// meets the triangle, its sheared corners lie within 2 s of the ray, so that an edge function is off by at most
     /// 8 e s + 2 e^2, and by 12 s^2 2^-24 < 3 e s from the products.
-    #[inline]
-    pub fn candidates(&self, frame: &Frame, limit: f32) -> u32 {
+    #[inline(always)]
+    pub fn candidates<L: Lanes>(&self, sight: &Sight<L>, limit: f32) -> u32 {
+        let [a, b, c] = &self.corners;
+        let ((ax, ay), (bx, by), (cx, cy)) = (sight.across(a), sight.across(b), sight.across(c));
+        let first = cx.times_minus(by, cy.times(bx));
+        let second = ax.times_minus(cy, ay.times(cx));
+        let third = bx.times_minus(ay, by.times(ax));
+        let error = L::load(&self.size).plus(sight.tolerance).times(sight.error_scale);
+        let low = first.least(second).least(third).plus(error);
+        let high = first.most(second).most(third).minus(error);
+        let zero = L::splat(0.0);
+        let mut lanes = zero.is_at_most(low) | high.is_at_most(zero);
+        if lanes != 0 {
+            let (a, b, c) = (sight.along(a), sight.along(b), sight.along(c));
+            lanes &= a.least(b).least(c).is_at_most(L::splat(limit)) & zero.is_at_most(a.most(b).most(c));
+        }
+        lanes
+    }
+}
+
+/// A frame as packets see it.
+///
+/// What takes [`Lanes`] has neither closures nor `map`: they would be compiled for plain instructions.
+#[derive(Clone, Copy)]
+pub struct Sight<L> {
+    axes: [usize; 3],
+    slopes: [L; 2],
+    base: [L; 3],
+    sign_z: L,
+    tolerance: L,
+    error_scale: L,
+}
+
+impl<L: Lanes> Sight<L> {
+    /// The same in every lane.
+    #[inline(always)]
+    pub fn new(frame: &Frame) -> Self {
         let [x, y, z] = frame.axes;
-        let place = |corner: &[f32x4; 3]| {
-            let along = (corner[z] - frame.base[2]) * frame.sign_z;
-            (
-                corner[x] - frame.base[0] - frame.slope_x * along,
-                corner[y] - frame.base[1] - frame.slope_y * along,
-                along,
-            )
-        };
-        let (ax, ay, az) = place(&self.corners[0]);
-        let (bx, by, bz) = place(&self.corners[1]);
-        let (cx, cy, cz) = place(&self.corners[2]);
-        let first = cx * by - cy * bx;
-        let second = ax * cy - ay * cx;
-        let third = bx * ay - by * ax;
-        let error = (self.size + frame.tolerance) * frame.error_scale;
-        let low = first.fast_min(second).fast_min(third);
-        let high = first.fast_max(second).fast_max(third);
-        let beside = low.simd_lt(-error) & high.simd_gt(error);
-        let beyond = az.fast_min(bz).fast_min(cz).simd_gt(f32x4::splat(limit));
-        let before = az.fast_max(bz).fast_max(cz).simd_lt(frame.start);
-        !(beside | beyond | before).to_bitmask() & 0xf
+        Self {
+            // So that no place need be checked.
+            axes: [x.min(2), y.min(2), z.min(2)],
+            slopes: [L::splat(frame.shear[0]), L::splat(frame.shear[1])],
+            base: [L::splat(frame.base[0]), L::splat(frame.base[1]), L::splat(frame.base[2])],
+            sign_z: L::splat(frame.sign_z),
+            tolerance: L::splat(frame.tolerance),
+            error_scale: L::splat(frame.error_scale),
+        }
+    }
+
+    /// Where corners lie beside the ray.
+    #[inline(always)]
+    fn across(&self, corners: &[Eight; 3]) -> (L, L) {
+        let [x, y, z] = self.axes;
+        let along = L::load(&corners[z]);
+        let x = self.slopes[0].times_from(along, L::load(&corners[x]).minus(self.base[0]));
+        let y = self.slopes[1].times_from(along, L::load(&corners[y]).minus(self.base[1]));
+        (x, y)
+    }
+
+    /// Where corners lie along the ray.
+    #[inline(always)]
+    fn along(&self, corners: &[Eight; 3]) -> L {
+        L::load(&corners[self.axes[2]]).times_minus(self.sign_z, self.base[2])
     }
 }

@@ -1,119 +1,109 @@
 //! Where to divide items, so that rays have little work.
 
-use super::clip::Bounds;
-use super::items::Item;
-use super::packet::LANES;
+use wide::f32x4;
 
-/// So many items or fewer are divided exactly, more by bins.
-const EXACT: usize = 16;
+use super::items::Item;
+use super::lanes::LANES;
 
 /// Bins along each axis.
 const BINS: usize = 16;
 
-/// Divides items, at least two, in place; returns how many are in the first part, neither none nor all.
+/// Successive items as one.
+#[derive(Clone, Copy)]
+pub struct Part {
+    /// Number of items.
+    pub items: usize,
+    /// Number of triangles that they stand for.
+    pub weight: usize,
+    /// The box around them.
+    pub around: Item,
+    /// The box around twice their middles.
+    centres: Item,
+}
+
+impl Part {
+    const NOTHING: Self = Self { items: 0, weight: 0, around: Item::EMPTY, centres: Item::EMPTY };
+
+    /// All of some items.
+    pub fn of(items: &[Item]) -> Self {
+        let mut part = Self::NOTHING;
+        items.iter().for_each(|item| part.add(item));
+        part
+    }
+
+    #[inline]
+    fn add(&mut self, item: &Item) {
+        let centre = item.centre();
+        self.items += 1;
+        self.weight += item.weight();
+        self.around = self.around.union(item);
+        self.centres = self.centres.union(&Item { low: centre, high: centre });
+    }
+}
+
+/// Divides the items of a part, at least two, in place, neither part empty.
 ///
 /// # Source
 /// Surface-area heuristic: Goldsmith and Salmon 1987; bins: Wald 2007. The price counts packets, not items.
-pub fn divide(items: &mut [Item]) -> usize {
-    let parted = if items.len() <= EXACT { sweep(items) } else { bin(items) };
-    parted.unwrap_or_else(|| {
-        // All centres in one point: any half is as good.
-        let middle = (items.len() / 2).next_multiple_of(LANES);
-        middle.clamp(1, items.len() - 1)
-    })
-}
-
-fn packets(count: usize) -> f32 {
-    count.div_ceil(LANES) as f32
-}
-
-fn centre(item: &Item, axis: usize) -> f32 {
-    item.bounds.low[axis] + item.bounds.high[axis]
-}
-
-/// Sorts along each axis and looks at every place between two items.
-fn sweep(items: &mut [Item]) -> Option<usize> {
-    let count = items.len();
-    let sort = |items: &mut [Item], axis: usize| {
-        items.sort_unstable_by(|a, b| centre(a, axis).total_cmp(&centre(b, axis)).then(a.number.cmp(&b.number)));
-    };
-    let mut best = (f32::INFINITY, 0, 0);
-    for axis in 0..3 {
-        sort(items, axis);
-        let mut areas = [0.0; EXACT + 1];
-        let mut after = Bounds::EMPTY;
-        for i in (1..count).rev() {
-            after = after.union(&items[i].bounds);
-            areas[i] = after.half_area();
-        }
-        let mut before = Bounds::EMPTY;
-        for i in 1..count {
-            before = before.union(&items[i - 1].bounds);
-            let price = before.half_area() * packets(i) + areas[i] * packets(count - i);
-            if price < best.0 {
-                best = (price, axis, i);
-            }
-        }
-    }
-    if best.1 != 2 {
-        sort(items, best.1);
-    }
-    (best.2 > 0).then_some(best.2)
-}
-
-/// Sorts into bins along each axis and looks at every place between two bins.
-fn bin(items: &mut [Item]) -> Option<usize> {
-    let mut low = [f32::INFINITY; 3];
-    let mut high = [f32::NEG_INFINITY; 3];
+pub fn divide(items: &mut [Item], part: &Part) -> [Part; 2] {
+    let low = part.centres.low;
+    let extent = (part.centres.high - low).to_array();
+    let scale = f32x4::new(extent.map(|x| if x > 0.0 { BINS as f32 * (1.0 - 1e-6) / x } else { 0.0 }));
+    let places = |item: &Item| ((item.centre() - low) * scale).fast_trunc_int().to_array();
+    let mut bins = [[(Item::EMPTY, 0_usize); BINS]; 3];
     for item in items.iter() {
-        for axis in 0..3 {
-            let x = centre(item, axis);
-            low[axis] = low[axis].min(x);
-            high[axis] = high[axis].max(x);
+        let places = places(item);
+        for (bins, place) in bins.iter_mut().zip(places) {
+            let (around, weight) = &mut bins[place as usize & (BINS - 1)];
+            *around = around.union(item);
+            *weight += item.weight();
         }
     }
-    let scale = [0, 1, 2].map(|axis| {
-        let extent = high[axis] - low[axis];
-        if extent > 0.0 { BINS as f32 * (1.0 - 1e-6) / extent } else { 0.0 }
-    });
-    let place = |item: &Item, axis: usize| (((centre(item, axis) - low[axis]) * scale[axis]) as usize).min(BINS - 1);
-    let mut bins = [[(Bounds::EMPTY, 0_usize); BINS]; 3];
-    for item in items.iter() {
-        for (axis, bins) in bins.iter_mut().enumerate() {
-            let (bounds, count) = &mut bins[place(item, axis)];
-            *bounds = bounds.union(&item.bounds);
-            *count += 1;
+    match cheapest(&bins) {
+        Some((axis, first)) => parted(items, |item| (places(item)[axis] as usize & (BINS - 1)) < first),
+        None => {
+            // All middles in one point: any half is as good.
+            let (left, right) = items.split_at(items.len() / 2);
+            [Part::of(left), Part::of(right)]
         }
     }
-    let mut best = (f32::INFINITY, 0, 0);
+}
+
+/// The axis, and the first bin of the second part; `None` if all items are in one bin along each axis.
+fn cheapest(bins: &[[(Item, usize); BINS]; 3]) -> Option<(usize, usize)> {
+    let price = |(around, weight): &(Item, usize)| around.half_area() * weight.div_ceil(LANES) as f32;
+    let joined = |one: &(Item, usize), other: &(Item, usize)| (one.0.union(&other.0), one.1 + other.1);
+    let mut best = (f32::INFINITY, None);
     for (axis, bins) in bins.iter().enumerate() {
-        let mut prices = [0.0; BINS];
-        let mut after = (Bounds::EMPTY, 0);
+        let mut prices = [f32::INFINITY; BINS];
+        let mut after = (Item::EMPTY, 0);
         for i in (1..BINS).rev() {
-            after = (after.0.union(&bins[i].0), after.1 + bins[i].1);
-            prices[i] = after.0.half_area() * packets(after.1);
+            after = joined(&after, &bins[i]);
+            if after.1 > 0 {
+                prices[i] = price(&after);
+            }
         }
-        let mut before = (Bounds::EMPTY, 0);
+        let mut before = (Item::EMPTY, 0);
         for i in 1..BINS {
-            before = (before.0.union(&bins[i - 1].0), before.1 + bins[i - 1].1);
-            let price = before.0.half_area() * packets(before.1) + prices[i];
-            if before.1 > 0 && before.1 < items.len() && price < best.0 {
-                best = (price, axis, i);
+            before = joined(&before, &bins[i - 1]);
+            if before.1 > 0 && bins[i].1 > 0 && price(&before) + prices[i] < best.0 {
+                best = (price(&before) + prices[i], Some((axis, i)));
             }
         }
     }
-    let (_, axis, first) = best;
-    (first > 0).then(|| part(items, |item| place(item, axis) < first))
+    best.1
 }
 
-/// Moves what belongs to the first part there; returns its number.
-fn part(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
-    let mut kept = 0;
+/// Moves what belongs to the first part there.
+fn parted(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> [Part; 2] {
+    let (mut left, mut right) = (Part::NOTHING, Part::NOTHING);
     for i in 0..items.len() {
-        if first(&items[i]) {
-            items.swap(i, kept);
-            kept += 1;
+        if is_first(&items[i]) {
+            left.add(&items[i]);
+            items.swap(i, left.items - 1);
+        } else {
+            right.add(&items[i]);
         }
     }
-    kept
+    [left, right]
 }

@@ -17,7 +17,7 @@ const FAN: usize = 4;
 /// The lanes of all of them, a bit for each.
 const ALL: u8 = (1 << FAN) - 1;
 /// Digits of the codes by which triangles are sorted.
-const DIGITS: u32 = 10;
+pub(super) const DIGITS: u32 = 10;
 /// Pairs of boxes from which on the search goes on in parallel.
 const TASKS: usize = 64;
 
@@ -379,7 +379,7 @@ fn searched(
 }
 
 /// Keys sorted by their upper halves, by three passes over digits of 10 bits; the lower halves are in order already.
-fn radix_sorted(mut keys: Vec<u64>) -> Vec<u64> {
+pub(super) fn radix_sorted(mut keys: Vec<u64>) -> Vec<u64> {
     const BITS: u32 = DIGITS;
     let mut sorted = vec![0; keys.len()];
     for pass in 0..3 {

@@ -41,19 +41,19 @@ impl Octree {
     /// What the octree holds.
     pub fn statistics(&self) -> Statistics {
         let mut depth_histogram = vec![0; self.depth as usize + 1];
-        for code in &self.leaves.codes {
+        for code in &self.leaves().codes {
             depth_histogram[code.level() as usize] += 1;
         }
         let linear_bytes = size_of_val(self.vertices.as_slice())
             + size_of_val(self.triangles.as_slice())
             + size_of_val(self.objects.as_slice())
-            + size_of_val(self.homes.as_slice())
-            + size_of_val(self.leaves.codes.as_slice())
-            + size_of_val(self.leaves.ends.as_slice())
-            + size_of_val(self.leaves.triangles.as_slice());
+            + size_of_val(self.nodes().homes.as_slice())
+            + size_of_val(self.leaves().codes.as_slice())
+            + size_of_val(self.leaves().ends.as_slice())
+            + size_of_val(self.leaves().triangles.as_slice());
         let bytes =
             linear_bytes + size_of_val(self.index.packets.as_slice()) + size_of_val(self.index.nodes.as_slice());
-        let leaves = self.leaves.codes.len();
+        let leaves = self.leaves().codes.len();
         let voxel_nodes = depth_histogram.last().copied().unwrap_or(0);
         let volumes = depth_histogram.iter().zip(0..).map(|(&count, level)| count as f64 * 0.125_f64.powi(level));
         Statistics {
@@ -62,8 +62,8 @@ impl Octree {
             leaves,
             partial_nodes: leaves - voxel_nodes,
             voxel_nodes,
-            references: self.leaves.triangles.len(),
-            most_references: (0..leaves).map(|leaf| self.leaves.of(leaf).len()).max().unwrap_or(0),
+            references: self.leaves().triangles.len(),
+            most_references: (0..leaves).map(|leaf| self.leaves().of(leaf).len()).max().unwrap_or(0),
             filled: volumes.sum(),
             depth: self.depth,
             depth_histogram,

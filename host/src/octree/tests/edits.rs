@@ -17,8 +17,8 @@ fn built(objects: &[Shape], settings: &Settings, at_once: bool) -> Octree {
 }
 
 fn assert_same(one: &Octree, other: &Octree) {
-    assert_eq!(one.leaves, other.leaves);
-    assert_eq!(one.homes, other.homes);
+    assert_eq!(one.leaves(), other.leaves());
+    assert_eq!(one.nodes().homes, other.nodes().homes);
     assert_eq!((&one.vertices, &one.triangles), (&other.vertices, &other.triangles));
     let packets = |octree: &Octree| {
         let index = octree.clone().with_walk(Walk::Index).index;

@@ -33,7 +33,7 @@ fn what_is_written_is_read_again() {
     // What was read can be changed as what was built.
     let (mut one, mut other) = (octree, again);
     assert!(one.remove(0) && other.remove(0));
-    assert_eq!(one.leaves, other.leaves);
+    assert_eq!(one.leaves(), other.leaves());
     let nothing = Octree::build(&[], &[], &Settings::default()).expect("nothing is fine");
     assert!(Octree::from_bytes(&nothing.to_bytes().expect("written")).is_ok());
 }

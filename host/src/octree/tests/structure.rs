@@ -117,9 +117,9 @@ fn the_octree_does_not_depend_on_the_number_of_threads() {
     let built = [1, 2, 5].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let octree = pool.install(|| shape.octree());
-        let packets: Vec<[u32; 4]> = octree.index.packets.iter().map(|packet| packet.triangles).collect();
-        let starts: Vec<[u32; 4]> = octree.index.nodes.iter().map(|node| node.start).collect();
-        (octree.leaves.clone(), octree.homes.clone(), packets, starts)
+        let packets: Vec<_> = octree.index.packets.iter().map(|packet| packet.triangles).collect();
+        let starts: Vec<_> = octree.index.nodes.iter().map(|node| node.children).collect();
+        (octree.leaves().clone(), octree.nodes().homes.clone(), packets, starts)
     });
     assert_eq!(built[0], built[1]);
     assert_eq!(built[0], built[2]);

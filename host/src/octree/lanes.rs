@@ -1,0 +1,160 @@
+//! Eight numbers at a time, with the widest instructions of the processor.
+
+/// Numbers in [`Lanes`].
+pub const LANES: usize = 8;
+
+/// Eight numbers at the beginning of a line of the cache.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub struct Eight(pub [f32; LANES]);
+
+/// Arithmetic on eight numbers in single precision. Comparisons give one bit a lane.
+///
+/// Products that are added to may be rounded once or twice, so that no result may depend on the last digit.
+pub trait Lanes: Copy {
+    /// The same number in every lane.
+    fn splat(x: f32) -> Self;
+    /// Eight numbers.
+    fn load(x: &Eight) -> Self;
+    /// The numbers lane by lane.
+    fn store(self) -> Eight;
+    /// Sum.
+    fn plus(self, other: Self) -> Self;
+    /// Difference.
+    fn minus(self, other: Self) -> Self;
+    /// Product.
+    fn times(self, other: Self) -> Self;
+    /// `self other - less`.
+    fn times_minus(self, other: Self, less: Self) -> Self;
+    /// `from - self other`.
+    fn times_from(self, other: Self, from: Self) -> Self;
+    /// The lesser; either one if one is not a number.
+    fn least(self, other: Self) -> Self;
+    /// The greater; either one if one is not a number.
+    fn most(self, other: Self) -> Self;
+    /// Where `self <= other`.
+    fn is_at_most(self, other: Self) -> u32;
+}
+
+/// Whatever the processor.
+#[derive(Clone, Copy)]
+pub struct Plain([f32; LANES]);
+
+impl Plain {
+    #[inline(always)]
+    fn each(self, other: Self, of: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|lane| of(self.0[lane], other.0[lane])))
+    }
+}
+
+impl Lanes for Plain {
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self([x; LANES])
+    }
+    #[inline(always)]
+    fn load(x: &Eight) -> Self {
+        Self(x.0)
+    }
+    #[inline(always)]
+    fn store(self) -> Eight {
+        Eight(self.0)
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self.each(other, |a, b| a + b)
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        self.each(other, |a, b| a - b)
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        self.each(other, |a, b| a * b)
+    }
+    #[inline(always)]
+    fn times_minus(self, other: Self, less: Self) -> Self {
+        self.times(other).minus(less)
+    }
+    #[inline(always)]
+    fn times_from(self, other: Self, from: Self) -> Self {
+        from.minus(self.times(other))
+    }
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.each(other, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.each(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn is_at_most(self, other: Self) -> u32 {
+        (0..LANES).fold(0, |bits, lane| bits | u32::from(self.0[lane] <= other.0[lane]) << lane)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub use wide::Wide;
+
+#[cfg(target_arch = "x86_64")]
+mod wide {
+    //! SAFETY of all that is unsafe here: [`Wide`] is made and used only in functions that are compiled for AVX2 and FMA,
+    //! which are called only where the processor has them. Loads and stores go to memory of the right size and alignment.
+
+    use super::{Eight, Lanes};
+    use std::arch::x86_64::*;
+
+    /// For processors with AVX2 and fused multiply-adds.
+    #[derive(Clone, Copy)]
+    pub struct Wide(__m256);
+
+    impl Lanes for Wide {
+        #[inline(always)]
+        fn splat(x: f32) -> Self {
+            Self(unsafe { _mm256_set1_ps(x) })
+        }
+        #[inline(always)]
+        fn load(x: &Eight) -> Self {
+            Self(unsafe { _mm256_load_ps(x.0.as_ptr()) })
+        }
+        #[inline(always)]
+        fn store(self) -> Eight {
+            let mut eight = Eight([0.0; 8]);
+            unsafe { _mm256_store_ps(eight.0.as_mut_ptr(), self.0) };
+            eight
+        }
+        #[inline(always)]
+        fn plus(self, other: Self) -> Self {
+            Self(unsafe { _mm256_add_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn minus(self, other: Self) -> Self {
+            Self(unsafe { _mm256_sub_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn times(self, other: Self) -> Self {
+            Self(unsafe { _mm256_mul_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn times_minus(self, other: Self, less: Self) -> Self {
+            Self(unsafe { _mm256_fmsub_ps(self.0, other.0, less.0) })
+        }
+        #[inline(always)]
+        fn times_from(self, other: Self, from: Self) -> Self {
+            Self(unsafe { _mm256_fnmadd_ps(self.0, other.0, from.0) })
+        }
+        #[inline(always)]
+        fn least(self, other: Self) -> Self {
+            Self(unsafe { _mm256_min_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn most(self, other: Self) -> Self {
+            Self(unsafe { _mm256_max_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn is_at_most(self, other: Self) -> u32 {
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) as u32 }
+        }
+    }
+}
