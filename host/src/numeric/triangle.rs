@@ -48,26 +48,20 @@ impl Shear {
     /// - `scale`: a power of two by which lengths are multiplied, so that neither small nor large scenes leave the
     ///   range of the numbers; it changes no digit of the result. About one over the size of the scene.
     /// - Returns `None` for a direction that is zero or not finite, and for components beyond [`MAX_MAGNITUDE`].
+    #[inline(always)]
     pub fn new(ray: &Ray, scale: f64) -> Option<Self> {
         let d = ray.direction.to_array();
-        let magnitude = d.map(f64::abs);
-        // `all` with `<=` also refuses what is not a number.
-        let sane =
-            magnitude.iter().all(|&m| m <= f64::MAX) && ray.origin.to_array().iter().all(|&x| x.abs() <= MAX_MAGNITUDE);
-        if !sane {
+        let magnitude = [d[0].abs(), d[1].abs(), d[2].abs()];
+        // `all` with `<=` also refuses what is not a number; all are looked at, which is faster than to stop.
+        let sane = magnitude.iter().fold(true, |sane, &m| sane & (m <= f64::MAX))
+            & ray.origin.to_array().iter().fold(true, |sane, &x| sane & (x.abs() <= MAX_MAGNITUDE));
+        // Without branches, since no processor can foresee them.
+        let xy = usize::from(magnitude[1] > magnitude[0]);
+        let z = if (magnitude[2] > magnitude[0]) & (magnitude[2] > magnitude[1]) { 2 } else { xy };
+        if !sane || magnitude[z] == 0.0 {
             return None;
         }
-        let z = if magnitude[0] >= magnitude[1] && magnitude[0] >= magnitude[2] {
-            0
-        } else if magnitude[1] >= magnitude[2] {
-            1
-        } else {
-            2
-        };
-        if magnitude[z] == 0.0 {
-            return None;
-        }
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        let [x, y] = [[1, 2], [2, 0], [0, 1]][z];
         let slope = |axis: usize| {
             let slope = d[axis] / d[z];
             if slope.abs() < LEAST_SLOPE { 0.0 } else { slope }
@@ -93,7 +87,7 @@ impl Shear {
         [self.shear_x, self.shear_y]
     }
 
-    #[inline]
+    #[inline(always)]
     fn place(&self, p: DVec3) -> [f64; 3] {
         let p = p.to_array();
         let [x, y, z] = self.axes;

@@ -143,7 +143,11 @@ impl Division<'_> {
             self.is_extended(index).then(|| LocationalCode::containing(middle, MAX_DEPTH.saturating_sub(above)))
         };
         let mut homes: Vec<_> = triangles.into_par_iter().with_min_len(self.grain).filter_map(home).collect();
-        if homes.len() > self.grain { homes.par_sort_unstable() } else { homes.sort_unstable() }
+        if homes.len() > self.grain {
+            homes.par_sort_unstable()
+        } else {
+            homes.sort_unstable()
+        }
         homes
     }
 

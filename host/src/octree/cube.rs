@@ -32,10 +32,17 @@ impl Cube {
         self.origin.is_finite() && self.side > 0.0 && power_of_two_above(self.side * 0.75) == self.side
     }
 
+    /// One over the side, without a division.
+    #[inline]
+    pub fn unit(&self) -> f64 {
+        // The exponent counts from 1023 and there are no other digits.
+        f64::from_bits((2046 << 52) - self.side.to_bits())
+    }
+
     /// World to local coordinates, 0..=1 in the cube.
     #[inline]
     pub fn local(&self, point: DVec3) -> DVec3 {
-        (point - self.origin) * self.side.recip()
+        (point - self.origin) * self.unit()
     }
 
     /// The voxel that holds a point at the highest resolution, by truncation; `None` outside the cube.

@@ -1,9 +1,12 @@
 //! Rays down the index, nearest child first.
 
 use super::index::{Child, Slabs};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::Wide;
 use super::lanes::{LANES, Lanes, Plain};
 use super::packet::{Packet, Sight};
 use super::walk::Search;
+use super::{Hit, Octree, Ray, WalkCount};
 
 /// Entries of the stack that need no allocation.
 const STACK: usize = 64;
@@ -69,29 +72,68 @@ impl Stack {
     }
 }
 
-impl Search<'_> {
-    /// Goes down the index with the widest instructions of the processor.
-    #[inline]
-    pub(super) fn go_down(&mut self) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            #[target_feature(enable = "avx2,fma")]
-            fn descend_wide(search: &mut Search<'_>) {
-                search.descend::<super::lanes::Wide>();
-            }
-            if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-                // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-                unsafe { descend_wide(self) };
-                return;
-            }
-        }
-        self.descend::<Plain>();
-    }
-
+/// Finds the nearest hit with `t_min < t < t_max`.
+#[inline]
+pub fn nearest(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> (Option<Hit>, WalkCount) {
     #[inline(always)]
-    fn descend<L: Lanes>(&mut self) {
+    fn search<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
+        let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], false) else { return Default::default() };
+        search.descend::<L, false>();
+        search.found()
+    }
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn search_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
+            search::<Wide>(octree, ray, limits)
+        }
+        if is_wide() {
+            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { search_wide(octree, ray, [t_min, t_max]) };
+        }
+    }
+    search::<Plain>(octree, ray, [t_min, t_max])
+}
+
+/// Says whether anything is hit with `t_min < t < t_max`.
+#[inline]
+pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
+    #[inline(always)]
+    fn search<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
+        let search = Search::new(octree, ray, limits[0], limits[1], true);
+        search.is_some_and(|mut search| search.descend::<L, true>())
+    }
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn search_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
+            search::<Wide>(octree, ray, limits)
+        }
+        if is_wide() {
+            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { search_wide(octree, ray, [t_min, t_max]) };
+        }
+    }
+    search::<Plain>(octree, ray, [t_min, t_max])
+}
+
+/// Whether the processor has AVX2 and fused multiply-adds.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+fn is_wide() -> bool {
+    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+}
+
+impl Search<'_> {
+    /// Goes down the index; returns whether it ended at a hit that is enough.
+    #[inline(always)]
+    fn descend<L: Lanes, const ANY: bool>(&mut self) -> bool {
         let index = &self.octree.index;
         let (slabs, sight) = (Slabs::<L>::new(&self.frame), Sight::<L>::new(&self.frame));
+        let within = if ANY { self.frame.within(self.t_min, self.t_max) } else { [0.0; 2] };
+        if index.nodes.is_empty() {
+            return false;
+        }
         let mut stack = Stack::new();
         let mut child = Child(0);
         loop {
@@ -101,33 +143,36 @@ impl Search<'_> {
                     let node = &index.nodes[place];
                     let (mut lanes, near) = node.meets(&slabs, self.limit);
                     if lanes != 0 {
+                        let first = lanes.trailing_zeros() as usize & (LANES - 1);
+                        lanes &= lanes - 1;
+                        if lanes == 0 {
+                            child = node.children[first];
+                            continue;
+                        }
                         let near = near.store().0;
+                        let mut nearest = Entry::new(near[first], node.children[first]);
                         let mark = stack.top;
-                        let mut nearest = Entry(u64::MAX);
-                        loop {
+                        while lanes != 0 {
                             let lane = lanes.trailing_zeros() as usize & (LANES - 1);
-                            let entry = Entry::new(near[lane], node.children[lane]);
-                            if nearest != Entry(u64::MAX) {
-                                stack.insert(mark, nearest.max(entry));
-                            }
-                            nearest = nearest.min(entry);
                             lanes &= lanes - 1;
-                            if lanes == 0 {
-                                break;
-                            }
+                            let entry = Entry::new(near[lane], node.children[lane]);
+                            stack.insert(mark, nearest.max(entry));
+                            nearest = nearest.min(entry);
                         }
                         child = nearest.child();
                         continue;
                     }
                 }
-                Ok(place) => {
-                    if self.test(&index.packets[place], &sight) {
-                        return;
+                Ok(places) => {
+                    for packet in &index.packets[places] {
+                        if self.test::<L, ANY>(packet, &sight, within) {
+                            return true;
+                        }
                     }
                 }
             }
             loop {
-                let Some(entry) = stack.pop() else { return };
+                let Some(entry) = stack.pop() else { return false };
                 if entry.near() <= self.limit {
                     child = entry.child();
                     break;
@@ -138,13 +183,16 @@ impl Search<'_> {
 
     /// Tests a packet; returns whether the search is over.
     #[inline(always)]
-    fn test<L: Lanes>(&mut self, packet: &Packet, sight: &Sight<L>) -> bool {
+    fn test<L: Lanes, const ANY: bool>(&mut self, packet: &Packet, sight: &Sight<L>, within: [f32; 2]) -> bool {
         self.count.triangles += LANES as u64;
-        let mut lanes = packet.candidates(sight, self.limit);
+        let (mut lanes, certain) = packet.candidates::<L, ANY>(sight, self.limit, within);
+        if ANY && certain != 0 {
+            return true;
+        }
         while lanes != 0 {
             let triangle = packet.triangles[lanes.trailing_zeros() as usize & (LANES - 1)];
             lanes &= lanes - 1;
-            if self.decide(triangle) && self.any {
+            if self.decide(triangle) && ANY {
                 return true;
             }
         }

@@ -47,8 +47,8 @@ pub struct Frame {
     pub near: [f32; 3],
     /// The same for the far sides.
     pub far: [f32; 3],
-    /// 1 where the ray goes down, by axis.
-    pub down: [usize; 3],
+    /// Whether the ray goes down, by axis.
+    pub down: [bool; 3],
     /// Length of the ray in the cube, or to `t_max`.
     pub length: f64,
     /// Local coordinates where the ray enters the cube, or of its first point, by axis.
@@ -63,7 +63,7 @@ pub struct Frame {
 
 impl Frame {
     /// Prepares a ray that was sheared before; `None` if it misses the cube between `t_min` and `t_max`.
-    #[inline]
+    #[inline(always)]
     pub fn new(ray: &Ray, shear: &Shear, cube: &Cube, t_min: f64, t_max: f64) -> Option<Self> {
         let axes = shear.axes();
         let [x, y, z] = axes;
@@ -72,9 +72,9 @@ impl Frame {
         let sign_z = 1.0_f64.copysign(length_z);
         let mut slopes = [0.0; 3];
         (slopes[x], slopes[y], slopes[z]) = (slope_x * sign_z, slope_y * sign_z, sign_z);
-        let unit = cube.side.recip();
+        let unit = cube.unit();
         let origin = ((ray.origin - cube.origin) * unit).to_array();
-        let reach = origin.iter().fold(1.0_f64, |reach, x| reach.max(x.abs()));
+        let reach = greater(greater(origin[0].abs(), origin[1].abs()), greater(origin[2].abs(), 1.0));
         // Written so that what is not a number ends here.
         let near = reach <= MAX_DISTANCE;
         if !near {
@@ -84,37 +84,43 @@ impl Frame {
         let tolerance = SINGLE_TOLERANCE + double_tolerance;
 
         let rate = length_z.abs() * unit;
-        let inverse = slopes.map(inverse);
+        let inverse = [inverse(slopes[0]), inverse(slopes[1]), inverse(slopes[2])];
         let margin = 4.0 * tolerance;
         let (mut enter, mut exit) = (t_min * rate, t_max * rate);
         for axis in 0..3 {
-            let to_low = (-margin - origin[axis]) * inverse[axis];
-            let to_high = (1.0 + margin - origin[axis]) * inverse[axis];
-            enter = enter.max(to_low.min(to_high));
-            exit = exit.min(to_low.max(to_high));
+            // The middle of the cube, and how far it is from there to its sides.
+            let middle = (0.5 - origin[axis]) * inverse[axis];
+            let half = (0.5 + margin) * inverse[axis].abs();
+            enter = greater(enter, middle - half);
+            exit = -greater(-exit, -(middle + half));
         }
         let meets = enter <= exit + margin && enter.is_finite() && exit.is_finite();
         if !meets {
             return None;
         }
-        let entry = [0, 1, 2].map(|axis| origin[axis] + slopes[axis] * enter);
-        let first = [0, 1, 2].map(|axis| entry[axis] - slopes[axis] * margin);
-        let side = |towards: f64| {
-            let moved = |axis: usize| first[axis] + tolerance.copysign(slopes[axis]) * towards;
-            [0, 1, 2].map(|axis| (moved(axis) * inverse[axis]) as f32)
-        };
-        let base = [first[x] - slope_x * first[z], first[y] - slope_y * first[z], first[z] * sign_z];
+        let (mut entry, mut first) = ([0.0; 3], [0.0; 3]);
+        let (mut near, mut far) = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            entry[axis] = origin[axis] + slopes[axis] * enter;
+            first[axis] = entry[axis] - slopes[axis] * margin;
+            let (length, aside) = (first[axis] * inverse[axis], tolerance * inverse[axis].abs());
+            (near[axis], far[axis]) = ((length + aside) as f32, (length - aside) as f32);
+        }
         Some(Self {
             axes,
             shear: [slope_x as f32, slope_y as f32],
-            base: base.map(|x| x as f32),
+            base: [
+                (first[x] - slope_x * first[z]) as f32,
+                (first[y] - slope_y * first[z]) as f32,
+                (first[z] * sign_z) as f32,
+            ],
             sign_z: sign_z as f32,
             tolerance: tolerance as f32,
             error_scale: (16.0 * tolerance) as f32,
-            inverse: inverse.map(|x| x as f32),
-            near: side(1.0),
-            far: side(-1.0),
-            down: slopes.map(|slope| usize::from(slope.is_sign_negative())),
+            inverse: [inverse[0] as f32, inverse[1] as f32, inverse[2] as f32],
+            near,
+            far,
+            down: [slopes[0].is_sign_negative(), slopes[1].is_sign_negative(), slopes[2].is_sign_negative()],
             length: exit - enter,
             entry,
             slopes,
@@ -146,6 +152,13 @@ impl Frame {
         self.limit_of((t * self.rate - self.offset).min(self.length))
     }
 
+    /// Lengths in single precision that certainly stand for `t_min < t < t_max` from the first to the second.
+    #[inline]
+    pub fn within(&self, t_min: f64, t_max: f64) -> [f32; 2] {
+        let slack = 8.0 * f64::from(self.tolerance);
+        [(t_min * self.rate - self.offset + slack) as f32, (t_max * self.rate - self.offset) as f32]
+    }
+
     /// A bound for single-precision lengths that stand for `s`, rounded up.
     #[inline]
     pub fn limit_of(&self, s: f64) -> f32 {
@@ -153,7 +166,14 @@ impl Frame {
     }
 }
 
+/// The greater of two numbers, or the second if the first is none; one instruction, unlike `max`.
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// One over a slope, bounded.
+#[inline(always)]
 fn inverse(slope: f64) -> f64 {
-    if slope.abs() < LEAST_SLOPE { LEAST_SLOPE.recip().copysign(slope) } else { slope.recip() }
+    greater(slope.abs(), LEAST_SLOPE).copysign(slope).recip()
 }

@@ -1,5 +1,7 @@
 //! The index: wide nodes over the triangles in the order of their codes, for rays that start at the top.
 
+use std::ops::Range;
+
 use rayon::current_num_threads;
 use rayon::prelude::*;
 use wide::f32x4;
@@ -14,28 +16,45 @@ use super::partition::{Part, divide};
 /// So many cells or fewer are divided by their items.
 const FEW_CELLS: usize = 512;
 
-/// Set where a child is a packet.
-const PACKET: u32 = 1 << 31;
+/// So many triangles or fewer are not divided.
+const LEAF: usize = 12;
 
-/// What is below a box: a node or a packet, by its place.
+/// Set where a child is not a node.
+const PACKETS: u32 = 1 << 31;
+
+/// Behind that, the number of packets less one; then the place.
+const PLACE_BITS: u32 = 28;
+
+/// What is below a box: a node, or a few successive packets, by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(pub u32);
 
 impl Child {
-    /// The place of a packet, or else of a node.
-    #[inline]
-    pub fn place(self) -> Result<usize, usize> {
-        let place = (self.0 & !PACKET) as usize;
-        if self.0 & PACKET != 0 { Ok(place) } else { Err(place) }
+    fn packets(places: Range<usize>) -> Self {
+        Self(PACKETS | (places.len() as u32 - 1) << PLACE_BITS | places.start as u32)
     }
 
-    /// The same when so many nodes and packets come before.
+    /// The places of packets, or else that of a node.
+    #[inline(always)]
+    pub fn place(self) -> Result<Range<usize>, usize> {
+        if self.0 & PACKETS == 0 {
+            return Err(self.0 as usize);
+        }
+        let first = (self.0 & ((1 << PLACE_BITS) - 1)) as usize;
+        Ok(first..first + ((self.0 & !PACKETS) >> PLACE_BITS) as usize + 1)
+    }
+
+    /// The same when so many nodes and packets come before; what is the top, or nothing, stays.
     fn moved(self, nodes: usize, packets: usize) -> Self {
-        Self(self.0 + if self.0 & PACKET != 0 { packets } else { nodes } as u32)
+        match self.0 {
+            0 => self,
+            bits if bits & PACKETS != 0 => Self(bits + packets as u32),
+            bits => Self(bits + nodes as u32),
+        }
     }
 }
 
-/// Up to eight boxes, each of a node or of a packet.
+/// Up to eight boxes, each of a node or of packets.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub struct Node {
@@ -91,7 +110,7 @@ impl<L: Lanes> Slabs<L> {
             inverse: [L::splat(inverse[0]), L::splat(inverse[1]), L::splat(inverse[2])],
             near: [L::splat(near[0]), L::splat(near[1]), L::splat(near[2])],
             far: [L::splat(far[0]), L::splat(far[1]), L::splat(far[2])],
-            down: [x & 1, y & 1, z & 1],
+            down: [usize::from(x), usize::from(y), usize::from(z)],
         }
     }
 
@@ -208,7 +227,7 @@ fn shares<'a>(mut items: &'a mut [Item], part: &Part) -> Vec<(&'a mut [Item], Pa
         let mut first = 0;
         for (slot, part) in parts.iter().enumerate() {
             let area = part.around.half_area();
-            if part.weight > LANES && part.items > 1 && area >= largest.0 {
+            if part.weight > LEAF && part.items > 1 && area >= largest.0 {
                 largest = (area, Some((slot, first)));
             }
             first += part.items;
@@ -249,21 +268,21 @@ impl Builder<'_> {
         let node = index.nodes.len();
         index.nodes.push(Node::EMPTY);
         for (lane, (share, part)) in shares(items, part).into_iter().enumerate() {
-            let child =
-                if part.items > LANES { self.node(share, &part, index) } else { self.packet(share, index) };
+            let child = if part.items > LEAF { self.node(share, &part, index) } else { self.packets(share, index) };
             index.nodes[node].set(lane, &part.around, child);
         }
         Child(node as u32)
     }
 
-    fn packet(&self, items: &[Item], index: &mut Index) -> Child {
+    fn packets(&self, items: &[Item], index: &mut Index) -> Child {
         let corners = |triangle: u32| {
             self.triangles[triangle as usize].map(|i| {
                 let [x, y, z, _] = self.local[i as usize].to_array();
                 [x, y, z]
             })
         };
-        index.packets.push(Packet::new(items.iter().map(Item::number), corners));
-        Child(PACKET | (index.packets.len() - 1) as u32)
+        let first = index.packets.len();
+        index.packets.extend(items.chunks(LANES).map(|items| Packet::new(items.iter().map(Item::number), corners)));
+        Child::packets(first..index.packets.len())
     }
 }

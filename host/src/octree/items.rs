@@ -23,6 +23,9 @@ const FINER: u32 = 4;
 /// About as many items lie in a cell.
 const CELL_ITEMS: usize = 16;
 
+/// Bits that make a normal number of any number below 2^28, since arithmetic on others is slow.
+const NORMAL: u32 = 1 << 30;
+
 /// A box in local coordinates, with two numbers in the lanes that are left over.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
@@ -40,7 +43,7 @@ impl Item {
     fn numbered(self, number: u32, weight: u32) -> Self {
         let with = |corner: f32x4, bits: u32| {
             let [x, y, z, _] = corner.to_array();
-            f32x4::new([x, y, z, f32::from_bits(bits)])
+            f32x4::new([x, y, z, f32::from_bits(bits | NORMAL)])
         };
         Self { low: with(self.low, number), high: with(self.high, weight) }
     }
@@ -48,13 +51,13 @@ impl Item {
     /// Which triangle it is, or where the items of a cell begin.
     #[inline]
     pub fn number(&self) -> u32 {
-        self.low.as_array()[3].to_bits()
+        self.low.as_array()[3].to_bits() & !NORMAL
     }
 
     /// How many triangles it stands for.
     #[inline]
     pub fn weight(&self) -> usize {
-        self.high.as_array()[3].to_bits() as usize
+        (self.high.as_array()[3].to_bits() & !NORMAL) as usize
     }
 
     /// The box around two; its numbers mean nothing.
@@ -92,13 +95,16 @@ pub fn items(division: &Division<'_>, local: &[f32x4]) -> (Vec<Item>, Vec<Item>)
     let whole = |triangle: usize| {
         let [a, b, c] = division.triangles[triangle].map(|i| local[i as usize]);
         let item = Item { low: a.fast_min(b).fast_min(c), high: a.fast_max(b).fast_max(c) };
-        division.is_extended(triangle).then(|| item.numbered(triangle as u32, 1))
+        // Rounding makes no two of one point.
+        let is_extended = (a != b && b != c && c != a) || division.is_extended(triangle);
+        is_extended.then(|| item.numbered(triangle as u32, 1))
     };
     let triangles = 0..division.triangles.len();
     let mut items: Vec<Item> = triangles.into_par_iter().with_min_len(PARALLEL_ITEMS).filter_map(whole).collect();
     cut(division, &mut items);
 
-    let keys: Vec<u64> = items.par_iter().enumerate().with_min_len(PARALLEL_ITEMS).map(|(at, item)| key(item) | at as u64).collect();
+    let keys: Vec<u64> =
+        items.par_iter().enumerate().with_min_len(PARALLEL_ITEMS).map(|(at, item)| key(item) | at as u64).collect();
     let keys = radix_sorted(keys);
     let items: Vec<Item> =
         keys.par_iter().with_min_len(PARALLEL_ITEMS).map(|&key| items[key as u32 as usize]).collect();
@@ -145,9 +151,8 @@ fn cut(division: &Division<'_>, items: &mut Vec<Item>) {
         let area: f32 = pieces.iter().map(Bounds::half_area).sum();
         if item.half_area() - area > threshold * pieces.len() as f32 {
             let point = |[x, y, z]: [f32; 3]| f32x4::new([x, y, z, 0.0]);
-            let mut pieces = pieces.iter().map(|piece| {
-                Item { low: point(piece.low), high: point(piece.high) }.numbered(number, 1)
-            });
+            let mut pieces =
+                pieces.iter().map(|piece| Item { low: point(piece.low), high: point(piece.high) }.numbered(number, 1));
             *item = pieces.next().unwrap_or(*item);
             added.extend(pieces);
         }

@@ -32,6 +32,8 @@ pub trait Lanes: Copy {
     fn least(self, other: Self) -> Self;
     /// The greater; either one if one is not a number.
     fn most(self, other: Self) -> Self;
+    /// The same where the other is positive, and else with the other sign.
+    fn signed_by(self, other: Self) -> Self;
     /// Where `self <= other`.
     fn is_at_most(self, other: Self) -> u32;
 }
@@ -87,6 +89,10 @@ impl Lanes for Plain {
     #[inline(always)]
     fn most(self, other: Self) -> Self {
         self.each(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn signed_by(self, other: Self) -> Self {
+        self.each(other, |a, b| f32::from_bits(a.to_bits() ^ (b.to_bits() & 1 << 31)))
     }
     #[inline(always)]
     fn is_at_most(self, other: Self) -> u32 {
@@ -151,6 +157,10 @@ mod wide {
         #[inline(always)]
         fn most(self, other: Self) -> Self {
             Self(unsafe { _mm256_max_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn signed_by(self, other: Self) -> Self {
+            Self(unsafe { _mm256_xor_ps(self.0, _mm256_and_ps(other.0, _mm256_set1_ps(-0.0))) })
         }
         #[inline(always)]
         fn is_at_most(self, other: Self) -> u32 {

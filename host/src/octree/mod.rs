@@ -46,6 +46,7 @@ pub use inside::Side;
 pub use nearest::{Nearest, hausdorff};
 pub use sorted::Sorted;
 pub use statistics::Statistics;
+use walk::Search;
 
 /// Most triangles that one octree takes.
 pub const MAX_TRIANGLES: usize = 1 << 28;
@@ -278,12 +279,26 @@ impl Octree {
 
     /// [`Octree::closest`], with the work that it took.
     pub fn closest_counted(&self, ray: &Ray, t_min: f64, t_max: f64) -> (Option<Hit>, WalkCount) {
-        walk::search(self, ray, t_min, t_max, false)
+        match self.walk {
+            Walk::Index => descend::nearest(self, ray, t_min, t_max),
+            Walk::LeadingDirection => self.walked(ray, t_min, t_max, false),
+        }
     }
 
     /// Says whether anything is hit with `t_min < t < t_max`.
     pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-        walk::search(self, ray, t_min, t_max, true).0.is_some()
+        match self.walk {
+            Walk::Index => descend::is_any(self, ray, t_min, t_max),
+            Walk::LeadingDirection => self.walked(ray, t_min, t_max, true).0.is_some(),
+        }
+    }
+
+    fn walked(&self, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> (Option<Hit>, WalkCount) {
+        let search = Search::new(self, ray, t_min, t_max, any).map(|mut search| {
+            search.walk();
+            search.found()
+        });
+        search.unwrap_or_default()
     }
 
     /// Number of objects.
@@ -310,7 +325,9 @@ impl Octree {
     pub fn locate(&self, point: DVec3) -> Location {
         match self.cube.voxel(point) {
             Some(voxel) => match self.locate_leaf(LocationalCode::containing(voxel, MAX_DEPTH)) {
-                Ok(leaf) if self.leaves().codes[leaf].level() == self.depth => Location::Voxel(self.leaves().codes[leaf]),
+                Ok(leaf) if self.leaves().codes[leaf].level() == self.depth => {
+                    Location::Voxel(self.leaves().codes[leaf])
+                }
                 Ok(leaf) => Location::Partial(self.leaves().codes[leaf]),
                 Err(empty) => empty,
             },

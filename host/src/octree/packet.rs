@@ -3,9 +3,6 @@
 use super::frame::Frame;
 use super::lanes::{Eight, LANES, Lanes};
 
-/// A coordinate outside every cube, for lanes without a triangle.
-const NOWHERE: f32 = 1e18;
-
 /// What rounding the corners may add to the size of a triangle.
 const ROUNDING: f32 = 1.0 / (1_u32 << 22) as f32;
 
@@ -14,7 +11,7 @@ const ROUNDING: f32 = 1.0 / (1_u32 << 22) as f32;
 pub struct Packet {
     /// By corner, then axis.
     corners: [[Eight; 3]; 3],
-    /// Longest side of the box of each, rounded up.
+    /// Longest side of the box of each, rounded up; less than nothing where there is no triangle, so that it is missed.
     size: Eight,
     /// Indices of the triangles.
     pub triangles: [u32; LANES],
@@ -23,9 +20,8 @@ pub struct Packet {
 impl Packet {
     /// Packs up to eight triangles; `corners` gives the local coordinates of one.
     pub fn new(triangles: impl Iterator<Item = u32>, corners: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
-        let nowhere = Eight([NOWHERE; LANES]);
-        let mut packet =
-            Self { corners: [[nowhere; 3]; 3], size: Eight([0.0; LANES]), triangles: [u32::MAX; LANES] };
+        let nothing = Eight([f32::NEG_INFINITY; LANES]);
+        let mut packet = Self { corners: [[Eight([0.0; LANES]); 3]; 3], size: nothing, triangles: [u32::MAX; LANES] };
         for (lane, triangle) in triangles.take(LANES).enumerate() {
             let [a, b, c] = corners(triangle);
             let mut size = 0.0_f32;
@@ -43,29 +39,48 @@ impl Packet {
         packet
     }
 
-    /// The triangles that the ray may hit between the start of the frame and `limit`: one bit a lane.
+    /// The triangles that the ray may hit between the start of the frame and `limit`, and for `ANY` those that it certainly
+    /// hits between the lengths `within`: one bit a lane.
     ///
     /// A lane that is left out is certainly missed, also in the double precision that decides: let e be the
     /// tolerance of the frame, by which a sheared coordinate may be off, and s the size of the triangle. If the ray
     /// meets the triangle, its sheared corners lie within 2 s of the ray, so that an edge function is off by at most
-    /// 8 e s + 2 e^2, and by 12 s^2 2^-24 < 3 e s from the products.
+    /// 8 e s + 2 e^2, and by 12 s^2 2^-24 < 3 e s from the products: by less than d = 16 e (s + e) in all.
+    ///
+    /// The length to the triangle is the mean of those to its corners, weighted by the edge functions. With weights that
+    /// are off it is off by 3 d s; their sum, which is at most 6 d more than the whole, is off by as much and their
+    /// products by 2^-22 of it: together less than 8 d (s + e) + 2 e whole, after multiplication by the whole.
     #[inline(always)]
-    pub fn candidates<L: Lanes>(&self, sight: &Sight<L>, limit: f32) -> u32 {
+    pub fn candidates<L: Lanes, const ANY: bool>(&self, sight: &Sight<L>, limit: f32, within: [f32; 2]) -> (u32, u32) {
         let [a, b, c] = &self.corners;
         let ((ax, ay), (bx, by), (cx, cy)) = (sight.across(a), sight.across(b), sight.across(c));
         let first = cx.times_minus(by, cy.times(bx));
         let second = ax.times_minus(cy, ay.times(cx));
         let third = bx.times_minus(ay, by.times(ax));
-        let error = L::load(&self.size).plus(sight.tolerance).times(sight.error_scale);
+        let tolerance = sight.tolerance;
+        let size = L::load(&self.size).plus(tolerance);
+        let error = size.times(sight.error_scale);
         let low = first.least(second).least(third).plus(error);
         let high = first.most(second).most(third).minus(error);
         let zero = L::splat(0.0);
         let mut lanes = zero.is_at_most(low) | high.is_at_most(zero);
-        if lanes != 0 {
-            let (a, b, c) = (sight.along(a), sight.along(b), sight.along(c));
-            lanes &= a.least(b).least(c).is_at_most(L::splat(limit)) & zero.is_at_most(a.most(b).most(c));
+        if lanes == 0 {
+            return (0, 0);
         }
-        lanes
+        let (az, bz, cz) = (sight.along(a), sight.along(b), sight.along(c));
+        let whole = first.plus(second).plus(third);
+        let length = az.times(first).plus(bz.times(second)).plus(cz.times(third)).signed_by(whole);
+        let whole = whole.signed_by(whole);
+        let aside = tolerance.plus(tolerance).times(whole).plus(size.times(error.times(L::splat(8.0))));
+        lanes &= length.minus(aside).is_at_most(whole.times(L::splat(limit))) & zero.is_at_most(length.plus(aside));
+        if !ANY {
+            return (lanes, 0);
+        }
+        let inside = error.is_at_most(first.least(second).least(third))
+            | first.most(second).most(third).plus(error).is_at_most(zero);
+        let between = length.plus(aside).is_at_most(whole.times(L::splat(within[1])))
+            & whole.times(L::splat(within[0])).is_at_most(length.minus(aside));
+        (lanes, inside & between)
     }
 }
 

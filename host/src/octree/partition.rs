@@ -8,6 +8,9 @@ use super::lanes::LANES;
 /// Bins along each axis.
 const BINS: usize = 16;
 
+/// So many items or fewer are given to half as many bins, since looking at these takes longer than filling them.
+const FEW_ITEMS: usize = 32;
+
 /// Successive items as one.
 #[derive(Clone, Copy)]
 pub struct Part {
@@ -27,16 +30,19 @@ impl Part {
     /// All of some items.
     pub fn of(items: &[Item]) -> Self {
         let mut part = Self::NOTHING;
-        items.iter().for_each(|item| part.add(item));
+        items.iter().for_each(|item| {
+            part.add(item);
+            part.around = part.around.union(item);
+        });
         part
     }
 
-    #[inline]
+    /// Adds an item, but not to the box around.
+    #[inline(always)]
     fn add(&mut self, item: &Item) {
         let centre = item.centre();
         self.items += 1;
         self.weight += item.weight();
-        self.around = self.around.union(item);
         self.centres = self.centres.union(&Item { low: centre, high: centre });
     }
 }
@@ -46,64 +52,94 @@ impl Part {
 /// # Source
 /// Surface-area heuristic: Goldsmith and Salmon 1987; bins: Wald 2007. The price counts packets, not items.
 pub fn divide(items: &mut [Item], part: &Part) -> [Part; 2] {
-    let low = part.centres.low;
-    let extent = (part.centres.high - low).to_array();
-    let scale = f32x4::new(extent.map(|x| if x > 0.0 { BINS as f32 * (1.0 - 1e-6) / x } else { 0.0 }));
-    let places = |item: &Item| ((item.centre() - low) * scale).fast_trunc_int().to_array();
-    let mut bins = [[(Item::EMPTY, 0_usize); BINS]; 3];
-    for item in items.iter() {
-        let places = places(item);
-        for (bins, place) in bins.iter_mut().zip(places) {
-            let (around, weight) = &mut bins[place as usize & (BINS - 1)];
-            *around = around.union(item);
-            *weight += item.weight();
-        }
+    let divided = if items.len() <= FEW_ITEMS {
+        Bins::<{ BINS / 2 }>::divide(items, part)
+    } else {
+        Bins::<BINS>::divide(items, part)
+    };
+    divided.unwrap_or_else(|| {
+        // All middles in one point: any half is as good.
+        let (left, right) = items.split_at(items.len() / 2);
+        [Part::of(left), Part::of(right)]
+    })
+}
+
+/// What lies in each bin, by axis.
+struct Bins<const N: usize> {
+    around: [[Item; N]; 3],
+    weight: [[u32; N]; 3],
+}
+
+impl<const N: usize> Bins<N> {
+    fn divide(items: &mut [Item], part: &Part) -> Option<[Part; 2]> {
+        let low = part.centres.low;
+        let extent = (part.centres.high - low).to_array();
+        let scale = extent.map(|x| if x > 0.0 { N as f32 * (1.0 - 1e-6) / x } else { 0.0 });
+        let bins = Self::filled(items, low, f32x4::new(scale));
+        let (axis, first) = bins.cheapest()?;
+        let low = low.as_array()[axis];
+        let place = |item: &Item| (item.low.as_array()[axis] + item.high.as_array()[axis] - low) * scale[axis];
+        let mut parts = parted(items, |item| place(item) < first as f32);
+        let all = |bins: &[Item]| bins.iter().fold(Item::EMPTY, |all, bin| all.union(bin));
+        let (before, after) = bins.around[axis].split_at(first);
+        (parts[0].around, parts[1].around) = (all(before), all(after));
+        Some(parts)
     }
-    match cheapest(&bins) {
-        Some((axis, first)) => parted(items, |item| (places(item)[axis] as usize & (BINS - 1)) < first),
-        None => {
-            // All middles in one point: any half is as good.
-            let (left, right) = items.split_at(items.len() / 2);
-            [Part::of(left), Part::of(right)]
+
+    #[inline(always)]
+    fn filled(items: &[Item], low: f32x4, scale: f32x4) -> Self {
+        let mut bins = Self { around: [[Item::EMPTY; N]; 3], weight: [[0; N]; 3] };
+        for item in items {
+            let places = ((item.centre() - low) * scale).fast_trunc_int().to_array();
+            for axis in 0..3 {
+                let place = places[axis] as usize & (N - 1);
+                bins.around[axis][place] = bins.around[axis][place].union(item);
+                bins.weight[axis][place] += item.weight() as u32;
+            }
         }
+        bins
+    }
+
+    /// The axis, and the first bin of the second part; `None` if all items are in one bin along each axis.
+    #[inline(always)]
+    fn cheapest(&self) -> Option<(usize, usize)> {
+        // Where nothing is, the price is not a number and less than none.
+        let price = |around: &Item, weight: u32| around.half_area() * weight.div_ceil(LANES as u32) as f32;
+        let mut best = f32::INFINITY;
+        let mut place = 0;
+        for (axis, (around, weight)) in self.around.iter().zip(&self.weight).enumerate() {
+            let mut prices = [0.0; N];
+            let mut after = (Item::EMPTY, 0);
+            for i in (1..N).rev() {
+                after = (after.0.union(&around[i]), after.1 + weight[i]);
+                prices[i] = price(&after.0, after.1);
+            }
+            let mut before = (Item::EMPTY, 0);
+            for i in 1..N {
+                before = (before.0.union(&around[i - 1]), before.1 + weight[i - 1]);
+                let price = price(&before.0, before.1) + prices[i];
+                // Two selections, no branch that no processor could foresee.
+                let is_better = price < best;
+                best = if is_better { price } else { best };
+                place = if is_better { axis * N + i } else { place };
+            }
+        }
+        (place > 0).then_some((place / N, place % N))
     }
 }
 
-/// The axis, and the first bin of the second part; `None` if all items are in one bin along each axis.
-fn cheapest(bins: &[[(Item, usize); BINS]; 3]) -> Option<(usize, usize)> {
-    let price = |(around, weight): &(Item, usize)| around.half_area() * weight.div_ceil(LANES) as f32;
-    let joined = |one: &(Item, usize), other: &(Item, usize)| (one.0.union(&other.0), one.1 + other.1);
-    let mut best = (f32::INFINITY, None);
-    for (axis, bins) in bins.iter().enumerate() {
-        let mut prices = [f32::INFINITY; BINS];
-        let mut after = (Item::EMPTY, 0);
-        for i in (1..BINS).rev() {
-            after = joined(&after, &bins[i]);
-            if after.1 > 0 {
-                prices[i] = price(&after);
-            }
-        }
-        let mut before = (Item::EMPTY, 0);
-        for i in 1..BINS {
-            before = joined(&before, &bins[i - 1]);
-            if before.1 > 0 && bins[i].1 > 0 && price(&before) + prices[i] < best.0 {
-                best = (price(&before) + prices[i], Some((axis, i)));
-            }
-        }
-    }
-    best.1
-}
-
-/// Moves what belongs to the first part there.
+/// Moves what belongs to the first part there; the boxes around the parts are left to the caller.
 fn parted(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> [Part; 2] {
-    let (mut left, mut right) = (Part::NOTHING, Part::NOTHING);
+    let mut parts = [Part::NOTHING; 2];
+    let mut first = 0;
     for i in 0..items.len() {
-        if is_first(&items[i]) {
-            left.add(&items[i]);
-            items.swap(i, left.items - 1);
-        } else {
-            right.add(&items[i]);
-        }
+        // Without a branch that no processor could foresee: what is not of the first part changes places with its like.
+        let item = items[i];
+        items[i] = items[first];
+        items[first] = item;
+        let is_first = is_first(&item);
+        parts[usize::from(!is_first)].add(&item);
+        first += usize::from(is_first);
     }
-    [left, right]
+    parts
 }

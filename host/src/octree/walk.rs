@@ -4,7 +4,7 @@ use super::build::eighths;
 use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::frame::Frame;
-use super::{Hit, Location, Octree, Ray, Walk, WalkCount};
+use super::{Hit, Location, Octree, Ray, WalkCount};
 use crate::numeric::triangle::Shear;
 
 /// Voxels along the cube.
@@ -15,35 +15,41 @@ pub struct Search<'a> {
     pub(super) octree: &'a Octree,
     shear: Shear,
     pub(super) frame: Frame,
-    t_min: f64,
-    t_max: f64,
+    pub(super) t_min: f64,
+    pub(super) t_max: f64,
     /// Whether any hit will do.
-    pub(super) any: bool,
+    any: bool,
     best: Option<Hit>,
     /// No length beyond this counts any more.
     pub(super) limit: f32,
     pub(super) count: WalkCount,
 }
 
-/// Finds the nearest hit, or for `any` some hit, with `t_min < t < t_max`.
-#[inline]
-pub fn search(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> (Option<Hit>, WalkCount) {
-    let nothing = (None, WalkCount::default());
-    if octree.triangles.is_empty() {
-        return nothing;
+impl<'a> Search<'a> {
+    /// Prepares a search for a hit with `t_min < t < t_max`; `None` if there is none for certain.
+    #[inline(always)]
+    pub fn new(octree: &'a Octree, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> Option<Self> {
+        let shear = Shear::new(ray, octree.cube.unit())?;
+        let frame = Frame::new(ray, &shear, &octree.cube, t_min, t_max)?;
+        let limit = frame.limit_of(frame.length);
+        Some(Self { octree, shear, frame, t_min, t_max, any, best: None, limit, count: WalkCount::default() })
     }
-    let Some(shear) = Shear::new(ray, octree.cube.side.recip()) else { return nothing };
-    let Some(frame) = Frame::new(ray, &shear, &octree.cube, t_min, t_max) else { return nothing };
-    let limit = frame.limit_of(frame.length);
-    let mut search = Search { octree, shear, frame, t_min, t_max, any, best: None, limit, count: WalkCount::default() };
-    match octree.walk {
-        Walk::Index => search.go_down(),
+
+    /// What was found.
+    #[inline(always)]
+    pub fn found(&self) -> (Option<Hit>, WalkCount) {
+        (self.best, self.count)
+    }
+
+    /// Looks into the cells on the way.
+    pub fn walk(&mut self) {
+        if self.octree.triangles.is_empty() {
+            return;
+        }
         // A ray from so far away that its points are less certain than a cell is fat may be in the cell beside the one
         // that it is taken for.
-        Walk::LeadingDirection if 4.0 * search.frame.double_tolerance <= FAT => search.step_from_cell_to_cell(),
-        Walk::LeadingDirection => search.look_from_above(),
+        if 4.0 * self.frame.double_tolerance <= FAT { self.step_from_cell_to_cell() } else { self.look_from_above() }
     }
-    (search.best, search.count)
 }
 
 impl Search<'_> {
@@ -55,7 +61,7 @@ impl Search<'_> {
     }
 
     /// Decides in double precision whether a triangle is hit nearer than any before.
-    #[inline]
+    #[inline(always)]
     pub(super) fn decide(&mut self, triangle: u32) -> bool {
         let octree = self.octree;
         let corners = octree.triangles[triangle as usize].map(|i| octree.vertices[i as usize]);
@@ -86,7 +92,7 @@ impl Search<'_> {
         let frame = self.frame.clone();
         let voxels = VOXELS as f64;
         let entry = frame.entry.map(|x| x * voxels);
-        let forward = frame.down.map(|down| 1 - 2 * down as i64);
+        let forward = frame.down.map(|down| 1 - 2 * i64::from(down));
         let leading = frame.axes[2];
         let others = [frame.axes[0], frame.axes[1]];
         let mut voxel = entry.map(|x| (x.floor() as i64).clamp(0, VOXELS - 1));

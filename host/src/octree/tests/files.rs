@@ -24,7 +24,7 @@ fn what_is_written_is_read_again() {
     let again = Octree::from_bytes(&bytes).expect("read");
     assert_eq!(again.to_bytes().expect("written"), bytes);
     assert_eq!(again.statistics(), octree.statistics());
-    assert_eq!((&again.leaves, &again.homes), (&octree.leaves, &octree.homes));
+    assert_eq!((again.leaves(), &again.nodes().homes), (octree.leaves(), &octree.nodes().homes));
     let mut stream = Stream::new(61, 0);
     for _ in 0..500 {
         let ray = chord(DVec3::ZERO, 1.4, &mut stream);
@@ -66,22 +66,23 @@ fn files_that_lack_a_reference_or_a_node_are_refused() {
         let bytes = octree.to_bytes().expect("written");
         Octree::from_bytes(&bytes).map(|_| ()).expect_err("refused").to_string()
     };
-    for leaf in [0, whole.leaves.codes.len() / 2, whole.leaves.codes.len() - 1] {
+    for leaf in [0, whole.leaves().codes.len() / 2, whole.leaves().codes.len() - 1] {
         let mut forged = whole.clone();
-        let begin = if leaf == 0 { 0 } else { forged.leaves.ends[leaf - 1] };
-        let count = forged.leaves.of(leaf).len();
+        let range = forged.leaves().range(leaf..leaf + 1);
+        let (begin, count) = (range.start, range.len());
         let without = |leaves: &mut Leaves, from: usize, number: usize| {
             leaves.triangles.drain(from..from + number);
             leaves.ends[leaf..].iter_mut().for_each(|end| *end -= number);
         };
         if count > 1 {
-            without(&mut forged.leaves, begin, 1);
+            without(&mut forged.nodes.get_mut().expect("divided").leaves, begin, 1);
             assert!(message(&forged).contains("just the triangles that touch it"), "{}", message(&forged));
         }
         let mut forged = whole.clone();
-        without(&mut forged.leaves, begin, count);
-        forged.leaves.ends.remove(leaf);
-        forged.leaves.codes.remove(leaf);
+        without(&mut forged.nodes.get_mut().expect("divided").leaves, begin, count);
+        let leaves = &mut forged.nodes.get_mut().expect("divided").leaves;
+        leaves.ends.remove(leaf);
+        leaves.codes.remove(leaf);
         assert!(message(&forged).contains("where there is no node"), "{}", message(&forged));
     }
 }
