@@ -4,6 +4,8 @@
 //! alternate between the rivals. `RAYS_SIDE` sets the width of the picture (512); `RAYS_MESHES` names mesh files,
 //! separated by colons, to measure beside the teapot and the bunny.
 
+#[path = "rays/crates.rs"]
+mod crates;
 #[path = "rays/rivals.rs"]
 mod rivals;
 #[path = "rays/sets.rs"]
@@ -14,6 +16,7 @@ mod shapes;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use crates::{Binary, Parry};
 use host::octree::{Octree, Settings, Walk};
 use rayon::prelude::*;
 use rivals::Hierarchy;
@@ -23,7 +26,7 @@ use shapes::Shape;
 /// Passes over each set; the median counts.
 const PASSES: usize = 5;
 
-/// One ray in so many is walked from cell to cell, which is slow.
+/// One ray in so many goes to those that are slow: the walk from cell to cell, `bvh` and `parry3d`.
 const STRIDE: usize = 8;
 
 fn main() {
@@ -44,43 +47,69 @@ fn main() {
 /// Everything about one mesh.
 fn report(shape: &Shape, side: usize) {
     let (octree, built) = build(shape);
-    let statistics = octree.statistics();
     let leading = octree.clone().with_walk(Walk::LeadingDirection);
     let rivals = [Hierarchy::build(shape, false), Hierarchy::build(shape, true)];
-    println!("{}", shape.name);
-    println!(
-        "  build: octree {} ({} nodes, {:.2} references a triangle), obvhs BVH2 {}, CWBVH {} (one thread)",
-        cost(built, statistics.bytes, shape),
-        statistics.leaves,
-        statistics.references as f64 / statistics.triangles.max(1) as f64,
-        cost(rivals[0].build, rivals[0].bytes(), shape),
-        cost(rivals[1].build, rivals[1].bytes(), shape),
-    );
+    let (plain, parry) = (Binary::build(shape), Parry::build(shape));
     let sets = sets::sets(shape, &octree, side);
     let embree = rivals::embree(shape, &sets);
+    let statistics = leading.statistics();
+    println!("{}", shape.name);
     if let Err(reason) = &embree {
         println!("  Embree: {reason}");
     }
-    println!("           octree     all leading    BVH2   CWBVH  Embree | octree/best obvhs, cells, triangles, differ");
+    let with_mesh = size_of_val(shape.vertices.as_slice()) + size_of_val(shape.triangles.as_slice());
+    let index = octree.index_bytes();
+    println!(
+        "  build, one thread: octree {}, {} with the mesh; obvhs BVH2 {}, CWBVH {}; bvh {:.3?}, parry3d {:.3?}, Embree {}",
+        cost(built, index, shape),
+        (index + with_mesh) / shape.triangles.len().max(1),
+        cost(rivals[0].build, rivals[0].bytes(), shape),
+        cost(rivals[1].build, rivals[1].bytes(), shape),
+        plain.build,
+        parry.build,
+        embree.as_ref().map_or("-".to_owned(), |embree| format!("{:.3?}", embree.build)),
+    );
+    println!(
+        "  terminal nodes, where they are asked for: {}, {:.2} references a triangle, {} B/triangle",
+        statistics.leaves,
+        statistics.references as f64 / statistics.triangles.max(1) as f64,
+        (statistics.linear_bytes - with_mesh) / shape.triangles.len().max(1),
+    );
+    println!(
+        "           octree     all leading    BVH2   CWBVH     bvh   parry  Embree | octree to the better obvhs, bvh, parry, Embree; all to one | cells, triangles, differ"
+    );
     for (index, set) in sets.iter().enumerate() {
         let singles = Hierarchy::prepare(set);
+        let (plains, parries) = (Binary::prepare(set, &singles), Parry::prepare(set));
         let differ = disagreements(&octree, &leading, &rivals[0], set, &singles);
         let count = set.rays.len();
         let rival = |hierarchy: &Hierarchy| {
             let hit = |&&ray: &&_| if set.any { hierarchy.occluded(ray) } else { hierarchy.closest(ray).is_some() };
             singles.iter().filter(hit).count()
         };
-        let [fast, slow, binary, wide] = rates(
-            [count, count.div_ceil(STRIDE), count, count],
-            [&|| hits(&octree, set, 1), &|| hits(&leading, set, STRIDE), &|| rival(&rivals[0]), &|| rival(&rivals[1])],
+        let few = count.div_ceil(STRIDE);
+        let [fast, slow, binary, wide, bvh, parry] = rates(
+            [count, few, count, count, few, few],
+            [
+                &|| hits(&octree, set, 1),
+                &|| hits(&leading, set, STRIDE),
+                &|| rival(&rivals[0]),
+                &|| rival(&rivals[1]),
+                &|| plains.iter().step_by(STRIDE).filter(|ray| plain.hits(ray, set.any)).count(),
+                &|| parries.iter().step_by(STRIDE).filter(|ray| parry.hits(ray, set.t_max)).count(),
+            ],
         );
         let all = all_threads(&octree, set);
-        let other = embree.as_ref().map_or("-".to_owned(), |rates| format!("{:.2}", rates[index]));
+        let other = embree.as_ref().map_or(f64::NAN, |embree| embree.rates[index]);
         let (cells, triangles) = work(&octree, set);
         println!(
-            "  {:8} {fast:7.2} {all:7.2} {slow:7.2} {binary:7.2} {wide:7.2} {other:>7} | {:.2}, {cells:.1}, {triangles:.1}, {differ}",
+            "  {:8} {fast:7.2} {all:7.2} {slow:7.2} {binary:7.2} {wide:7.2} {bvh:7.2} {parry:7.2} {other:7.2} | {:.2}, {:.1}, {:.1}, {:.2}; {:.2} | {cells:.1}, {triangles:.1}, {differ}",
             set.name,
             fast / binary.max(wide),
+            fast / bvh,
+            fast / parry,
+            fast / other,
+            all / fast,
         );
     }
     println!();
@@ -102,10 +131,14 @@ fn growth(side: usize) {
     }
 }
 
+/// The octree, and the processor time of building it on one thread.
 fn build(shape: &Shape) -> (Octree, Duration) {
-    let start = Instant::now();
-    let octree = Octree::build(&shape.vertices, &shape.triangles, &Settings::default()).expect("a sound mesh");
-    (octree, start.elapsed())
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    pool.install(|| {
+        let start = processor_seconds();
+        let octree = Octree::build(&shape.vertices, &shape.triangles, &Settings::default()).expect("a sound mesh");
+        (octree, Duration::from_secs_f64(processor_seconds() - start))
+    })
 }
 
 fn cost(time: Duration, bytes: usize, shape: &Shape) -> String {

@@ -38,6 +38,11 @@ pub struct Statistics {
 }
 
 impl Octree {
+    /// Memory of the index, bytes.
+    pub fn index_bytes(&self) -> usize {
+        size_of_val(self.index.packets.as_slice()) + size_of_val(self.index.nodes.as_slice())
+    }
+
     /// What the octree holds.
     pub fn statistics(&self) -> Statistics {
         let mut depth_histogram = vec![0; self.depth as usize + 1];
@@ -51,8 +56,7 @@ impl Octree {
             + size_of_val(self.leaves().codes.as_slice())
             + size_of_val(self.leaves().ends.as_slice())
             + size_of_val(self.leaves().triangles.as_slice());
-        let bytes =
-            linear_bytes + size_of_val(self.index.packets.as_slice()) + size_of_val(self.index.nodes.as_slice());
+        let bytes = linear_bytes + self.index_bytes();
         let leaves = self.leaves().codes.len();
         let voxel_nodes = depth_histogram.last().copied().unwrap_or(0);
         let volumes = depth_histogram.iter().zip(0..).map(|(&count, level)| count as f64 * 0.125_f64.powi(level));

@@ -1,7 +1,7 @@
 //! The others that run on the same rays: the hierarchies of the crate obvhs, and Embree.
 
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
@@ -13,6 +13,7 @@ use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
 use obvhs::triangle::Triangle;
 
+use crate::processor_seconds;
 use crate::sets::RaySet;
 use crate::shapes::Shape;
 
@@ -38,7 +39,7 @@ impl Hierarchy {
         let corners = |&[a, b, c]: &[u32; 3]| [a, b, c].map(|i| point(shape.vertices[i as usize]));
         let triangles: Vec<Triangle> =
             shape.triangles.iter().map(corners).map(|[v0, v1, v2]| Triangle { v0, v1, v2 }).collect();
-        let start = Instant::now();
+        let start = processor_seconds();
         let parameters = BvhBuildParams::fast_build();
         let mut core = Duration::ZERO;
         let (tree, indices) = if wide {
@@ -51,7 +52,7 @@ impl Hierarchy {
             (Tree::Binary(tree), indices)
         };
         let triangles = indices.iter().map(|&i| RtTriangle::from(&triangles[i as usize])).collect();
-        Self { tree, triangles, indices, build: start.elapsed() }
+        Self { tree, triangles, indices, build: Duration::from_secs_f64(processor_seconds() - start) }
     }
 
     /// Memory of nodes, triangles and indices, bytes.
@@ -90,11 +91,19 @@ impl Hierarchy {
     }
 }
 
-/// Millions of rays per second of Embree through the Python package `embreex`, one figure a set.
+/// What Embree needs.
+pub struct Embree {
+    /// Processor time of building, with all threads.
+    pub build: Duration,
+    /// Millions of rays per second, one figure a set.
+    pub rates: Vec<f64>,
+}
+
+/// Measures Embree through the Python package `embreex`.
 ///
 /// # Errors
-/// A line that says why there are none.
-pub fn embree(shape: &Shape, sets: &[RaySet]) -> Result<Vec<f64>, String> {
+/// A line that says why there is nothing.
+pub fn embree(shape: &Shape, sets: &[RaySet]) -> Result<Embree, String> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let installed = Command::new(&python).args(["-c", "import embreex, numpy"]).output();
     if !installed.is_ok_and(|output| output.status.success()) {
@@ -113,9 +122,11 @@ pub fn embree(shape: &Shape, sets: &[RaySet]) -> Result<Vec<f64>, String> {
     let output =
         Command::new(&python).args(["-c", script]).arg(file.path()).output().map_err(|error| error.to_string())?;
     let text = String::from_utf8_lossy(&output.stdout);
-    let rates: Vec<f64> = text.lines().filter_map(|line| line.split(' ').next()?.parse().ok()).collect();
-    if rates.len() == sets.len() {
-        return Ok(rates);
+    let figures: Vec<f64> = text.lines().filter_map(|line| line.split(' ').next()?.parse().ok()).collect();
+    if let [build, rates @ ..] = figures.as_slice()
+        && rates.len() == sets.len()
+    {
+        return Ok(Embree { build: Duration::from_secs_f64(*build), rates: rates.to_vec() });
     }
     let errors = String::from_utf8_lossy(&output.stderr);
     Err(errors.lines().last().unwrap_or("failed without a message").to_owned())
