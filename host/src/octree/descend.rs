@@ -1,15 +1,15 @@
 //! Rays down the index, nearest child first.
 
-use super::index::{Child, Slabs};
+use super::index::Child;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Wide;
 use super::lanes::{LANES, Lanes, Plain};
-use super::packet::{Packet, Sight};
+use super::packet::Packet;
 use super::walk::Search;
 use super::{Hit, Octree, Ray, WalkCount};
 
 /// Entries of the stack that need no allocation.
-const STACK: usize = 64;
+const STACK: usize = 32;
 
 /// What is still to be visited: where the ray enters it, as bits, above what it is. So the nearer is the lesser, since no
 /// length is negative.
@@ -129,7 +129,6 @@ impl Search<'_> {
     #[inline(always)]
     fn descend<L: Lanes, const ANY: bool>(&mut self) -> bool {
         let index = &self.octree.index;
-        let (slabs, sight) = (Slabs::<L>::new(&self.frame), Sight::<L>::new(&self.frame));
         let within = if ANY { self.frame.within(self.t_min, self.t_max) } else { [0.0; 2] };
         if index.nodes.is_empty() {
             return false;
@@ -141,7 +140,7 @@ impl Search<'_> {
             match child.place() {
                 Err(place) => {
                     let node = &index.nodes[place];
-                    let (mut lanes, near) = node.meets(&slabs, self.limit);
+                    let (mut lanes, near) = node.meets::<L>(&self.frame, self.limit);
                     if lanes != 0 {
                         let first = lanes.trailing_zeros() as usize & (LANES - 1);
                         lanes &= lanes - 1;
@@ -165,7 +164,7 @@ impl Search<'_> {
                 }
                 Ok(places) => {
                     for packet in &index.packets[places] {
-                        if self.test::<L, ANY>(packet, &sight, within) {
+                        if self.test::<L, ANY>(packet, within) {
                             return true;
                         }
                     }
@@ -183,9 +182,9 @@ impl Search<'_> {
 
     /// Tests a packet; returns whether the search is over.
     #[inline(always)]
-    fn test<L: Lanes, const ANY: bool>(&mut self, packet: &Packet, sight: &Sight<L>, within: [f32; 2]) -> bool {
+    fn test<L: Lanes, const ANY: bool>(&mut self, packet: &Packet, within: [f32; 2]) -> bool {
         self.count.triangles += LANES as u64;
-        let (mut lanes, certain) = packet.candidates::<L, ANY>(sight, self.limit, within);
+        let (mut lanes, certain) = packet.candidates::<L, ANY>(&self.frame, self.limit, within);
         if ANY && certain != 0 {
             return true;
         }

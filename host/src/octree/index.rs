@@ -81,50 +81,28 @@ impl Node {
 
     /// The children that the ray may meet up to a limit, one bit each, and where it enters them.
     #[inline(always)]
-    pub fn meets<L: Lanes>(&self, slabs: &Slabs<L>, limit: f32) -> (u32, L) {
+    pub fn meets<L: Lanes>(&self, frame: &Frame, limit: f32) -> (u32, L) {
         let [x, y, z] = &self.bounds;
-        let near_z = slabs.near(z, 2).most(L::splat(0.0));
-        let enter = slabs.near(x, 0).most(slabs.near(y, 1)).most(near_z);
-        let far_z = slabs.far(z, 2).least(L::splat(limit));
-        let exit = slabs.far(x, 0).least(slabs.far(y, 1)).least(far_z);
+        let near_z = near::<L>(z, 2, frame).most(L::splat(0.0));
+        let enter = near::<L>(x, 0, frame).most(near(y, 1, frame)).most(near_z);
+        let far_z = far::<L>(z, 2, frame).least(L::splat(limit));
+        let exit = far::<L>(x, 0, frame).least(far(y, 1, frame)).least(far_z);
         (enter.is_at_most(exit), enter)
     }
 }
 
-/// A frame as boxes see it.
-#[derive(Clone, Copy)]
-pub struct Slabs<L> {
-    inverse: [L; 3],
-    near: [L; 3],
-    far: [L; 3],
-    down: [usize; 3],
+/// Lengths to the near sides of boxes.
+#[inline(always)]
+fn near<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &Frame) -> L {
+    let side = L::load(&sides[usize::from(frame.down[axis])]);
+    side.times_minus(L::splat(frame.inverse[axis]), L::splat(frame.near[axis]))
 }
 
-impl<L: Lanes> Slabs<L> {
-    /// The same in every lane.
-    #[inline(always)]
-    pub fn new(frame: &Frame) -> Self {
-        let [inverse, near, far] = [&frame.inverse, &frame.near, &frame.far];
-        let [x, y, z] = frame.down;
-        Self {
-            inverse: [L::splat(inverse[0]), L::splat(inverse[1]), L::splat(inverse[2])],
-            near: [L::splat(near[0]), L::splat(near[1]), L::splat(near[2])],
-            far: [L::splat(far[0]), L::splat(far[1]), L::splat(far[2])],
-            down: [usize::from(x), usize::from(y), usize::from(z)],
-        }
-    }
-
-    /// Lengths to the near sides of boxes.
-    #[inline(always)]
-    fn near(&self, sides: &[Eight; 2], axis: usize) -> L {
-        L::load(&sides[self.down[axis]]).times_minus(self.inverse[axis], self.near[axis])
-    }
-
-    /// Lengths to the far sides of boxes.
-    #[inline(always)]
-    fn far(&self, sides: &[Eight; 2], axis: usize) -> L {
-        L::load(&sides[1 - self.down[axis]]).times_minus(self.inverse[axis], self.far[axis])
-    }
+/// Lengths to the far sides of boxes.
+#[inline(always)]
+fn far<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &Frame) -> L {
+    let side = L::load(&sides[usize::from(!frame.down[axis])]);
+    side.times_minus(L::splat(frame.inverse[axis]), L::splat(frame.far[axis]))
 }
 
 /// The index over items: nodes and packets.

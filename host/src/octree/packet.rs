@@ -51,15 +51,15 @@ impl Packet {
     /// are off it is off by 3 d s; their sum, which is at most 6 d more than the whole, is off by as much and their
     /// products by 2^-22 of it: together less than 8 d (s + e) + 2 e whole, after multiplication by the whole.
     #[inline(always)]
-    pub fn candidates<L: Lanes, const ANY: bool>(&self, sight: &Sight<L>, limit: f32, within: [f32; 2]) -> (u32, u32) {
+    pub fn candidates<L: Lanes, const ANY: bool>(&self, frame: &Frame, limit: f32, within: [f32; 2]) -> (u32, u32) {
         let [a, b, c] = &self.corners;
-        let ((ax, ay), (bx, by), (cx, cy)) = (sight.across(a), sight.across(b), sight.across(c));
+        let ((ax, ay), (bx, by), (cx, cy)) = (across::<L>(a, frame), across::<L>(b, frame), across::<L>(c, frame));
         let first = cx.times_minus(by, cy.times(bx));
         let second = ax.times_minus(cy, ay.times(cx));
         let third = bx.times_minus(ay, by.times(ax));
-        let tolerance = sight.tolerance;
+        let tolerance = L::splat(frame.tolerance);
         let size = L::load(&self.size).plus(tolerance);
-        let error = size.times(sight.error_scale);
+        let error = size.times(L::splat(frame.error_scale));
         let low = first.least(second).least(third).plus(error);
         let high = first.most(second).most(third).minus(error);
         let zero = L::splat(0.0);
@@ -67,7 +67,7 @@ impl Packet {
         if lanes == 0 {
             return (0, 0);
         }
-        let (az, bz, cz) = (sight.along(a), sight.along(b), sight.along(c));
+        let (az, bz, cz) = (along::<L>(a, frame), along::<L>(b, frame), along::<L>(c, frame));
         let whole = first.plus(second).plus(third);
         let length = az.times(first).plus(bz.times(second)).plus(cz.times(third)).signed_by(whole);
         let whole = whole.signed_by(whole);
@@ -84,48 +84,18 @@ impl Packet {
     }
 }
 
-/// A frame as packets see it.
-///
-/// What takes [`Lanes`] has neither closures nor `map`: they would be compiled for plain instructions.
-#[derive(Clone, Copy)]
-pub struct Sight<L> {
-    axes: [usize; 3],
-    slopes: [L; 2],
-    base: [L; 3],
-    sign_z: L,
-    tolerance: L,
-    error_scale: L,
+/// Where corners lie beside the ray.
+#[inline(always)]
+fn across<L: Lanes>(corners: &[Eight; 3], frame: &Frame) -> (L, L) {
+    let [x, y, z] = frame.axes;
+    let along = L::load(&corners[z]);
+    let x = L::splat(frame.shear[0]).times_from(along, L::load(&corners[x]).minus(L::splat(frame.base[0])));
+    let y = L::splat(frame.shear[1]).times_from(along, L::load(&corners[y]).minus(L::splat(frame.base[1])));
+    (x, y)
 }
 
-impl<L: Lanes> Sight<L> {
-    /// The same in every lane.
-    #[inline(always)]
-    pub fn new(frame: &Frame) -> Self {
-        let [x, y, z] = frame.axes;
-        Self {
-            // So that no place need be checked.
-            axes: [x.min(2), y.min(2), z.min(2)],
-            slopes: [L::splat(frame.shear[0]), L::splat(frame.shear[1])],
-            base: [L::splat(frame.base[0]), L::splat(frame.base[1]), L::splat(frame.base[2])],
-            sign_z: L::splat(frame.sign_z),
-            tolerance: L::splat(frame.tolerance),
-            error_scale: L::splat(frame.error_scale),
-        }
-    }
-
-    /// Where corners lie beside the ray.
-    #[inline(always)]
-    fn across(&self, corners: &[Eight; 3]) -> (L, L) {
-        let [x, y, z] = self.axes;
-        let along = L::load(&corners[z]);
-        let x = self.slopes[0].times_from(along, L::load(&corners[x]).minus(self.base[0]));
-        let y = self.slopes[1].times_from(along, L::load(&corners[y]).minus(self.base[1]));
-        (x, y)
-    }
-
-    /// Where corners lie along the ray.
-    #[inline(always)]
-    fn along(&self, corners: &[Eight; 3]) -> L {
-        L::load(&corners[self.axes[2]]).times_minus(self.sign_z, self.base[2])
-    }
+/// Where corners lie along the ray.
+#[inline(always)]
+fn along<L: Lanes>(corners: &[Eight; 3], frame: &Frame) -> L {
+    L::load(&corners[frame.axes[2]]).times_minus(L::splat(frame.sign_z), L::splat(frame.base[2]))
 }
