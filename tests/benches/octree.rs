@@ -47,7 +47,7 @@ fn edits(large: &Mesh) {
 /// Building, sorting, writing, reading, and the inside test of one mesh.
 fn whole(mesh: &Mesh) {
     let settings = Settings::default();
-    let build = || Octree::build(&mesh.vertices, &mesh.triangles, &settings).expect("a sound mesh");
+    let build = || Octree::build(&mesh.vertices, &mesh.triangles, &settings).expect("a sound mesh").divided();
     let octree = build();
     let bytes = octree.to_bytes().expect("written");
     let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);

@@ -257,12 +257,10 @@ impl Job<'_> {
         progress.finish();
         let shot = shot?;
         let rendering = &shot.rendering;
-        if let Some(octree) = &shot.octree {
-            let (nodes, bytes, seconds) = (octree.leaves, octree.bytes_per_triangle, shot.build_seconds);
-            let known = json!({ "terminal_nodes": nodes, "bytes_per_triangle": bytes, "build_seconds": seconds });
-            let text = format!(
-                "octree: {nodes} terminal nodes, {bytes:.1} bytes a triangle, built with all tables in {seconds:.3} s"
-            );
+        if let Some(bytes) = shot.octree_bytes {
+            let seconds = shot.build_seconds;
+            let known = json!({ "bytes_per_triangle": bytes, "build_seconds": seconds });
+            let text = format!("octree: {bytes:.1} bytes a triangle, built with all tables in {seconds:.3} s");
             self.note("octree", known, format_args!("{text}"));
         }
         let (rays, seconds, threads) = (rendering.rays.total(), rendering.seconds, rendering.threads);

@@ -82,7 +82,7 @@ fn build(arguments: &Arguments) -> Result<(Octree, f64), Failure> {
         ..defaults
     };
     let start = Instant::now();
-    let octree = Octree::build(&prepared.vertices, &prepared.triangles, &settings)?;
+    let octree = Octree::build(&prepared.vertices, &prepared.triangles, &settings)?.divided();
     Ok((octree, start.elapsed().as_secs_f64()))
 }
 

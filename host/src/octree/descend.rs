@@ -75,46 +75,50 @@ impl Stack {
 /// Finds the nearest hit with `t_min < t < t_max`.
 #[inline]
 pub fn nearest(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> (Option<Hit>, WalkCount) {
-    #[inline(always)]
-    fn search<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
-        let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], false) else { return Default::default() };
-        search.descend::<L, false>();
-        search.found()
-    }
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn search_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
-            search::<Wide>(octree, ray, limits)
+        fn nearest_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
+            nearest_by::<Wide>(octree, ray, limits)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { search_wide(octree, ray, [t_min, t_max]) };
+            return unsafe { nearest_wide(octree, ray, [t_min, t_max]) };
         }
     }
-    search::<Plain>(octree, ray, [t_min, t_max])
+    nearest_by::<Plain>(octree, ray, [t_min, t_max])
 }
 
 /// Says whether anything is hit with `t_min < t < t_max`.
 #[inline]
 pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-    #[inline(always)]
-    fn search<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
-        let search = Search::new(octree, ray, limits[0], limits[1], true);
-        search.is_some_and(|mut search| search.descend::<L, true>())
-    }
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn search_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
-            search::<Wide>(octree, ray, limits)
+        fn is_any_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
+            is_any_by::<Wide>(octree, ray, limits)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { search_wide(octree, ray, [t_min, t_max]) };
+            return unsafe { is_any_wide(octree, ray, [t_min, t_max]) };
         }
     }
-    search::<Plain>(octree, ray, [t_min, t_max])
+    is_any_by::<Plain>(octree, ray, [t_min, t_max])
+}
+
+/// The same as [`nearest`] with given instructions.
+#[inline(always)]
+pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
+    let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], false) else { return Default::default() };
+    search.descend::<L, false>();
+    search.found()
+}
+
+/// The same as [`is_any`] with given instructions.
+#[inline(always)]
+pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
+    let search = Search::new(octree, ray, limits[0], limits[1], true);
+    search.is_some_and(|mut search| search.descend::<L, true>())
 }
 
 /// Whether the processor has AVX2 and fused multiply-adds.

@@ -1,9 +1,10 @@
 //! The linear octree: sorted locational codes over triangles, location, and what a ray hits.
 //!
-//! Two structures stand on the same codes. [`Octree`] stores terminal nodes, each with every triangle that touches it, for
-//! whoever asks for a place: rays, neighbours, the inside test. [`Sorted`] files each triangle once, by its middle, for
-//! whoever asks each triangle once: the pairs of a Boolean operation. Sorting takes less than a tenth of the time of
-//! dividing, which an operation does not win back; so neither is built from the other.
+//! Three structures stand on the same codes. [`Octree`] stores terminal nodes, each with every triangle that touches it,
+//! for whoever asks for a place: neighbours, the inside test, rays that go from cell to cell. They are made when they are
+//! first asked for. Its index files each triangle once, by its middle, in wide nodes for rays that start at the top.
+//! [`Sorted`] files them so too, for whoever asks each triangle once: the pairs of a Boolean operation. Sorting takes less
+//! than a tenth of the time of dividing, so neither of the two waits for terminal nodes.
 
 pub mod brute_force;
 mod build;
@@ -73,7 +74,7 @@ impl Default for Settings {
 /// How a ray finds the cells on its way. All ways give the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Walk {
-    /// Down an index of wide nodes that is derived from the sorted codes.
+    /// Down an index of wide nodes over the triangles in the order of their codes. Needs no terminal nodes.
     #[default]
     Index,
     /// From cell to cell across the side that the leading direction meets, each found by binary search. Needs no index.

@@ -91,11 +91,11 @@ impl<const N: usize> Bins<N> {
         let mut bins = Self { around: [[Item::EMPTY; N]; 3], weight: [[0; N]; 3] };
         for item in items {
             let places = ((item.centre() - low) * scale).fast_trunc_int().to_array();
-            for axis in 0..3 {
+            (0..3).for_each(|axis| {
                 let place = places[axis] as usize & (N - 1);
                 bins.around[axis][place] = bins.around[axis][place].union(item);
                 bins.weight[axis][place] += item.weight() as u32;
-            }
+            });
         }
         bins
     }
@@ -135,8 +135,7 @@ fn parted(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> [Part; 2] {
     for i in 0..items.len() {
         // Without a branch that no processor could foresee: what is not of the first part changes places with its like.
         let item = items[i];
-        items[i] = items[first];
-        items[first] = item;
+        items.swap(i, first);
         let is_first = is_first(&item);
         parts[usize::from(!is_first)].add(&item);
         first += usize::from(is_first);

@@ -38,25 +38,32 @@ pub struct Statistics {
 }
 
 impl Octree {
-    /// Memory of the index, bytes.
-    pub fn index_bytes(&self) -> usize {
-        size_of_val(self.index.packets.as_slice()) + size_of_val(self.index.nodes.as_slice())
+    /// Memory of what is there, bytes: of terminal nodes only if they were asked for before.
+    pub fn bytes(&self) -> usize {
+        let index = size_of_val(self.index.packets.as_slice()) + size_of_val(self.index.nodes.as_slice());
+        self.linear_bytes() + index
     }
 
-    /// What the octree holds.
+    fn linear_bytes(&self) -> usize {
+        let nodes = self.nodes.get().map_or(0, |nodes| {
+            size_of_val(nodes.homes.as_slice())
+                + size_of_val(nodes.leaves.codes.as_slice())
+                + size_of_val(nodes.leaves.ends.as_slice())
+                + size_of_val(nodes.leaves.triangles.as_slice())
+        });
+        nodes
+            + size_of_val(self.vertices.as_slice())
+            + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.objects.as_slice())
+    }
+
+    /// What the octree holds, terminal nodes included.
     pub fn statistics(&self) -> Statistics {
         let mut depth_histogram = vec![0; self.depth as usize + 1];
         for code in &self.leaves().codes {
             depth_histogram[code.level() as usize] += 1;
         }
-        let linear_bytes = size_of_val(self.vertices.as_slice())
-            + size_of_val(self.triangles.as_slice())
-            + size_of_val(self.objects.as_slice())
-            + size_of_val(self.nodes().homes.as_slice())
-            + size_of_val(self.leaves().codes.as_slice())
-            + size_of_val(self.leaves().ends.as_slice())
-            + size_of_val(self.leaves().triangles.as_slice());
-        let bytes = linear_bytes + self.index_bytes();
+        let (linear_bytes, bytes) = (self.linear_bytes(), self.bytes());
         let leaves = self.leaves().codes.len();
         let voxel_nodes = depth_histogram.last().copied().unwrap_or(0);
         let volumes = depth_histogram.iter().zip(0..).map(|(&count, level)| count as f64 * 0.125_f64.powi(level));

@@ -5,7 +5,6 @@ mod closed_form;
 pub use closed_form::{difference, view_of_dials};
 
 use crate::{
-    octree::Statistics,
     picture::Picture,
     plan::Plan,
     render::{Order, RenderError, Renderer, Rendering, Watch, ray_tracing::RayTracer},
@@ -55,8 +54,8 @@ pub struct Sent {
 pub struct Shot {
     /// The image, with what it took.
     pub rendering: Rendering,
-    /// The octree that the rays went through; none if the view needs no triangles.
-    pub octree: Option<Statistics>,
+    /// Memory of the octree that the rays went through, bytes a triangle; none if the view needs no triangles.
+    pub octree_bytes: Option<f64>,
     /// Until octree and tables stood, seconds.
     pub build_seconds: f64,
 }
@@ -112,8 +111,9 @@ impl Production {
         let plan = Plan::new(&self.prepared, &view);
         let tracer = RayTracer::new(&self.prepared, &plan)?;
         let build_seconds = start.elapsed().as_secs_f64();
-        let octree = tracer.octree().map(crate::octree::Octree::statistics);
-        Ok(Shot { rendering: tracer.render(&view, order, watch)?, octree, build_seconds })
+        let triangles = self.prepared.triangles.len().max(1) as f64;
+        let octree_bytes = tracer.octree().map(|octree| octree.bytes() as f64 / triangles);
+        Ok(Shot { rendering: tracer.render(&view, order, watch)?, octree_bytes, build_seconds })
     }
 
     /// Shows an image on the raster screen. It is there when this returns.

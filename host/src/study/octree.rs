@@ -101,7 +101,7 @@ impl Knob for Division {
             (hits, start.elapsed().as_secs_f64())
         };
         let start = Instant::now();
-        let octree = Octree::build(vertices, triangles, &settings)?;
+        let octree = Octree::build(vertices, triangles, &settings)?.divided();
         let build = start.elapsed().as_secs_f64();
         let megabytes = octree.statistics().bytes as f64 / 1e6;
         let (by_index, index) = walk(&octree);

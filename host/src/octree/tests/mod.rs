@@ -4,6 +4,7 @@ mod edits;
 mod extremes;
 mod files;
 mod hits;
+mod instructions;
 mod neighbours;
 mod sides;
 mod structure;
