@@ -14,7 +14,7 @@ use super::packet::Packet;
 use super::partition::{Part, divide};
 
 /// So many cells or fewer are divided by their items.
-const FEW_CELLS: usize = 512;
+const FEW_CELLS: usize = 64;
 
 /// So many triangles or fewer are not divided.
 const LEAF: usize = 12;
