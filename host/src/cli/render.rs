@@ -82,11 +82,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rendering = rendering?;
     outputs.iter().try_for_each(|path| rendering.picture.write(path))?;
     report(arguments, &outputs, &prepared, &rendering, build_seconds)?;
-    if rendering.is_complete() {
+    if rendering.complete {
         Ok(())
     } else {
-        let done = rendering.rows.iter().filter(|r| **r).count();
-        let message = format!("interrupted; {done} of {} rows are finished and kept", rendering.rows.len());
+        let [least, most] = rendering.film.samples();
+        let message = format!("interrupted; pixels have {least} to {most} samples, which are kept");
         Err(Failure::new(Exit::Interrupted, anyhow::anyhow!(message)))
     }
 }
@@ -124,7 +124,7 @@ fn report(
             "render_seconds": rendering.seconds,
             "threads": rendering.threads,
             "rays": rendering.rays,
-            "complete": rendering.is_complete(),
+            "complete": rendering.complete,
         });
         say!("{}", serde_json::to_string_pretty(&json)?);
         return Ok(());

@@ -1,12 +1,14 @@
 //! Refractive indices of transparent solids by Sellmeier's formula.
 
+use serde::{Deserialize, Serialize};
+
 use super::ColorError;
 
 /// A transparent solid: n² = 1 + Σ B w² / (w² − C), w the wavelength in micrometres.
 ///
 /// # Source
 /// Sellmeier 1871; coefficients as the file `data/color/glasses.txt` states.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Glass {
     /// What it is called.
     pub name: String,

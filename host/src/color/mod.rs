@@ -5,6 +5,9 @@
 
 pub mod bins;
 pub mod blackbody;
+mod channels;
+#[expect(clippy::module_inception, reason = "the noun of the field")]
+mod color;
 mod columns;
 pub mod daylight;
 mod error;
@@ -14,9 +17,13 @@ pub mod reflectance;
 pub mod shipped;
 pub mod spectrum;
 pub mod srgb;
+mod wavelengths;
 
 pub use bins::Bins;
+pub use channels::{Channels, LANES};
+pub use color::{Color, WHITE};
 pub use error::ColorError;
 pub use glass::Glass;
 pub use reflectance::SmoothReflectance;
 pub use spectrum::{Beyond, Spectrum, integral};
+pub use wavelengths::{Curve, Wavelengths};

@@ -1,9 +1,11 @@
 //! Piecewise linear spectra over regular or irregular samples, and exact integrals of their products.
 
 use super::ColorError;
+use serde::{Deserialize, Serialize};
 
 /// What a spectrum is beyond its first and last sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Beyond {
     /// Zero, as for light and for the functions of an observer.
     Zero,
@@ -12,18 +14,48 @@ pub enum Beyond {
 }
 
 /// Where the samples are.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 enum Grid {
     Regular { first: f64, step: f64 },
     Irregular(Vec<f64>),
 }
 
 /// A quantity over the wavelength, linear between its samples.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Plain", into = "Plain")]
 pub struct Spectrum {
     grid: Grid,
     values: Vec<f64>,
     beyond: Beyond,
+}
+
+/// A spectrum as it is stored; checked when it is read.
+#[derive(Serialize, Deserialize)]
+struct Plain {
+    grid: Grid,
+    values: Vec<f64>,
+    beyond: Beyond,
+}
+
+impl From<Spectrum> for Plain {
+    fn from(Spectrum { grid, values, beyond }: Spectrum) -> Plain {
+        Plain { grid, values, beyond }
+    }
+}
+
+impl TryFrom<Plain> for Spectrum {
+    type Error = ColorError;
+
+    fn try_from(Plain { grid, values, beyond }: Plain) -> Result<Spectrum, ColorError> {
+        match grid {
+            Grid::Regular { first, step } => Spectrum::regular(first, step, values, beyond),
+            Grid::Irregular(wavelengths) if wavelengths.len() == values.len() => {
+                Spectrum::irregular(&wavelengths.into_iter().zip(values).collect::<Vec<_>>(), beyond)
+            }
+            Grid::Irregular(_) => Err(ColorError::TooFew(values.len())),
+        }
+    }
 }
 
 impl Spectrum {

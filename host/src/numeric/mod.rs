@@ -8,4 +8,5 @@ pub mod plane;
 pub mod predicates;
 pub mod ray;
 pub mod sampling;
+pub mod sequence;
 pub mod triangle;

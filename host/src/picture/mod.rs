@@ -37,11 +37,17 @@ impl Picture {
     /// # Errors
     /// [`PictureError::Size`] for an empty side or more than [`MAX_PIXELS`].
     pub fn new(width: u32, height: u32) -> Result<Picture, PictureError> {
+        Ok(Picture { width, height, pixels: vec![Pixel::default(); Picture::pixels_of(width, height)?] })
+    }
+
+    /// How many pixels a picture has.
+    ///
+    /// # Errors
+    /// [`PictureError::Size`] for an empty side or more than [`MAX_PIXELS`].
+    pub fn pixels_of(width: u32, height: u32) -> Result<usize, PictureError> {
         let count = u64::from(width) * u64::from(height);
-        if count == 0 || count > MAX_PIXELS {
-            return Err(PictureError::Size { width, height });
-        }
-        Ok(Picture { width, height, pixels: vec![Pixel::default(); count as usize] })
+        let possible = (1..=MAX_PIXELS).contains(&count);
+        possible.then_some(count as usize).ok_or(PictureError::Size { width, height })
     }
 
     /// Columns.

@@ -99,24 +99,25 @@ impl Plan {
         let objects = reach::objects(prepared, view, &facts);
         let facts = facts.within(objects.iter().map(|d| d.needed).collect());
         for stage in Stage::ALL {
-            let decision = plan.add(Kind::Stage, stage.word().to_owned(), stage.decide(&facts));
-            plan.stages[stage as usize] = decision;
+            plan.stages[stage as usize] =
+                plan.add(Kind::Stage, stage.word().to_owned(), stage.decide(&facts), stage.is_forcible());
         }
         for (object, decision) in prepared.objects.iter().zip(objects) {
-            let kept = plan.add(Kind::Object, object.name.clone(), decision);
+            let kept = plan.add(Kind::Object, object.name.clone(), decision, true);
             plan.objects.push(kept);
         }
         for (index, decision) in lights.into_iter().enumerate() {
-            let kept = plan.add(Kind::Light, format!("light {}", index + 1), decision);
+            let kept = plan.add(Kind::Light, format!("light {}", index + 1), decision, true);
             plan.lights.push(kept);
         }
         plan
     }
 
-    fn add(&mut self, kind: Kind, name: String, decision: Decision) -> bool {
+    fn add(&mut self, kind: Kind, name: String, decision: Decision, forcible: bool) -> bool {
         let Decision { needed, reason } = decision;
-        let reason = if self.forced && !needed { format!("forced; {reason}") } else { reason };
-        let needed = needed || self.forced;
+        let forced = self.forced && forcible && !needed;
+        let reason = if forced { format!("forced; {reason}") } else { reason };
+        let needed = needed || forced;
         self.entries.push(Entry { kind, name, needed, reason });
         needed
     }
@@ -149,11 +150,8 @@ impl Plan {
 }
 
 fn light(light: &crate::illumination::Light) -> Decision {
-    let kind = match light {
-        crate::illumination::Light::Point { .. } => "a point light",
-        crate::illumination::Light::Directional { .. } => "parallel light",
-    };
-    if light.strength().max_element() > 0.0 {
+    let kind = light.words();
+    if !light.strength().1.is_black() {
         Decision::new(true, format!("{kind} with power"))
     } else {
         Decision::new(false, format!("{kind} without power"))

@@ -27,6 +27,8 @@ pub(super) fn objects(prepared: &Prepared, view: &View, facts: &Facts<'_>) -> Ve
             Decision::new(false, "nothing at all is in view")
         } else if mirrors {
             Decision::new(true, "out of view, but a mirror may show it")
+        } else if facts.emits(object) {
+            Decision::new(true, "out of view, but it emits light")
         } else if shadows && throws_shadow(prepared, facts, &object.bounds, &seen) {
             Decision::new(true, "out of view, but its shadow may be seen")
         } else {
@@ -39,10 +41,14 @@ pub(super) fn objects(prepared: &Prepared, view: &View, facts: &Facts<'_>) -> Ve
 /// Whether a box may stand between any bright light and a point of `seen`; errs towards yes.
 fn throws_shadow(prepared: &Prepared, facts: &Facts<'_>, object: &Bounds, seen: &Bounds) -> bool {
     prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i)).any(|(_, light)| match *light {
-        Light::Point { at, .. } => {
-            let between = seen.union(Bounds { min: at, max: at });
-            between.min.cmple(object.max).all() && object.min.cmple(between.max).all()
+        Light::Point { at, .. } | Light::Spot { at, .. } | Light::Luminaire { at, .. } => {
+            is_between(Bounds { min: at, max: at }, object, seen)
         }
+        Light::Area { patch, .. } => {
+            let [min, max] = patch.bounds();
+            is_between(Bounds { min, max }, object, seen)
+        }
+        Light::Sky { .. } => true,
         Light::Directional { direction, .. } => {
             let Some(along) = direction.try_normalize() else { return false };
             let (u, v) = along.any_orthonormal_pair();
@@ -53,6 +59,12 @@ fn throws_shadow(prepared: &Prepared, facts: &Facts<'_>, object: &Bounds, seen: 
             overlaps(u) && overlaps(v) && range(object, along).0 <= range(seen, along).1
         }
     })
+}
+
+/// Whether a box may stand between a light and what is seen.
+fn is_between(light: Bounds, object: &Bounds, seen: &Bounds) -> bool {
+    let between = seen.union(light);
+    between.min.cmple(object.max).all() && object.min.cmple(between.max).all()
 }
 
 /// The least and the greatest coordinate of a box along an axis.

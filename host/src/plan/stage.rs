@@ -1,8 +1,9 @@
 //! The stages of rendering, one row each: name and the rule that decides whether a scene needs it.
 
 use super::Decision;
-use crate::illumination::{Bands, Material};
-use crate::scene::Prepared;
+use crate::illumination::Material;
+use crate::illumination::material::{Body, Classic, Coated, Shaped};
+use crate::scene::{Prepared, PreparedObject};
 
 /// A stage of rendering that can be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -11,15 +12,17 @@ pub enum Stage {
     Octree,
     /// Normals interpolated between the corners.
     Normals,
+    /// Spectra in place of three bands.
+    Spectra,
     /// Lambert's term.
     Diffuse,
-    /// Phong's term.
+    /// Highlights: Phong's term, and what facets reflect.
     Specular,
     /// The ambient term.
     Ambient,
     /// Rays towards the lights.
     Shadows,
-    /// Rays from mirrors.
+    /// Rays from mirrors, through glass, and from rough surfaces.
     Reflection,
     /// More than one sample in a pixel.
     AntiAliasing,
@@ -54,12 +57,18 @@ impl<'a> Facts<'a> {
         self.bright[light]
     }
 
+    /// Lights, and objects that emit.
     fn lights(&self) -> usize {
-        self.bright.iter().filter(|b| **b).count()
+        self.bright.iter().filter(|b| **b).count() + self.kept().filter(|object| self.emits(object)).count()
+    }
+
+    /// Whether an object emits light.
+    pub(super) fn emits(&self, object: &PreparedObject) -> bool {
+        object.materials.iter().any(|material| !material.emission.is_black())
     }
 
     pub(super) fn shadows(&self) -> Decision {
-        let receivers = self.count(|m| some(m.diffuse) || some(m.specular));
+        let receivers = self.count(|m| has_diffuse(m) || has_highlight(m));
         if self.lights() == 0 {
             Decision::new(false, "no light has power")
         } else if receivers == 0 {
@@ -70,19 +79,43 @@ impl<'a> Facts<'a> {
     }
 
     pub(super) fn reflection(&self) -> Decision {
-        let mirrors = self.count(|m| some(m.mirror));
-        if mirrors == 0 {
-            Decision::new(false, "no material is a mirror")
+        let mirrors = self.count(carries_on);
+        let spread = self.prepared.settings.interreflection && self.count(has_diffuse) > 0;
+        if mirrors == 0 && !spread {
+            Decision::new(false, "no material is a mirror, transparent, or rough and shiny")
         } else if self.prepared.settings.reflection_depth == 0 {
             Decision::new(false, "reflection depth is 0")
+        } else if mirrors == 0 {
+            Decision::new(true, "diffuse light goes from surface to surface")
         } else {
-            Decision::new(true, format!("{} of a mirroring material", counted(mirrors, "object")))
+            Decision::new(true, format!("{} that reflects or lets through", counted(mirrors, "object")))
         }
     }
 }
 
-fn some(k: Bands) -> bool {
-    k.max_element() > 0.0
+/// Whether a material reflects light diffusely.
+fn has_diffuse(material: &Material) -> bool {
+    match &material.body {
+        Body::Classic(Classic { diffuse, .. }) | Body::Coated(Coated { diffuse, .. }) => !diffuse.is_black(),
+        Body::Shaped(Shaped { reflectance, .. }) => !reflectance.is_black(),
+        Body::Metal(_) | Body::Transparent(_) => false,
+    }
+}
+
+/// Whether lights have highlights on it.
+fn has_highlight(material: &Material) -> bool {
+    match &material.body {
+        Body::Classic(Classic { specular, .. }) => !specular.is_black(),
+        _ => true,
+    }
+}
+
+/// Whether rays go on from it.
+fn carries_on(material: &Material) -> bool {
+    match &material.body {
+        Body::Classic(Classic { mirror, transparency, .. }) => !mirror.is_black() || !transparency.is_black(),
+        _ => true,
+    }
 }
 
 fn counted(n: usize, noun: &str) -> String {
@@ -91,9 +124,10 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 8] = [
+    pub const ALL: [Stage; 9] = [
         Stage::Octree,
         Stage::Normals,
+        Stage::Spectra,
         Stage::Diffuse,
         Stage::Specular,
         Stage::Ambient,
@@ -107,21 +141,28 @@ impl Stage {
         match self {
             Stage::Octree => "octree",
             Stage::Normals => "interpolated normals",
+            Stage::Spectra => "spectra",
             Stage::Diffuse => "Lambert's term",
-            Stage::Specular => "Phong's term",
+            Stage::Specular => "highlights",
             Stage::Ambient => "ambient term",
             Stage::Shadows => "shadow rays",
-            Stage::Reflection => "reflected rays",
+            Stage::Reflection => "reflected and refracted rays",
             Stage::AntiAliasing => "anti-aliasing",
         }
+    }
+
+    /// Whether running it without need changes nothing.
+    pub(super) fn is_forcible(self) -> bool {
+        self != Stage::Spectra
     }
 
     pub(super) fn decide(self, facts: &Facts<'_>) -> Decision {
         match self {
             Stage::Octree => octree(facts),
             Stage::Normals => normals(facts),
-            Stage::Diffuse => direct(facts, "diffuse", |m| m.diffuse),
-            Stage::Specular => direct(facts, "specular", |m| m.specular),
+            Stage::Spectra => spectra(facts),
+            Stage::Diffuse => direct(facts, "diffuse part", has_diffuse),
+            Stage::Specular => direct(facts, "highlight", has_highlight),
             Stage::Ambient => ambient(facts),
             Stage::Shadows => facts.shadows(),
             Stage::Reflection => facts.reflection(),
@@ -147,20 +188,35 @@ fn normals(facts: &Facts<'_>) -> Decision {
     }
 }
 
-fn direct(facts: &Facts<'_>, what: &str, k: impl Fn(&Material) -> Bands) -> Decision {
-    let count = facts.count(|m| some(k(m)));
+/// Spectra are another picture, not a better way to the same: forcing everything does not bring them.
+fn spectra(facts: &Facts<'_>) -> Decision {
+    let lights = facts.prepared.lights.iter().zip(&facts.bright);
+    let lights = lights.filter(|(light, bright)| **bright && light.is_spectral()).count();
+    match (facts.prepared.settings.spectral, facts.count(Material::is_spectral), lights) {
+        (Some(true), ..) => Decision::new(true, "the scene asks for them"),
+        (Some(false), ..) => Decision::new(false, "the scene asks for three bands"),
+        (None, 0, 0) => Decision::new(false, "no material and no light has a spectrum: three bands tell all"),
+        (None, 0, lights) => Decision::new(true, format!("{} with a spectrum", counted(lights, "light"))),
+        (None, objects, _) => {
+            Decision::new(true, format!("{} of a material with a spectrum", counted(objects, "object")))
+        }
+    }
+}
+
+fn direct(facts: &Facts<'_>, what: &str, has: impl Fn(&Material) -> bool) -> Decision {
+    let count = facts.count(has);
     if count == 0 {
-        Decision::new(false, format!("no material has a {what} part"))
+        Decision::new(false, format!("no material has a {what}"))
     } else if facts.lights() == 0 {
         Decision::new(false, "no light has power")
     } else {
-        Decision::new(true, format!("{} with a {what} part", counted(count, "object")))
+        Decision::new(true, format!("{} with a {what}", counted(count, "object")))
     }
 }
 
 fn ambient(facts: &Facts<'_>) -> Decision {
-    let count = facts.count(|m| some(m.diffuse));
-    if !some(facts.prepared.ambient) {
+    let count = facts.count(has_diffuse);
+    if facts.prepared.ambient.max_element() <= 0.0 {
         Decision::new(false, "there is no ambient light")
     } else if count == 0 {
         Decision::new(false, "no material has a diffuse part")

@@ -1,13 +1,15 @@
 //! Facts about plans.
 
 use super::*;
+use crate::color::Color;
+use crate::illumination::material::{Body, Classic};
 use crate::illumination::{Bands, Light, Material};
 use crate::scene::{Camera, Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
 fn object(name: &str, shape: Shape, at: DVec3) -> Object {
-    let material = Material { diffuse: Bands::splat(0.5), ..Material::default() };
+    let material = Classic { diffuse: Color::grey(0.5), ..Classic::default() }.into();
     Object {
         name: name.into(),
         shape,
@@ -21,7 +23,7 @@ fn object(name: &str, shape: Shape, at: DVec3) -> Object {
 fn scene() -> Scene {
     let cube = Shape::Solid(Primitive::Box { size: DVec3::ONE });
     let objects = vec![object("middle", cube.clone(), DVec3::ZERO), object("right", cube, DVec3::new(50.0, 0.0, 0.0))];
-    let lights = vec![Light::Directional { direction: DVec3::new(-1.0, 0.0, 0.0), irradiance: Bands::ONE }];
+    let lights = vec![Light::Directional { direction: DVec3::new(-1.0, 0.0, 0.0), irradiance: Color::grey(1.0) }];
     let camera = Camera {
         from: DVec3::new(0.0, 0.0, 8.0),
         at: DVec3::ZERO,
@@ -29,14 +31,19 @@ fn scene() -> Scene {
         field_of_view: 30.0,
         near: 0.0,
         far: None,
+        lens: None,
+        parallel: None,
     };
     let mut scene = Scene { objects, lights, camera: Some(camera), ..Scene::default() };
     scene.settings.samples = 1;
     scene
 }
 
-fn material(scene: &mut Scene) -> &mut Material {
-    scene.objects[0].material.as_mut().expect("it was given one")
+fn material(scene: &mut Scene) -> &mut Classic {
+    match &mut scene.objects[0].material {
+        Some(Material { body: Body::Classic(classic), .. }) => classic,
+        other => panic!("it was given a classic one, not {other:?}"),
+    }
 }
 
 fn plan(scene: &Scene) -> Plan {
@@ -59,15 +66,15 @@ fn each_property_brings_its_stage() {
         change(&mut scene);
         plan(&scene)
     };
-    assert!(with(|s| material(s).mirror = Bands::splat(0.1)).needs(Stage::Reflection));
-    assert!(with(|s| material(s).specular = Bands::splat(0.1)).needs(Stage::Specular));
+    assert!(with(|s| material(s).mirror = Color::grey(0.1)).needs(Stage::Reflection));
+    assert!(with(|s| material(s).specular = Color::grey(0.1)).needs(Stage::Specular));
     assert!(with(|s| s.ambient = Bands::splat(0.1)).needs(Stage::Ambient));
     assert!(with(|s| s.settings.samples = 2).needs(Stage::AntiAliasing));
     assert!(with(|s| s.objects[0].shape = Shape::Solid(Primitive::Sphere { radius: 1.0 })).needs(Stage::Normals));
     let dark = with(|s| s.lights.clear());
     assert!(!dark.needs(Stage::Shadows) && !dark.needs(Stage::Diffuse));
     let shallow = with(|s| {
-        material(s).mirror = Bands::splat(0.1);
+        material(s).mirror = Color::grey(0.1);
         s.settings.reflection_depth = 0;
     });
     assert!(!shallow.needs(Stage::Reflection));
@@ -78,19 +85,19 @@ fn an_object_out_of_view_is_kept_for_its_shadow_or_its_mirror_image_only() {
     assert!(plan(&scene()).keeps_object(1), "it stands between the light and the cube in view");
     let mut lit_from_the_left = scene();
     lit_from_the_left.lights =
-        vec![Light::Directional { direction: DVec3::new(1.0, 0.0, 0.0), irradiance: Bands::ONE }];
+        vec![Light::Directional { direction: DVec3::new(1.0, 0.0, 0.0), irradiance: Color::grey(1.0) }];
     assert!(!plan(&lit_from_the_left).keeps_object(1));
     let mut lamp = scene();
-    lamp.lights = vec![Light::Point { at: DVec3::new(9.0, 9.0, 9.0), intensity: Bands::ONE }];
+    lamp.lights = vec![Light::Point { at: DVec3::new(9.0, 9.0, 9.0), intensity: Color::grey(1.0) }];
     assert!(!plan(&lamp).keeps_object(1), "beyond the lamp");
-    material(&mut lamp).mirror = Bands::splat(0.5);
+    material(&mut lamp).mirror = Color::grey(0.5);
     assert!(plan(&lamp).keeps_object(1), "a mirror may show it");
 }
 
 #[test]
 fn a_light_without_power_is_left_out() {
     let mut scene = scene();
-    scene.lights.push(Light::Point { at: DVec3::Y, intensity: Bands::ZERO });
+    scene.lights.push(Light::Point { at: DVec3::Y, intensity: Color::BLACK });
     let plan = plan(&scene);
     assert!(plan.keeps_light(0) && !plan.keeps_light(1));
 }
@@ -101,7 +108,10 @@ fn a_forced_plan_leaves_nothing_out_and_says_so() {
     scene.lights.clear();
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::everything(&prepared, &prepared.view());
-    assert!(plan.entries.iter().all(|e| e.needed) && Stage::ALL.into_iter().all(|s| plan.needs(s)));
+    // Spectra are another picture: they are not forced.
+    let all = plan.entries.iter().filter(|e| e.name != "spectra");
+    assert!(all.clone().count() + 1 == plan.entries.len() && all.clone().all(|e| e.needed));
+    assert!(Stage::ALL.into_iter().all(|s| plan.needs(s) != (s == Stage::Spectra)));
     assert!(plan.entries.iter().any(|e| e.reason.starts_with("forced; no light")));
     assert!(plan.table().lines().count() == plan.entries.len() + 1);
     let json = serde_json::to_value(&plan).expect("plain data");

@@ -1,7 +1,11 @@
 //! Renderers: from a prepared scene and a view to a picture.
 
+mod film;
 pub mod ray_tracing;
 
+pub use film::{Film, LUMINANCE, Sample, Tally};
+
+use crate::illumination::material::MaterialError;
 use crate::octree::OctreeError;
 use crate::picture::{Picture, PictureError};
 use crate::scene::View;
@@ -31,8 +35,12 @@ pub struct Order {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Samples in each pixel, 1 and more; one samples the centre.
+    /// Samples in each pixel, 1 and more; one samples the centre. With a target or a budget, the most of them.
     pub samples: u32,
+    /// Relative error of the luminance at which a pixel has samples enough; none for all samples everywhere.
+    pub target: Option<f64>,
+    /// Seconds after which no sample is begun.
+    pub seconds: Option<f64>,
     /// Seed of the sample positions.
     pub seed: u64,
     /// Threads; every core without a number.
@@ -43,7 +51,7 @@ impl Order {
     /// What the scene's settings ask for, on every core.
     pub fn of(settings: &crate::scene::Settings) -> Order {
         let crate::scene::Settings { width, height, samples, seed, .. } = *settings;
-        Order { width, height, samples, seed, threads: None }
+        Order { width, height, samples, target: None, seconds: None, seed, threads: None }
     }
 }
 
@@ -71,10 +79,12 @@ impl Watch<'_> {
 /// A picture with what it took.
 #[derive(Clone, Debug)]
 pub struct Rendering {
-    /// The picture; rows that were not finished are black and uncovered.
+    /// The picture; pixels that were not begun are black and uncovered.
     pub picture: Picture,
-    /// Which rows were finished, from the top.
-    pub rows: Vec<bool>,
+    /// All that is known of its pixels.
+    pub film: Film,
+    /// Whether nothing was left out because the rendering was stopped.
+    pub complete: bool,
     /// How many rays were traced.
     pub rays: RayCounts,
     /// Wall-clock time, seconds.
@@ -84,11 +94,6 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// Whether every row was finished.
-    pub fn is_complete(&self) -> bool {
-        self.rows.iter().all(|r| *r)
-    }
-
     /// Rays of all kinds per second, in millions.
     pub fn mega_rays_per_second(&self) -> f64 {
         self.rays.total() as f64 / self.seconds.max(f64::MIN_POSITIVE) / 1e6
@@ -102,7 +107,7 @@ pub struct RayCounts {
     pub primary: u64,
     /// Towards lights.
     pub shadow: u64,
-    /// From mirrors.
+    /// From surfaces that reflect or let through.
     pub reflected: u64,
 }
 
@@ -134,6 +139,14 @@ pub enum RenderError {
     /// The picture cannot be made.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// A material is impossible.
+    #[error("{object}: {source}")]
+    Material {
+        /// The object.
+        object: String,
+        /// Why.
+        source: MaterialError,
+    },
     /// The view flattens space to a line or a point, or is not finite.
     #[error("the view has no directions for the pixels: its matrix is singular or not finite")]
     View,

@@ -98,7 +98,7 @@ impl Composite {
     pub(super) fn materials(&self, whole: Option<Material>) -> Vec<Material> {
         let mut leaves = Vec::new();
         self.collect(&DMat4::IDENTITY, whole, 1.0, &mut leaves);
-        leaves.iter().map(|leaf| leaf.material.unwrap_or_default()).collect()
+        leaves.iter().map(|leaf| leaf.material.clone().unwrap_or_default()).collect()
     }
 
     /// That of its first operand that has one, as far as it goes.
@@ -120,7 +120,8 @@ impl Composite {
     ) -> Expression {
         let whole = whole.or_else(|| self.first_material());
         let part = |operand: &'a Object| {
-            let (to_whole, material) = (*to_whole * operand.transform, operand.material.or(whole));
+            let (to_whole, material) =
+                (*to_whole * operand.transform, operand.material.clone().or_else(|| whole.clone()));
             match &operand.shape {
                 Shape::Composite(inner) => inner.collect(&to_whole, material, chord, leaves),
                 _ => {
@@ -176,6 +177,8 @@ impl Leaf<'_> {
 mod tests {
     use super::super::Prepared;
     use super::*;
+    use crate::color::Color;
+    use crate::illumination::material::Classic;
     use crate::scene::Scene;
     use crate::solid::Primitive;
     use glam::DVec3;
@@ -267,9 +270,12 @@ mod tests {
 
     #[test]
     fn faces_keep_the_material_that_their_operand_was_given() {
-        let red = Material { diffuse: DVec3::new(0.9, 0.1, 0.1), ..Material::default() };
-        let blue = Material { diffuse: DVec3::new(0.1, 0.1, 0.9), ..Material::default() };
-        let all = |one: Option<Material>, two: Option<Material>, whole: Option<Material>| {
+        let paint =
+            |r, g, b| Material::from(Classic { diffuse: Color::Bands(DVec3::new(r, g, b)), ..Classic::default() });
+        let red = paint(0.9, 0.1, 0.1);
+        let blue = paint(0.1, 0.1, 0.9);
+        let all = |one: Option<&Material>, two: Option<&Material>, whole: Option<&Material>| {
+            let [one, two, whole] = [one, two, whole].map(|material| material.cloned());
             let operands =
                 vec![Object { material: one, ..cube(0.0) }, Object { material: two, ..cube(0.5) }, cube(0.75)];
             let shape = Shape::Composite(Box::new(composite(Operation::Union, operands)));
@@ -280,14 +286,14 @@ mod tests {
             let prepared = Prepared::new(&scene).unwrap();
             let at = |x: f64| {
                 let is_there = |t: &u32| prepared.corners(*t).iter().all(|corner| corner.x == x);
-                *prepared.material((0..prepared.triangles.len() as u32).find(is_there).unwrap())
+                prepared.material((0..prepared.triangles.len() as u32).find(is_there).unwrap()).clone()
             };
             // The end of the first cube, and that of the third.
             [at(-0.5), at(1.25)]
         };
-        assert_eq!(all(Some(red), Some(blue), None), [red, red]);
-        assert_eq!(all(None, Some(red), Some(blue)), [blue, blue]);
-        assert_eq!(all(Some(red), None, Some(blue)), [red, blue]);
-        assert_eq!(all(None, None, None), [Material::default(); 2]);
+        assert_eq!(all(Some(&red), Some(&blue), None), [red.clone(), red.clone()]);
+        assert_eq!(all(None, Some(&red), Some(&blue)), [blue.clone(), blue.clone()]);
+        assert_eq!(all(Some(&red), None, Some(&blue)), [red, blue]);
+        assert_eq!(all(None, None, None), [Material::default(), Material::default()]);
     }
 }

@@ -19,7 +19,7 @@ pub use meeting::{Meeting, meetings};
 pub use prepared::{Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, Sheet};
 pub use shape::{Made, Rounded, Shape, ShapeError};
-pub use view::{Camera, Projection, View};
+pub use view::{Camera, Lens, Parallel, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};
 use glam::DMat4;
@@ -80,8 +80,14 @@ pub struct Settings {
     pub samples: u32,
     /// Seed of the sample positions.
     pub seed: u64,
-    /// How often a ray may be mirrored.
+    /// How often a ray may be reflected or refracted.
     pub reflection_depth: u32,
+    /// Points of each light that has a size, for each element.
+    pub light_samples: u32,
+    /// Whether diffuse light is carried on from surface to surface, up to the same depth.
+    pub interreflection: bool,
+    /// Whether rays carry spectra; without a word, where a material or a light has one.
+    pub spectral: Option<bool>,
     /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
     /// diagonal of each object.
     pub tolerance: Option<f64>,
@@ -92,7 +98,18 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { width: 640, height: 480, samples: 16, seed: 1, reflection_depth: 6, tolerance: None, angle: 45.0 }
+        Settings {
+            width: 640,
+            height: 480,
+            samples: 16,
+            seed: 1,
+            reflection_depth: 6,
+            light_samples: 1,
+            interreflection: false,
+            spectral: None,
+            tolerance: None,
+            angle: 45.0,
+        }
     }
 }
 
@@ -110,7 +127,7 @@ impl Scene {
         }
         self.objects.iter().try_for_each(Object::check)?;
         for (index, light) in self.lights.iter().enumerate() {
-            check_light(light).map_err(|problem| SceneError::Light { number: index + 1, problem })?;
+            light.check().map_err(|problem| SceneError::Light { number: index + 1, problem: problem.to_string() })?;
         }
         check_power("ambient light", self.ambient).map_err(SceneError::Setting)?;
         check_power("background", self.background).map_err(SceneError::Setting)?;
@@ -162,10 +179,10 @@ impl Object {
     /// The composite whose operands its triangles come from, and the material of the whole.
     fn composite(&self) -> Option<(&Composite, Option<Material>)> {
         match &self.shape {
-            Shape::Composite(composite) => Some((composite, self.material)),
+            Shape::Composite(composite) => Some((composite, self.material.clone())),
             Shape::Rounded(rounded) => {
                 let (composite, inner) = rounded.object.composite()?;
-                Some((composite, self.material.or(inner)))
+                Some((composite, self.material.clone().or(inner)))
             }
             _ => None,
         }
@@ -173,9 +190,9 @@ impl Object {
 
     fn own_material(&self) -> Option<Material> {
         match &self.shape {
-            Shape::Composite(composite) => self.material.or_else(|| composite.first_material()),
-            Shape::Rounded(rounded) => self.material.or_else(|| rounded.object.own_material()),
-            _ => self.material,
+            Shape::Composite(composite) => self.material.clone().or_else(|| composite.first_material()),
+            Shape::Rounded(rounded) => self.material.clone().or_else(|| rounded.object.own_material()),
+            _ => self.material.clone(),
         }
     }
 
@@ -195,16 +212,9 @@ impl Object {
         if let Some(tolerance) = self.tolerance {
             check_tolerance(tolerance).map_err(failed)?;
         }
-        let Some(m) = &self.material else { return Ok(()) };
-        for (what, k) in [("diffuse", m.diffuse), ("specular", m.specular), ("mirror", m.mirror)] {
-            if !k.is_finite() || k.min_element() < 0.0 || k.max_element() > 1.0 {
-                return Err(failed(format!("{what} reflectance {k} is not within 0 to 1")));
-            }
-        }
-        if !(1.0..=Material::MAX_EXPONENT).contains(&m.exponent) {
-            return Err(failed(format!("exponent {} is not within 1 to {}", m.exponent, Material::MAX_EXPONENT)));
-        }
-        Ok(())
+        self.material
+            .as_ref()
+            .map_or(Ok(()), |material| material.check().map_err(|problem| failed(problem.to_string())))
     }
 }
 
@@ -217,6 +227,10 @@ impl Settings {
         }
         if !(1..=MAX_SAMPLES).contains(&self.samples) {
             return Err(SceneError::Setting(format!("{} samples are not within 1 to {MAX_SAMPLES}", self.samples)));
+        }
+        if !(1..=MAX_SAMPLES).contains(&self.light_samples) {
+            let problem = format!("{} points of a light are not within 1 to {MAX_SAMPLES}", self.light_samples);
+            return Err(SceneError::Setting(problem));
         }
         if self.reflection_depth > MAX_REFLECTION_DEPTH {
             return Err(SceneError::Limit { what: "reflections in a chain", limit: u64::from(MAX_REFLECTION_DEPTH) });
@@ -241,23 +255,6 @@ fn check_power(what: &str, power: Bands) -> Result<(), String> {
         Ok(())
     } else {
         Err(format!("{what} {power} is negative or not finite"))
-    }
-}
-
-fn check_light(light: &Light) -> Result<(), String> {
-    match light {
-        Light::Point { at, intensity } => {
-            if !at.is_finite() {
-                return Err(format!("its place {at} is not finite"));
-            }
-            check_power("its intensity", *intensity)
-        }
-        Light::Directional { direction, irradiance } => {
-            if direction.try_normalize().is_none() {
-                return Err(format!("its direction {direction} has no length"));
-            }
-            check_power("its irradiance", *irradiance)
-        }
     }
 }
 

@@ -172,10 +172,13 @@ impl Prepared {
 
     /// How a triangle reflects.
     pub fn material(&self, triangle: u32) -> &Material {
+        &self.object(triangle).materials[self.material_number(triangle) as usize]
+    }
+
+    /// Which of the materials of its object a triangle has.
+    pub fn material_number(&self, triangle: u32) -> u32 {
         let object = self.object(triangle);
-        let number =
-            object.materials_from.map_or(0, |from| self.material_of[(from + triangle - object.first) as usize]);
-        &object.materials[number as usize]
+        object.materials_from.map_or(0, |from| self.material_of[(from + triangle - object.first) as usize])
     }
 
     /// The corners of a triangle, in scene coordinates.

@@ -1,6 +1,8 @@
 //! Facts about scenes.
 
 use super::*;
+use crate::color::Color;
+use crate::illumination::material::Classic;
 use crate::numeric::bounds::Bounds;
 use crate::solid::Primitive;
 use glam::DVec3;
@@ -13,7 +15,7 @@ fn sphere(transform: DMat4) -> Scene {
 
 fn problem(change: impl Fn(&mut Scene)) -> String {
     let mut scene = sphere(DMat4::IDENTITY);
-    scene.lights.push(Light::Point { at: DVec3::Y, intensity: Bands::ONE });
+    scene.lights.push(Light::Point { at: DVec3::Y, intensity: Color::grey(1.0) });
     scene.check().expect("right before the change");
     change(&mut scene);
     scene.check().expect_err("wrong after the change").to_string()
@@ -22,11 +24,11 @@ fn problem(change: impl Fn(&mut Scene)) -> String {
 #[test]
 fn problems_name_the_object_or_the_light() {
     assert!(
-        problem(|s| s.objects[0].material = Some(Material { diffuse: DVec3::splat(1.5), ..Material::default() }))
+        problem(|s| s.objects[0].material = Some(Classic { diffuse: Color::grey(1.5), ..Classic::default() }.into()))
             .starts_with("ball: diffuse reflectance")
     );
     assert!(
-        problem(|s| s.objects[0].material = Some(Material { exponent: f64::NAN, ..Material::default() }))
+        problem(|s| s.objects[0].material = Some(Classic { exponent: f64::NAN, ..Classic::default() }.into()))
             .starts_with("ball: exponent")
     );
     assert!(problem(|s| s.objects[0].transform = DMat4::ZERO).starts_with("ball: its transformation"));
@@ -37,7 +39,7 @@ fn problems_name_the_object_or_the_light() {
     );
     assert!(problem(|s| s.objects[0].tolerance = Some(0.0)).starts_with("ball: tolerance"));
     assert!(
-        problem(|s| s.lights[0] = Light::Directional { direction: DVec3::ZERO, irradiance: Bands::ONE })
+        problem(|s| s.lights[0] = Light::Directional { direction: DVec3::ZERO, irradiance: Color::grey(1.0) })
             .starts_with("light 1: its direction")
     );
     assert!(problem(|s| s.background.y = f64::INFINITY).starts_with("background"));
@@ -52,7 +54,7 @@ fn problems_name_the_object_or_the_light() {
 #[test]
 fn a_scene_survives_its_serialisation() {
     let mut scene = sphere(DMat4::from_rotation_x(0.3));
-    scene.lights.push(Light::Directional { direction: DVec3::NEG_Y, irradiance: Bands::ONE });
+    scene.lights.push(Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) });
     scene.camera = Some(Camera::framing(&Bounds { min: DVec3::ZERO, max: DVec3::ONE }));
     let text = serde_json::to_string(&scene).expect("plain data");
     assert_eq!(serde_json::from_str::<Scene>(&text).expect("the same"), scene);

@@ -2,6 +2,7 @@
 
 use super::{MAX_OBJECTS, Made, Object, Scene, SceneError, Shape};
 use crate::illumination::Material;
+use crate::illumination::material::Appearance;
 use crate::mesh::{Grouped, Look, Mesh};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
@@ -75,11 +76,14 @@ impl Scene {
 /// square of the number that glTF wants.
 fn look(material: &Material) -> Look {
     let sum = |bands: DVec3| bands.element_sum();
-    let base = (material.diffuse + material.mirror).min(DVec3::ONE);
-    let metallic = sum(material.mirror) / (sum(material.diffuse) + sum(material.mirror)).max(f64::MIN_POSITIVE);
-    let roughness = if sum(material.specular) > 0.0 {
-        (2.0 / (material.exponent + 2.0)).powf(0.25)
-    } else if sum(material.mirror) > 0.0 {
+    let Appearance { diffuse, specular, exponent, mirror } = material.appearance();
+    // The highlight of a body without another color is its color.
+    let shine = if diffuse == DVec3::ZERO { specular } else { DVec3::ZERO };
+    let base = (diffuse + mirror + shine).min(DVec3::ONE);
+    let metallic = sum(mirror + shine) / (sum(diffuse) + sum(mirror + shine)).max(f64::MIN_POSITIVE);
+    let roughness = if sum(specular) > 0.0 {
+        (2.0 / (exponent + 2.0)).powf(0.25)
+    } else if sum(mirror) > 0.0 {
         0.0
     } else {
         1.0
@@ -94,13 +98,16 @@ fn flat_normals(mesh: &Mesh) -> Vec<[DVec3; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Color;
+    use crate::illumination::material::Classic;
     use crate::scene::{Composite, Operation};
     use crate::solid::Primitive;
     use glam::DMat4;
 
     #[test]
     fn materials_of_operands_become_looks_of_surfaces() {
-        let shine = Material { mirror: DVec3::splat(0.35), diffuse: DVec3::splat(0.35), ..Material::default() };
+        let grey = || Color::grey(0.35);
+        let shine = Classic { mirror: grey(), diffuse: grey(), ..Classic::default() }.into();
         let mut can = object("can", Primitive::Cylinder { radius: 1.0, height: 2.0 }, 0.0);
         let mut drill = object("drill", Primitive::Cylinder { radius: 0.5, height: 4.0 }, 0.0);
         (can.material, drill.material) = (Some(Material::default()), Some(shine));

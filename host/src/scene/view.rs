@@ -2,7 +2,7 @@
 
 use super::SceneError;
 use crate::numeric::bounds::Bounds;
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
 /// How steeply the automatic camera looks down.
@@ -26,6 +26,29 @@ pub struct Camera {
     pub near: f64,
     /// Depth along the view behind which nothing is seen; without one, there is no end.
     pub far: Option<f64>,
+    /// A lens in place of a pinhole, which is sharp at one depth only.
+    pub lens: Option<Lens>,
+    /// Parallel lines of sight, in place of those through the eye.
+    pub parallel: Option<Parallel>,
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lens {
+    /// Its radius, scene units.
+    pub radius: f64,
+    /// Depth along the view at which points are sharp, scene units, above 0.
+    pub focus: f64,
+}
+
+/// A parallel projection.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parallel {
+    /// What the *shorter* side of the picture shows, scene units, above 0.
+    pub height: f64,
+    /// Oblique lines of sight: by how much a point moves right and up in the picture for each unit that it is nearer to the
+    /// viewer than `at`; 0 for an orthographic view.
+    pub oblique: DVec2,
 }
 
 impl Camera {
@@ -46,6 +69,21 @@ impl Camera {
         }
         if !(self.field_of_view > 0.0 && self.field_of_view < 180.0) {
             return failed(format!("field of view {} is not between 0 and 180 degrees", self.field_of_view));
+        }
+        if let Some(Lens { radius, focus }) = self.lens
+            && !(radius >= 0.0 && radius.is_finite() && focus > 0.0 && focus.is_finite())
+        {
+            return failed(format!(
+                "a lens of radius {radius} that is sharp at {focus}: it must be at 0 and more, above 0"
+            ));
+        }
+        if let Some(Parallel { height, oblique }) = self.parallel {
+            if !(height > 0.0 && height.is_finite() && oblique.is_finite()) {
+                return failed(format!("a parallel view of height {height}, oblique by {oblique}"));
+            }
+            if self.lens.is_some() {
+                return failed("a parallel view has no lens".into());
+            }
         }
         let far = self.far.unwrap_or(f64::INFINITY);
         if !(self.near >= 0.0 && self.near < far) {
@@ -78,6 +116,8 @@ impl Camera {
             field_of_view: FRAMING_FIELD_OF_VIEW,
             near: 0.0,
             far: None,
+            lens: None,
+            parallel: None,
         }
     }
 
@@ -86,6 +126,9 @@ impl Camera {
     /// Without a far depth, depths are scaled to the tenfold distance to `at`, and not clipped.
     pub fn projection(&self) -> Option<Projection> {
         let [right, up, forward] = self.axes()?;
+        if let Some(parallel) = self.parallel {
+            return Some(self.parallel_projection(parallel, [right, up, forward]));
+        }
         let t = self.half_tangent();
         let back = self.far.unwrap_or(10.0 * (self.at - self.from).length().max(self.near));
         let row = |v: DVec3| v.extend(-v.dot(self.from));
@@ -94,6 +137,25 @@ impl Camera {
         let rows = [row(right) / t, row(up) / t, z, depth];
         let to_clip = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
         Some(Projection { to_clip, depth_clipping: self.far.is_some() || self.near > 0.0 })
+    }
+}
+
+impl Camera {
+    fn parallel_projection(
+        &self,
+        Parallel { height, oblique }: Parallel,
+        [right, up, forward]: [DVec3; 3],
+    ) -> Projection {
+        let half = height / 2.0;
+        let distance = (self.at - self.from).length();
+        let back = self.far.unwrap_or(10.0 * distance.max(self.near));
+        let row = |v: DVec3, from: DVec3| v.extend(-v.dot(from));
+        // A point nearer than `at` moves by the oblique factors.
+        let x = row(right - forward * oblique.x, self.at) / half;
+        let y = row(up - forward * oblique.y, self.at) / half;
+        let z = (row(forward, self.from) - DVec4::new(0.0, 0.0, 0.0, self.near)) / (back - self.near);
+        let to_clip = DMat4::from_cols(x, y, z, DVec4::W).transpose();
+        Projection { to_clip, depth_clipping: self.far.is_some() || self.near > 0.0 }
     }
 }
 

@@ -4,6 +4,7 @@ use super::builder::Handle;
 use super::function::{Default, Function, Kind, Parameter};
 use super::lists::{contours, curve, indices, loops, numbers, objects, points, sides, vector};
 use super::spline::ControlMeaning;
+use crate::color::{Color, shipped};
 use crate::curve::SplineCurve;
 use crate::solid::primitive::path;
 use crate::surface::SurfaceSide;
@@ -18,6 +19,7 @@ enum Argument {
     Integer(i64),
     Vector(DVec3),
     Text(String),
+    Color(Color),
     Flag(bool),
     Scalar(Dynamic),
     Contours(Vec<Vec<DVec3>>),
@@ -136,6 +138,7 @@ values! {
     number: Number -> f64,
     integer: Integer -> i64,
     vector: Vector -> DVec3,
+    color: Color -> Color,
     scalar: Scalar -> Dynamic,
     flag: Flag -> bool,
     numbers: Numbers -> Vec<Vec<f64>>,
@@ -170,6 +173,12 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
         Kind::Factors => vector_or_number(value).filter(|v| v.abs().min_element() > 0.0).map(Argument::Vector),
         Kind::Lengths => vector_or_number(value).filter(|v| v.min_element() > 0.0).map(Argument::Vector),
         Kind::Fractions => vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Argument::Vector),
+        Kind::Reflectance => {
+            let bands = || vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Color::Bands);
+            let name = value.read_lock::<rhai::ImmutableString>();
+            let named = |name: &str| shipped::patch(name).ok().map(Color::Spectrum);
+            name.map_or_else(bands, |name| named(&name)).map(Argument::Color)
+        }
         Kind::Powers => vector_or_number(value).filter(|v| within(*v, 0.0, f64::MAX)).map(Argument::Vector),
         Kind::Axis => {
             let named = match &*value.read_lock::<rhai::ImmutableString>().map(|s| s.to_string()).unwrap_or_default() {

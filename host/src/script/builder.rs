@@ -72,7 +72,7 @@ impl Builder {
         let first = self.object(one)?.clone();
         let second = self.object(two)?.clone();
         check_bounding(&first).and(check_bounding(&second))?;
-        let material = first.material;
+        let material = first.material.clone();
         let composite = match first {
             // A chain of the same operation is one.
             Object { shape: Shape::Composite(mut chain), transform, .. }

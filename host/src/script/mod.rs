@@ -9,7 +9,9 @@ mod definition;
 mod engine;
 mod error;
 mod function;
+mod lighting;
 mod lists;
+mod materials;
 mod sculpting;
 mod shaping;
 mod solids;
@@ -33,9 +35,17 @@ use std::path::Path;
 
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
-    [solids::FUNCTIONS, shaping::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS, table::FUNCTIONS]
-        .into_iter()
-        .flatten()
+    [
+        solids::FUNCTIONS,
+        shaping::FUNCTIONS,
+        surfaces::FUNCTIONS,
+        subdividing::FUNCTIONS,
+        materials::FUNCTIONS,
+        lighting::FUNCTIONS,
+        table::FUNCTIONS,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// A scene that ships with the program.

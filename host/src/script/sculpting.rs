@@ -168,7 +168,7 @@ impl Builder {
         let Some(first) = handles.first() else { return Err("there are no surfaces".into()) };
         let (material, tolerance) = {
             let first = self.object(Some(*first))?;
-            (first.material, first.tolerance)
+            (first.material.clone(), first.tolerance)
         };
         let sculpture = Sculpture { sheets };
         if closed {

@@ -46,7 +46,7 @@ fn round_edges(builder: &mut Builder, bound: &Bound) -> Done {
     let object = builder.object(handle)?;
     check_bounding(object)?;
     check_nesting(nesting_of(object) + 1)?;
-    let (name, material) = (object.name.clone(), object.material);
+    let (name, material) = (object.name.clone(), object.material.clone());
     let (edges, radius) = (bound.contours("edges").concat(), bound.number("radius").unwrap_or(1.0));
     let shape = Shape::Rounded(Box::new(Rounded { object: object.clone(), edges, radius }));
     *object = Object { name, shape, transform: DMat4::IDENTITY, material, tolerance: bound.number("tolerance") };

@@ -1,15 +1,13 @@
-//! Functions of the scene language, one row each: objects from data, placing, materials, lights, camera, settings.
+//! Functions of the scene language, one row each: objects from data, placing, camera, settings.
 
 use super::argument::Bound;
 use super::builder::{Builder, value};
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
-use crate::illumination::{Light, Material};
 use crate::picture::MAX_PIXELS;
-use crate::scene::{Camera, MAX_LIGHTS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Shape};
-use glam::{DMat3, DMat4, DVec3};
+use crate::scene::{Camera, Lens, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Parallel, Shape};
+use glam::{DMat3, DMat4, DVec2, DVec3};
 use rhai::Dynamic;
-use std::f64::consts::PI;
 
 const ANY: Kind = Kind::Number(f64::NEG_INFINITY, f64::INFINITY);
 
@@ -56,19 +54,6 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[OBJECT],
         example: "let second = pot.copy().translate(8, 0, 0);",
         action: |builder, bound| builder.copy(bound.object("object")).map(Dynamic::from),
-    },
-    Function {
-        name: "material",
-        summary: "Says how the surface of an object reflects; what is not given becomes the default. Faces of a combined object keep what their operand was given.",
-        parameters: &[
-            OBJECT,
-            parameter("diffuse", Kind::Fractions, Is("0.7"), "diffusely reflected fraction"),
-            parameter("specular", Kind::Fractions, Is("0"), "fraction in the highlight"),
-            parameter("exponent", Kind::Number(1.0, Material::MAX_EXPONENT), Is("50"), "sharpness of the highlight"),
-            parameter("mirror", Kind::Fractions, Is("0"), "mirrored fraction"),
-        ],
-        example: "pot.material(#{ diffuse: [0.8, 0.5, 0.3], specular: 0.1, exponent: 60, mirror: 0.1 });",
-        action: set_material,
     },
     Function {
         name: "translate",
@@ -133,54 +118,6 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
-        name: "point_light",
-        summary: "Adds a light that shines alike in all directions; give its intensity or its power.",
-        parameters: &[
-            parameter("at", Kind::Vector, Required, "where it is"),
-            parameter("intensity", Kind::Powers, Is("that of the power"), "radiant intensity, W/sr"),
-            parameter("power", Kind::Powers, Is("4 pi times the intensity"), "radiant power, W"),
-        ],
-        example: "point_light(#{ at: [5, 9, 6], intensity: 150 });",
-        action: add_point_light,
-    },
-    Function {
-        name: "directional_light",
-        summary: "Adds parallel light from infinitely far away.",
-        parameters: &[
-            parameter("direction", Kind::Vector, Required, "where the light goes"),
-            parameter("irradiance", Kind::Powers, Is("pi"), "of a surface that faces it, W/m²"),
-        ],
-        example: "directional_light(#{ direction: [-1, -2, -1], irradiance: 2 });",
-        action: |builder, bound| {
-            let direction = bound.vector("direction").unwrap_or_default();
-            if direction.try_normalize().is_none() {
-                return Err("direction must not have the length 0".into());
-            }
-            let irradiance = bound.vector("irradiance").unwrap_or(DVec3::splat(PI));
-            add_light(builder, Light::Directional { direction, irradiance })
-        },
-    },
-    Function {
-        name: "ambient",
-        summary: "Sets the ambient light, which reaches every surface from everywhere.",
-        parameters: &[parameter("radiance", Kind::Powers, Required, "its radiance, W/(m² sr)")],
-        example: "ambient(0.05);",
-        action: |builder, bound| {
-            builder.scene.ambient = bound.vector("radiance").unwrap_or_default();
-            Ok(Dynamic::UNIT)
-        },
-    },
-    Function {
-        name: "background",
-        summary: "Sets what is seen where there is nothing.",
-        parameters: &[parameter("radiance", Kind::Powers, Required, "its radiance, W/(m² sr); 1 shows as white")],
-        example: "background([0.2, 0.3, 0.5]);",
-        action: |builder, bound| {
-            builder.scene.background = bound.vector("radiance").unwrap_or_default();
-            Ok(Dynamic::UNIT)
-        },
-    },
-    Function {
         name: "camera",
         summary: "Sets from where the scene is seen; without it, the whole scene is framed.",
         parameters: &[
@@ -195,6 +132,20 @@ pub(super) const FUNCTIONS: &[Function] = &[
             ),
             parameter("near", Kind::Number(0.0, f64::INFINITY), Is("0"), "depth before which nothing is seen"),
             parameter("far", Kind::Length, Is("no end"), "depth behind which nothing is seen"),
+            parameter("lens", Kind::Length, Is("a pinhole"), "radius of a lens, which is sharp at one depth only"),
+            parameter("focus", Kind::Length, Is("the distance to at"), "depth at which it is sharp"),
+            parameter(
+                "height",
+                Kind::Length,
+                Is("perspective"),
+                "a parallel view that shows so much across the shorter side",
+            ),
+            parameter(
+                "oblique",
+                Kind::Points,
+                Is("orthographic"),
+                "[[right, up]] by which a parallel view moves nearer points",
+            ),
         ],
         example: "camera(#{ from: [0, 4, 12], at: [0, 1, 0], field_of_view: 30 });",
         action: set_camera,
@@ -264,6 +215,37 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
+        name: "light_samples",
+        summary: "Sets how many points of each light that has a size are asked for light, for each element of a surface.",
+        parameters: &[parameter("count", Kind::Integer(1, MAX_SAMPLES as i64), Required, "how many")],
+        example: "light_samples(4);",
+        action: |builder, bound| {
+            let count = bound.integer("count").and_then(|i| u32::try_from(i).ok());
+            builder.scene.settings.light_samples = count.unwrap_or(1);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
+        name: "interreflection",
+        summary: "Lets diffuse light go on from surface to surface, as often as reflection_depth says; leave ambient light out then.",
+        parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does")],
+        example: "interreflection();",
+        action: |builder, bound| {
+            builder.scene.settings.interreflection = bound.flag("on").unwrap_or(true);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
+        name: "spectral",
+        summary: "Lets rays carry spectra, or three bands only, whatever the scene needs.",
+        parameters: &[parameter("on", Kind::Flag, Is("true"), "whether they do")],
+        example: "spectral();",
+        action: |builder, bound| {
+            builder.scene.settings.spectral = Some(bound.flag("on").unwrap_or(true));
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
         name: "tolerance",
         summary: "Sets how closely triangles follow the surfaces of all objects that have no tolerance of their own.",
         parameters: &[
@@ -292,44 +274,21 @@ fn add_mesh(builder: &mut Builder, bound: &Bound) -> Done {
     builder.add(Shape::Mesh { path }, None).map(Dynamic::from)
 }
 
-fn set_material(builder: &mut Builder, bound: &Bound) -> Done {
-    let Material { diffuse, specular, exponent, mirror } = Material::default();
-    let material = Material {
-        diffuse: bound.vector("diffuse").unwrap_or(diffuse),
-        specular: bound.vector("specular").unwrap_or(specular),
-        exponent: bound.number("exponent").unwrap_or(exponent),
-        mirror: bound.vector("mirror").unwrap_or(mirror),
-    };
-    builder.object(bound.object("object"))?.material = Some(material);
-    Ok(value(bound.object("object")))
-}
-
-fn add_point_light(builder: &mut Builder, bound: &Bound) -> Done {
-    let at = bound.vector("at").unwrap_or_default();
-    let intensity = match (bound.vector("intensity"), bound.vector("power")) {
-        (Some(intensity), None) => intensity,
-        (None, Some(power)) => power / (4.0 * PI),
-        _ => return Err("give either its intensity or its power".into()),
-    };
-    add_light(builder, Light::Point { at, intensity })
-}
-
-fn add_light(builder: &mut Builder, light: Light) -> Done {
-    if builder.scene.lights.len() >= MAX_LIGHTS {
-        return Err(format!("more than {MAX_LIGHTS} lights"));
-    }
-    builder.scene.lights.push(light);
-    Ok(Dynamic::UNIT)
-}
-
 fn set_camera(builder: &mut Builder, bound: &Bound) -> Done {
+    let (from, at) = (bound.vector("from").unwrap_or_default(), bound.vector("at").unwrap_or_default());
+    let focus = bound.number("focus").unwrap_or(from.distance(at));
+    let lens = bound.number("lens").map(|radius| Lens { radius, focus });
+    let oblique = bound.contours("oblique").concat().first().map_or(DVec2::ZERO, |shift| shift.truncate());
+    let parallel = bound.number("height").map(|height| Parallel { height, oblique });
     let camera = Camera {
-        from: bound.vector("from").unwrap_or_default(),
-        at: bound.vector("at").unwrap_or_default(),
+        from,
+        at,
         up: bound.vector("up").unwrap_or(DVec3::Y),
         field_of_view: bound.number("field_of_view").unwrap_or(30.0),
         near: bound.number("near").unwrap_or(0.0),
         far: bound.number("far"),
+        lens,
+        parallel,
     };
     // The message names the function already.
     camera.check().map_err(|e| e.to_string().trim_start_matches("camera: ").to_string())?;

@@ -7,7 +7,8 @@
 
 use super::network::name;
 use crate::{
-    illumination::{Bands, Light, Material},
+    color::Wavelengths,
+    illumination::{Bands, Light, Material, light::Source, material::Appearance},
     mesh::{Mesh, Selection, edges::EdgeTable},
 };
 use glam::DVec3;
@@ -69,15 +70,23 @@ pub fn polygons(
     Ok(groups)
 }
 
+/// The color by which a material is known, linear light: its body's, or without one that of what it reflects.
+pub fn main_color(material: &Material) -> Bands {
+    let Appearance { diffuse, specular, mirror, .. } = material.appearance();
+    let body = diffuse + mirror;
+    if body == Bands::ZERO { specular } else { body }
+}
+
 /// What a material looks like to the machine, from both sides.
 pub fn attributes(material: &Material) -> Attributes {
     let sum = |bands: Bands| bands.max(DVec3::ZERO).element_sum();
-    let body = sum(material.diffuse);
-    let share = body / (body + sum(material.specular) + sum(material.mirror)).max(f64::MIN_POSITIVE);
+    let Appearance { diffuse, specular, exponent, mirror } = material.appearance();
+    let body = sum(diffuse);
+    let share = body / (body + sum(specular) + sum(mirror)).max(f64::MIN_POSITIVE);
     let front = SurfaceColor {
-        color: hue_saturation_intensity(material.diffuse + material.mirror),
+        color: hue_saturation_intensity(main_color(material)),
         diffuse: share.clamp(LEAST_DIFFUSE, 1.0),
-        specular: material.exponent.max(1.0).log2().round().min(10.0) as u8,
+        specular: exponent.max(1.0).log2().round().min(10.0) as u8,
         opaque: 1.0,
     };
     Attributes { front, back: None }
@@ -85,16 +94,24 @@ pub fn attributes(material: &Material) -> Attributes {
 
 /// The lights of a scene as they arrive at a point of it; the brightest is 1, unless all together are too bright.
 pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
-    let beams: Vec<_> = lights.iter().filter_map(|light| light.beam(at)).collect();
-    let brightest = beams.iter().map(|beam| beam.irradiance.max_element()).fold(0.0, f64::max);
+    let bands = Wavelengths::bands();
+    // Of a light that has a size, the middle counts; the machine knows no light from all around.
+    let beam = |light: &Light| {
+        let source = Source::new(light, &bands);
+        let beam = if source.is_sky() { None } else { source.beam(at, [0.5; 2], 0) }?;
+        let [red, green, blue, ..] = beam.irradiance.0;
+        Some((beam.towards, Bands::new(red, green, blue)))
+    };
+    let beams: Vec<(DVec3, Bands)> = lights.iter().filter_map(beam).collect();
+    let brightest = beams.iter().map(|(_, irradiance)| irradiance.max_element()).fold(0.0, f64::max);
     if brightest <= 0.0 || !brightest.is_finite() {
         return Vec::new();
     }
     let colors: Vec<[f64; 3]> =
-        beams.iter().map(|beam| hue_saturation_intensity(beam.irradiance / brightest)).collect();
+        beams.iter().map(|(_, irradiance)| hue_saturation_intensity(*irradiance / brightest)).collect();
     let gain = (MOST_LIGHT / colors.iter().map(|[_, _, i]| i).sum::<f64>()).min(1.0);
-    let lamp = |(beam, [hue, saturation, intensity]): (&crate::illumination::Beam, [f64; 3])| Illumination {
-        direction: mirrored(beam.towards),
+    let lamp = |((towards, _), [hue, saturation, intensity]): (&(DVec3, Bands), [f64; 3])| Illumination {
+        direction: mirrored(*towards),
         color: [hue, saturation, intensity * gain],
         ambient: 1.0,
     };
@@ -128,6 +145,8 @@ pub fn hue_saturation(color: Bands) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Color;
+    use crate::illumination::material::Classic;
     use crate::mesh;
 
     #[test]
@@ -176,14 +195,16 @@ mod tests {
 
     #[test]
     fn materials_and_lights_stay_within_the_ranges_of_the_machine() {
-        let mirror = Material { diffuse: Bands::ZERO, mirror: Bands::ONE, exponent: 1e6, ..Material::default() };
-        let seen = attributes(&mirror).front;
+        let (black, white) = (Color::BLACK, Color::grey(1.0));
+        let mirror = Classic { diffuse: black, mirror: white, exponent: 1e6, ..Classic::default() };
+        let seen = attributes(&mirror.into()).front;
         assert_eq!((seen.color, seen.diffuse, seen.specular), ([0.0, 0.0, 1.0], LEAST_DIFFUSE, 10));
-        let matt = attributes(&Material { diffuse: Bands::splat(0.5), ..Material::default() }).front;
+        let matt = attributes(&Classic { diffuse: Color::grey(0.5), ..Classic::default() }.into()).front;
         assert!((matt.color[2] - 0.5_f64.powf(1.0 / 2.2)).abs() < 1e-12 && matt.diffuse == 1.0);
         let at = DVec3::new(0.0, 1.0, 0.0);
-        let lamp = Light::Point { at: at + DVec3::new(0.0, 0.0, 2.0), intensity: Bands::new(4.0, 0.0, 0.0) };
-        let sun = Light::Directional { direction: DVec3::new(0.0, -3.0, 0.0), irradiance: Bands::splat(1.0) };
+        let lamp =
+            Light::Point { at: at + DVec3::new(0.0, 0.0, 2.0), intensity: Color::Bands(Bands::new(4.0, 0.0, 0.0)) };
+        let sun = Light::Directional { direction: DVec3::new(0.0, -3.0, 0.0), irradiance: Color::grey(1.0) };
         let [lamp, sun] = <[Illumination; 2]>::try_from(illumination(&[lamp, sun], at)).unwrap();
         assert_eq!((lamp.direction, &lamp.color[..2]), (DVec3::NEG_Z, &[120.0, 1.0][..]));
         assert_eq!((sun.direction, &sun.color[..2]), (DVec3::Y, &[0.0, 0.0][..]));

@@ -118,7 +118,7 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
         begin(&mut shown.commands, &format!("O{number}"));
         for (k, Part { material, data }) in (1..).zip(parts) {
             // The colour of vectors has no value: brightness comes from the intensity.
-            let [hue, saturation] = facets::hue_saturation(material.diffuse + material.mirror);
+            let [hue, saturation] = facets::hue_saturation(facets::main_color(&material));
             operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
             let node = if k == 1 { "D".to_owned() } else { format!("D{k}") };
             shown.commands.push(Command::Define { name: Some(name(&node)), object: data });
@@ -274,6 +274,8 @@ fn vectors(runs: &Polylines, shown: &mut Shown) -> Result<VectorList, String> {
 mod tests {
     use super::*;
     use crate::{
+        color::Color,
+        illumination::material::Classic,
         scene::{Composite, Operation, Shape},
         solid::Primitive,
     };
@@ -285,7 +287,7 @@ mod tests {
             name: "operand".into(),
             shape: Shape::Solid(primitive),
             transform: DMat4::IDENTITY,
-            material: Some(Material { diffuse, ..Material::default() }),
+            material: Some(Classic { diffuse: Color::Bands(diffuse), ..Classic::default() }.into()),
             tolerance: None,
         };
         let plate = operand(Primitive::Box { size: DVec3::new(4.0, 1.0, 4.0) }, DVec3::X);

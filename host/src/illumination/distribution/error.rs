@@ -54,7 +54,7 @@ pub const LEAST_ROUGHNESS: f64 = 1e-8;
 pub const MOST_ROUGHNESS: f64 = 1e3;
 
 /// A roughness that is provided for.
-pub(super) fn checked_roughness(roughness: f64) -> Result<f64, DistributionError> {
+pub(in crate::illumination) fn checked_roughness(roughness: f64) -> Result<f64, DistributionError> {
     let possible = (LEAST_ROUGHNESS..=MOST_ROUGHNESS).contains(&roughness);
     if possible { Ok(roughness) } else { Err(DistributionError::Roughness(roughness)) }
 }

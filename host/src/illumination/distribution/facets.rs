@@ -28,7 +28,7 @@ impl Facets {
     ///
     /// # Source
     /// Cook and Torrance 1982, with 1/pi; Walter et al. 2007, equations 25 and 33.
-    pub(super) fn area(self, half: DVec3, roughness: DVec2) -> f64 {
+    pub(in crate::illumination) fn area(self, half: DVec3, roughness: DVec2) -> f64 {
         let square = half.length_squared();
         if !(half.z > 0.0 && square > 0.0) {
             return 0.0;
@@ -54,7 +54,7 @@ impl Facets {
     ///
     /// # Source
     /// Heitz 2014, equations 13 and 72.
-    pub(super) fn projected(self, towards: DVec3, roughness: DVec2) -> f64 {
+    pub(in crate::illumination) fn projected(self, towards: DVec3, roughness: DVec2) -> f64 {
         let spread = (towards.truncate() * roughness).length();
         match self {
             Facets::Beckmann if spread == 0.0 => towards.z,
@@ -72,7 +72,7 @@ impl Facets {
     ///
     /// # Source
     /// Heitz and d'Eon 2014 for Beckmann, Dupuy and Benyoub 2023 for GGX; the inversion is ours.
-    pub(super) fn visible(self, towards: DVec3, roughness: DVec2, point: [f64; 2]) -> Option<DVec3> {
+    pub(in crate::illumination) fn visible(self, towards: DVec3, roughness: DVec2, point: [f64; 2]) -> Option<DVec3> {
         // In stretched space the roughness is 1.
         let stretched = (towards.truncate() * roughness).extend(towards.z).try_normalize()?;
         let sine = stretched.truncate().length();

@@ -30,7 +30,7 @@ impl Microfacet {
 
     /// The part of what a drawn facet reflects to a viewer that no other facet masks: the density over that of the
     /// sample, 0..=1.
-    pub(super) fn weight(&self, light: DVec3, view: DVec3) -> f64 {
+    pub(in crate::illumination) fn weight(&self, light: DVec3, view: DVec3) -> f64 {
         let [l, v] = [light, view].map(|towards| self.facets.projected(towards, self.roughness));
         view.z * l / (view.z * l + light.z * (v - view.z))
     }

@@ -32,7 +32,7 @@ pub use microfacet::Microfacet;
 pub use phong::{MOST_EXPONENT, Phong, exponent_of_roughness};
 pub use tabulated::{Accuracy, Tabulated};
 
-use error::checked_roughness;
+pub(super) use error::checked_roughness;
 use glam::{DVec2, DVec3};
 
 /// A distribution D of emitted flux over the outgoing hemisphere; the luminance is D K E / (N·V).

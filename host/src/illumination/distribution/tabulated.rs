@@ -4,6 +4,7 @@ use super::measure::{checked, light_at};
 use super::{Distribution, DistributionError};
 use crate::numeric::sampling::{Stream, sphere};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Least and most steps of a table: it holds as many numbers as twice the cube of its steps.
@@ -14,7 +15,7 @@ const MEASURED: u64 = 4000;
 const SEED: u64 = 1988;
 
 /// How well a table stands for its function.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
     /// Root of the mean square of the error, over that of the function, at random directions.
     pub rms: f64,
@@ -30,7 +31,7 @@ pub struct Accuracy {
 ///
 /// The table has `steps` + 1 angles of the light, `steps` rings of cells for the viewer and 2 `steps` cells in each
 /// ring. D / (N·V) is linear between the angles of the light and between the middles of the cells.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tabulated {
     name: String,
     steps: usize,

@@ -2,7 +2,8 @@
 
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
-use crate::scene::{Camera, Projection, View};
+use crate::numeric::sampling::disk;
+use crate::scene::{Camera, Lens, Projection, View};
 use glam::{DMat3, DVec3, DVec4};
 
 /// A ray with the part of it in which something can be seen.
@@ -24,7 +25,7 @@ pub(super) struct Eye {
 
 enum Kind {
     /// A camera: origin, right and up scaled to the field of view, forward, near, far.
-    Camera { from: DVec3, right: DVec3, up: DVec3, forward: DVec3, near: f64, far: f64 },
+    Camera { from: DVec3, right: DVec3, up: DVec3, forward: DVec3, near: f64, far: f64, lens: Option<Lens> },
     /// The rows of a matrix, relative to the `base` point.
     Matrix { rows: [DVec4; 4], base: DVec3, radius: f64, depth_clipping: bool },
 }
@@ -34,6 +35,10 @@ impl Eye {
     pub(super) fn new(view: &View, width: u32, height: u32, bounds: &Bounds) -> Option<Eye> {
         let [x_min, x_max, y_min, y_max] = View::window(width, height);
         let kind = match view {
+            View::Camera(camera) if camera.parallel.is_some() => {
+                camera.check().ok()?;
+                Kind::of_matrix(&camera.projection()?, bounds)?
+            }
             View::Camera(camera) => Kind::of_camera(camera)?,
             View::Projection(projection) => Kind::of_matrix(projection, bounds)?,
         };
@@ -42,12 +47,23 @@ impl Eye {
     }
 
     /// The ray through a point of the picture in pixels from the left upper corner; none if nothing is seen there.
-    pub(super) fn ray(&self, at: [f64; 2]) -> Option<Sight> {
+    ///
+    /// - `through`: a point of the unit square, which chooses the point of the lens.
+    pub(super) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
         let [x, y] = [0, 1].map(|i| self.corner[i] + at[i] * self.step[i]);
         match &self.kind {
-            Kind::Camera { from, right, up, forward, near, far } => {
+            Kind::Camera { from, right, up, forward, near, far, lens } => {
                 let direction = *forward + *right * x + *up * y;
-                Some(Sight { ray: Ray { origin: *from, direction }, t_min: *near, t_max: *far })
+                let ray = match lens {
+                    None => Ray { origin: *from, direction },
+                    Some(Lens { radius, focus }) => {
+                        let [a, b] = disk(through);
+                        let aside = (right.normalize() * a + up.normalize() * b) * *radius;
+                        // All rays of a point of the picture meet in the plane that is sharp.
+                        Ray { origin: *from + aside, direction: direction - aside / *focus }
+                    }
+                };
+                Some(Sight { ray, t_min: *near, t_max: *far })
             }
             Kind::Matrix { rows, base, radius, depth_clipping } => {
                 let mut sight = line(rows, x, y, *radius, *depth_clipping)?;
@@ -64,7 +80,7 @@ impl Kind {
         let [right, up, forward] = camera.axes()?;
         let t = camera.half_tangent();
         let (near, far) = (camera.near, camera.far.unwrap_or(f64::INFINITY));
-        Some(Kind::Camera { from: camera.from, right: right * t, up: up * t, forward, near, far })
+        Some(Kind::Camera { from: camera.from, right: right * t, up: up * t, forward, near, far, lens: camera.lens })
     }
 
     fn of_matrix(projection: &Projection, bounds: &Bounds) -> Option<Kind> {
@@ -146,7 +162,7 @@ mod tests {
 
     fn camera() -> Camera {
         let (from, at) = (DVec3::new(3.0, 2.0, 9.0), DVec3::new(0.5, 1.0, -1.0));
-        Camera { from, at, up: DVec3::Y, field_of_view: 35.0, near: 2.0, far: Some(30.0) }
+        Camera { from, at, up: DVec3::Y, field_of_view: 35.0, near: 2.0, far: Some(30.0), lens: None, parallel: None }
     }
 
     #[test]
@@ -157,7 +173,7 @@ mod tests {
         let projection = camera.projection().expect("sees");
         let by_matrix = Eye::new(&View::Projection(projection), 64, 48, &bounds).expect("sees");
         for at in [[0.0, 0.0], [31.3, 17.0], [64.0, 48.0], [10.0, 40.0]] {
-            let (a, b) = (by_camera.ray(at).expect("ray"), by_matrix.ray(at).expect("ray"));
+            let (a, b) = (by_camera.ray(at, [0.5; 2]).expect("ray"), by_matrix.ray(at, [0.5; 2]).expect("ray"));
             for (t_a, t_b) in [(a.t_min, b.t_min), (a.t_max, b.t_max)] {
                 assert!((a.ray.at(t_a) - b.ray.at(t_b)).length() < 1e-10, "{at:?}");
             }
@@ -172,7 +188,7 @@ mod tests {
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
         for depth_clipping in [true, false] {
             let view = View::Projection(Projection::from_workstation(&matrix, depth_clipping));
-            let sight = Eye::new(&view, 2, 2, &bounds).expect("sees").ray([0.5, 0.5]).expect("ray");
+            let sight = Eye::new(&view, 2, 2, &bounds).expect("sees").ray([0.5, 0.5], [0.5; 2]).expect("ray");
             assert_eq!(sight.ray.direction, DVec3::NEG_Z);
             let front = sight.ray.at(sight.t_min);
             assert_eq!((front.x, front.y), (-0.5, 0.5));
@@ -192,7 +208,7 @@ mod tests {
         };
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
         let view = View::Projection(Projection::from_workstation(&matrix(1e-15, 1e15), true));
-        let sight = Eye::new(&view, 10, 10, &bounds).expect("sees").ray([2.5, 2.5]).expect("ray");
+        let sight = Eye::new(&view, 10, 10, &bounds).expect("sees").ray([2.5, 2.5], [0.5; 2]).expect("ray");
         assert!((sight.ray.at(sight.t_min) - DVec3::new(-0.5, 0.5, 0.0)).length() < 1e-12);
         assert!(sight.t_max > 9e14);
     }

@@ -1,66 +1,233 @@
-//! Ray tracing over the linear octree: direct light with shadows, and mirrors.
+//! Ray tracing over the linear octree, after Whitted and Cook: light of all lights with its shadows, reflection and
+//! refraction, sharp and spread.
 //!
-//! Each pixel is the mean over its area (a box filter, so that coverage is the covered share of the area), sampled
-//! at the points of a lattice that is shifted at random from pixel to pixel.
+//! Each pixel is the mean over its area (a box filter, so that coverage is the covered share of the area). Places in the
+//! pixel and on the lens, points of lights, directions and wavelengths are drawn from Owen's scrambled sequences.
 
+mod direct;
+mod draws;
+mod explain;
 mod eye;
-mod sample;
+mod media;
 mod surface;
 mod tracer;
+mod world;
 
+#[cfg(test)]
+mod light_tests;
 #[cfg(test)]
 mod tests;
 
+pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
 
+use super::film::{Film, Sample, Tally};
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, Watch};
-use crate::octree::{Octree, Settings as OctreeSettings};
-use crate::picture::{Picture, Pixel};
+use crate::octree::Octree;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
+use draws::{Draws, Purpose};
+use explain::Log;
 use eye::Eye;
-use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use tracer::Tracer;
+use tracer::{First, Tracer};
+use world::World;
+
+/// Samples of the first pass, where errors or the clock decide about more.
+const FIRST_PASS: u32 = 8;
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
-    prepared: &'a Prepared,
     plan: &'a Plan,
-    /// None if the plan needs no octree.
-    octree: Option<Octree>,
-    /// The triangle of the scene behind each triangle of the octree; empty if they are the same.
-    triangle_of: Vec<u32>,
+    world: World<'a>,
+}
+
+/// One sample of a pixel, explained.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Explanation {
+    /// Which sample.
+    pub sample: u32,
+    /// The wavelengths that it carries, nm; none if it carries red, green and blue.
+    pub wavelengths: Option<Vec<f64>>,
+    /// What happened, in order.
+    pub notes: Vec<Note>,
+    /// Its radiance, linear sRGB.
+    pub radiance: [f64; 3],
 }
 
 impl<'a> RayTracer<'a> {
-    /// Builds the octree over the objects that the plan keeps.
+    /// Builds the octree over the objects that the plan keeps, and makes materials and lights ready.
     ///
     /// # Errors
-    /// [`RenderError::Octree`].
+    /// [`RenderError::Octree`], [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
-        let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
-        let all = (0..prepared.objects.len()).all(|i| plan.keeps_object(i));
-        let settings = OctreeSettings::default();
-        let mut triangle_of = Vec::new();
-        let octree = if !plan.needs(Stage::Octree) || prepared.triangles.is_empty() {
-            None
-        } else if all {
-            Some(Octree::build(&prepared.vertices, &prepared.triangles, &settings)?)
-        } else {
-            triangle_of = (0..prepared.triangles.len() as u32).filter(keeps).collect();
-            let kept: Vec<[u32; 3]> = triangle_of.iter().map(|&t| prepared.triangles[t as usize]).collect();
-            Some(Octree::build(&prepared.vertices, &kept, &settings)?)
-        };
-        Ok(RayTracer { prepared, plan, octree, triangle_of })
+        Ok(RayTracer { plan, world: World::new(prepared, plan)? })
     }
 
     /// The octree, if the plan needs one.
     pub fn octree(&self) -> Option<&Octree> {
-        self.octree.as_ref()
+        self.world.octree.as_ref()
     }
+
+    fn tracer(&self) -> Tracer<'_> {
+        let depth = self.world.prepared.settings.reflection_depth;
+        let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
+        Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows))
+    }
+
+    fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
+        Eye::new(view, order.width, order.height, &self.world.prepared.bounds).ok_or(RenderError::View)
+    }
+
+    /// Adds samples to a film until each pixel has what the order asks for.
+    ///
+    /// The film may hold samples of the same order already, as after an interruption: it is then as if there had been none.
+    ///
+    /// # Errors
+    /// [`RenderError`].
+    pub fn expose(
+        &self,
+        film: &mut Film,
+        view: &View,
+        order: &Order,
+        watch: &Watch<'_>,
+    ) -> Result<Exposed, RenderError> {
+        let start = Instant::now();
+        let eye = self.eye(view, order)?;
+        let tracer = self.tracer();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
+        let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
+        let stopped = || watch.is_cancelled() || late();
+        let width = order.width as usize;
+        let passes = passes(order);
+        let done = AtomicU64::new(0);
+        let mut rays = RayCounts::default();
+        let mut complete = true;
+        for samples in &passes {
+            let wanted = order.target.map(|target| film.uncertain(target));
+            let counted: Vec<Option<RayCounts>> = pool.install(|| {
+                let rows = film.tallies_mut().par_chunks_exact_mut(width).enumerate();
+                rows.map(|(y, row)| {
+                    if stopped() {
+                        return None;
+                    }
+                    let mut counts = RayCounts::default();
+                    for (x, tally) in row.iter_mut().enumerate() {
+                        if wanted.as_ref().is_none_or(|wanted| wanted[y * width + x]) {
+                            self.add_samples(
+                                (&tracer, &eye, order),
+                                [x as u32, y as u32],
+                                *samples,
+                                tally,
+                                &mut counts,
+                            );
+                        }
+                    }
+                    let all = passes.len() as u64 * u64::from(order.height);
+                    (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+                    Some(counts)
+                })
+                .collect()
+            });
+            complete &= counted.iter().all(Option::is_some);
+            rays = counted.into_iter().flatten().fold(rays, |a, b| a + b);
+            if stopped() {
+                break;
+            }
+        }
+        // Time that ran out as it was asked for is no interruption.
+        complete |= order.seconds.is_some() && !watch.is_cancelled();
+        Ok(Exposed { rays, complete, seconds: start.elapsed().as_secs_f64(), threads: pool.current_num_threads() })
+    }
+
+    /// Adds samples to a pixel until it has `samples`.
+    fn add_samples(
+        &self,
+        (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
+        pixel: [u32; 2],
+        samples: u32,
+        tally: &mut Tally,
+        counts: &mut RayCounts,
+    ) {
+        while tally.count < samples {
+            let index = tally.count;
+            let (sample, _) = self.sample((tracer, eye, order), pixel, index, counts, Log::SILENT);
+            tally.add(&sample);
+        }
+    }
+
+    /// One sample, and the comb of wavelengths that it carries.
+    fn sample(
+        &self,
+        (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
+        [x, y]: [u32; 2],
+        index: u32,
+        counts: &mut RayCounts,
+        log: Log<'_>,
+    ) -> (Sample, usize) {
+        let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
+        let draws = Draws::new(order.seed, pixel, index, order.samples);
+        let [dx, dy] = draws.position();
+        let wavelengths = &self.world.wavelengths;
+        let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
+        let at = [f64::from(x) + dx, f64::from(y) + dy];
+        let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
+            let radiance = wavelengths.seen(comb, self.world.beyond(glam::DVec3::NEG_Z, None, comb));
+            return (Sample { radiance, covered: false, first: None }, comb);
+        };
+        let seen = tracer.radiance(&sight, comb, &draws, counts, log);
+        let first =
+            seen.first.map(|First { distance, normal, object, material }| (distance, normal, [object, material]));
+        (Sample { radiance: wavelengths.seen(comb, seen.radiance), covered: seen.covered, first }, comb)
+    }
+
+    /// Tells how the samples of a pixel come to their radiance.
+    ///
+    /// - `most`: no more samples than this are told of.
+    ///
+    /// # Errors
+    /// [`RenderError::View`].
+    pub fn explain(
+        &self,
+        view: &View,
+        order: &Order,
+        pixel: [u32; 2],
+        most: u32,
+    ) -> Result<Vec<Explanation>, RenderError> {
+        let (eye, tracer) = (self.eye(view, order)?, self.tracer());
+        let told = |index: u32| {
+            let (mut notes, mut counts) = (Vec::new(), RayCounts::default());
+            let (sample, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut counts, Log::to(&mut notes));
+            let wavelengths = &self.world.wavelengths;
+            let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(comb).to_vec());
+            Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }
+        };
+        Ok((0..order.samples.min(most)).map(told).collect())
+    }
+}
+
+/// What an exposure took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exposed {
+    /// How many rays were traced.
+    pub rays: RayCounts,
+    /// Whether it was not stopped from outside.
+    pub complete: bool,
+    /// Wall-clock time, seconds.
+    pub seconds: f64,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+/// How many samples pixels have after each pass: one pass, unless errors or the clock decide.
+fn passes(order: &Order) -> Vec<u32> {
+    if order.target.is_none() && order.seconds.is_none() {
+        return vec![order.samples];
+    }
+    let doubled = std::iter::successors(Some(FIRST_PASS), |samples| samples.checked_mul(2));
+    doubled.take_while(|samples| *samples < order.samples).chain([order.samples]).collect()
 }
 
 impl Renderer for RayTracer<'_> {
@@ -69,50 +236,8 @@ impl Renderer for RayTracer<'_> {
     }
 
     fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
-        let start = Instant::now();
-        let mut picture = Picture::new(order.width, order.height)?;
-        let eye = Eye::new(view, order.width, order.height, &self.prepared.bounds).ok_or(RenderError::View)?;
-        let tracer = Tracer::new(self.prepared, self.plan, self.octree.as_ref(), &self.triangle_of);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
-        let done = AtomicU64::new(0);
-        let width = order.width as usize;
-        let results: Vec<Option<RayCounts>> = pool.install(|| {
-            let rows = picture.pixels_mut().par_chunks_exact_mut(width).enumerate();
-            rows.map(|(y, row)| {
-                if watch.is_cancelled() {
-                    return None;
-                }
-                let mut counts = RayCounts::default();
-                for (x, pixel) in row.iter_mut().enumerate() {
-                    *pixel = render_pixel(&tracer, &eye, order, [x as u32, y as u32], &mut counts);
-                }
-                (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(order.height));
-                Some(counts)
-            })
-            .collect()
-        });
-        Ok(Rendering {
-            picture,
-            rows: results.iter().map(Option::is_some).collect(),
-            rays: results.into_iter().flatten().fold(RayCounts::default(), |a, b| a + b),
-            seconds: start.elapsed().as_secs_f64(),
-            threads: pool.current_num_threads(),
-        })
+        let mut film = Film::new(order.width, order.height)?;
+        let Exposed { rays, complete, seconds, threads } = self.expose(&mut film, view, order, watch)?;
+        Ok(Rendering { picture: film.picture()?, film, complete, rays, seconds, threads })
     }
-}
-
-fn render_pixel(tracer: &Tracer<'_>, eye: &Eye, order: &Order, [x, y]: [u32; 2], counts: &mut RayCounts) -> Pixel {
-    let index = u64::from(y) * u64::from(order.width) + u64::from(x);
-    let (mut sum, mut covered) = (DVec3::ZERO, 0u32);
-    for position in sample::positions(order.samples, order.seed, index) {
-        let at = [f64::from(x) + position[0], f64::from(y) + position[1]];
-        let (radiance, hit) = match eye.ray(at) {
-            Some(sight) => tracer.radiance(&sight, counts),
-            None => (tracer.background(), false),
-        };
-        sum += radiance;
-        covered += u32::from(hit);
-    }
-    let share = 1.0 / f64::from(order.samples.max(1));
-    Pixel { radiance: (sum * share).as_vec3().to_array(), coverage: (f64::from(covered) * share) as f32 }
 }

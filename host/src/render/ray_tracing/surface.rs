@@ -20,8 +20,12 @@ pub(super) struct Element {
     pub(super) face: DVec3,
     /// Unit normal for shading, on the side of the viewer.
     pub(super) normal: DVec3,
+    /// Whether the viewer is on the outer side of the triangle.
+    pub(super) outside: bool,
     /// Where a ray that leaves on the side of the viewer begins.
     pub(super) leave: DVec3,
+    /// Where a ray that goes through begins.
+    pub(super) through: DVec3,
     /// Where a ray towards a light begins: on the curved surface that the triangle stands for, if it bulges out.
     pub(super) leave_curved: DVec3,
 }
@@ -39,7 +43,8 @@ impl Element {
         let largest = corners.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
         let clearance = face * (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
         let leave = position + clearance;
-        let flat = Element { position, face, normal: face, leave, leave_curved: leave };
+        let through = position - clearance;
+        let flat = Element { position, face, normal: face, outside: side > 0.0, leave, through, leave_curved: leave };
         let corner_normals = if curved { prepared.corner_normals(triangle) } else { None };
         let Some(corner_normals) = corner_normals else { return Some(flat) };
         let normals = corner_normals.map(|n| {
@@ -52,14 +57,14 @@ impl Element {
         Some(Element { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
     }
 
-    /// The direction in which a mirror sends a ray on: never below the triangle.
+    /// A direction that the shading normal sends to the wrong side of the triangle, at its plane.
     ///
-    /// A reflected direction that an interpolated normal sends below the triangle is reflected at its plane in turn;
-    /// where it just grazes the plane, both agree.
-    pub(super) fn mirrored(&self, direction: DVec3) -> DVec3 {
-        let reflected = direction - self.normal * (2.0 * direction.dot(self.normal));
-        let below = reflected.dot(self.face);
-        if below < 0.0 { reflected - self.face * (2.0 * below) } else { reflected }
+    /// Where it just grazes the plane, both agree.
+    ///
+    /// - `above`: whether it should be on the side of the viewer.
+    pub(super) fn righted(&self, direction: DVec3, above: bool) -> DVec3 {
+        let height = direction.dot(self.face);
+        if (height < 0.0) == above { direction - self.face * (2.0 * height) } else { direction }
     }
 }
 
@@ -106,13 +111,16 @@ mod tests {
     }
 
     #[test]
-    fn a_mirrored_ray_never_goes_below_the_triangle() {
+    fn a_reflected_ray_never_goes_below_the_triangle() {
         let face = DVec3::Y;
         for tilt in [-0.6f64, -0.2, 0.0, 0.2, 0.6] {
             let normal = DVec3::new(tilt.sin(), tilt.cos(), 0.0);
-            let element = Element { position: DVec3::ZERO, face, normal, leave: face, leave_curved: face };
+            let zero = DVec3::ZERO;
+            let element =
+                Element { position: zero, face, normal, outside: true, leave: face, through: zero, leave_curved: face };
             for angle in [0.1f64, 0.5, 1.0, 1.5] {
-                let out = element.mirrored(DVec3::new(angle.cos(), -angle.sin(), 0.0));
+                let direction = DVec3::new(angle.cos(), -angle.sin(), 0.0);
+                let out = element.righted(direction - normal * (2.0 * direction.dot(normal)), true);
                 assert!(out.y >= -1e-15 && (out.length() - 1.0).abs() < 1e-12);
             }
         }

@@ -1,112 +1,262 @@
-//! Follows one ray: direct light, shadows, mirrors.
+//! Follows the legs of a sample's way from the eye: what each meets, and where it goes on.
 
+use super::direct::Direct;
+use super::draws::{Draws, Purpose};
+use super::explain::{Log, Note};
 use super::eye::Sight;
-use super::surface::Element;
-use crate::illumination::{self, Bands, Light, Material, Terms};
+use super::media::Media;
+use super::world::{Encounter, Found, Met, World};
+use crate::color::Channels;
+use crate::illumination::distribution::Frame;
+use crate::illumination::optics::{Onward, Sighting};
 use crate::numeric::ray::Ray;
-use crate::octree::Octree;
-use crate::plan::{Plan, Stage};
 use crate::render::RayCounts;
-use crate::scene::Prepared;
+use glam::DVec3;
 
-/// A chain of mirrors ends where it would pass on less than this fraction of the light.
+/// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.
 pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
+/// Where a way parts, both parts are followed as long as each passes on so much of the light.
+const WORTH_PARTING: f64 = 1.0 / 64.0;
+/// Most legs of a sample that wait to be followed.
+const MOST_WAITING: usize = 8;
+
+/// A part of a sample's way.
+struct Leg {
+    sight: Sight,
+    /// How much of the radiance along it comes to the eye.
+    passed: Channels,
+    /// How many legs came before it.
+    depth: u32,
+    /// Unlike that of all other legs of the sample.
+    number: u32,
+    /// The density with which its direction was drawn, 1/sr; none where there was no choice.
+    density: Option<f64>,
+    /// What it goes through.
+    media: Media,
+    /// The only lane that is left, after wavelengths parted.
+    lane: Option<usize>,
+    /// Whether it only looks for lights: it is one too many for anything else.
+    for_lights: bool,
+}
+
+/// What a sample found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Seen {
+    pub(super) radiance: Channels,
+    /// Whether the first leg met an object or light.
+    pub(super) covered: bool,
+    /// What it met: distance from the eye, normal, object and material.
+    pub(super) first: Option<First>,
+}
+
+/// The first element in sight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct First {
+    pub(super) distance: f64,
+    pub(super) normal: DVec3,
+    pub(super) object: u32,
+    pub(super) material: u32,
+}
+
+/// Who counts rays, and who listens.
+struct Counting<'a, 'b> {
+    counts: &'a mut RayCounts,
+    log: &'a mut Log<'b>,
+}
 
 /// Follows rays through a scene as its plan tells.
 pub(super) struct Tracer<'a> {
-    prepared: &'a Prepared,
-    octree: Option<&'a Octree>,
-    triangle_of: &'a [u32],
-    lights: Vec<Light>,
-    terms: Terms,
-    curved: bool,
-    ambient: bool,
-    shadows: bool,
-    reflections: u32,
+    world: &'a World<'a>,
+    direct: Direct<'a>,
+    /// Most legs after the first.
+    depth: u32,
 }
 
 impl<'a> Tracer<'a> {
-    pub(super) fn new(
-        prepared: &'a Prepared,
-        plan: &Plan,
-        octree: Option<&'a Octree>,
-        triangle_of: &'a [u32],
-    ) -> Tracer<'a> {
-        let lights = prepared.lights.iter().enumerate().filter(|(i, _)| plan.keeps_light(*i)).map(|(_, l)| *l);
-        let depth = prepared.settings.reflection_depth;
-        Tracer {
-            prepared,
-            octree,
-            triangle_of,
-            lights: lights.collect(),
-            terms: Terms { diffuse: plan.needs(Stage::Diffuse), specular: plan.needs(Stage::Specular) },
-            curved: plan.needs(Stage::Normals),
-            ambient: plan.needs(Stage::Ambient),
-            shadows: plan.needs(Stage::Shadows),
-            reflections: if plan.needs(Stage::Reflection) { depth } else { 0 },
-        }
+    /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
+    pub(super) fn new(world: &'a World<'a>, depth: u32, shadows: bool) -> Tracer<'a> {
+        let samples = world.prepared.settings.light_samples.max(1);
+        Tracer { world, direct: Direct::new(world, shadows, samples), depth }
     }
 
-    /// Radiance where there is nothing.
-    pub(super) fn background(&self) -> Bands {
-        self.prepared.background
-    }
-
-    /// The radiance that arrives along a line of sight, and whether it meets an object.
-    pub(super) fn radiance(&self, sight: &Sight, counts: &mut RayCounts) -> (Bands, bool) {
-        let mut radiance = Bands::ZERO;
-        let mut passed = Bands::ONE;
-        let mut sight = *sight;
-        counts.primary += 1;
-        for depth in 0..=self.reflections {
-            counts.reflected += u64::from(depth > 0);
-            let Some((element, material)) = self.meet(&sight) else {
-                return (radiance + passed * self.background(), depth > 0);
-            };
-            radiance += passed * self.emitted(&element, &material, &sight.ray, counts);
-            passed *= material.mirror;
-            if passed.max_element() < ENERGY_CUTOFF {
-                break;
+    /// The radiance that arrives along a line of sight.
+    pub(super) fn radiance(
+        &self,
+        sight: &Sight,
+        comb: usize,
+        draws: &Draws,
+        counts: &mut RayCounts,
+        mut log: Log<'_>,
+    ) -> Seen {
+        let mut seen = Seen::default();
+        let first = Leg {
+            sight: *sight,
+            passed: Channels::ONE,
+            depth: 0,
+            number: 1,
+            density: None,
+            media: Media::default(),
+            lane: None,
+            for_lights: false,
+        };
+        let mut waiting = vec![first];
+        while let Some(leg) = waiting.pop() {
+            match leg.depth {
+                0 => counts.primary += 1,
+                _ => counts.reflected += 1,
             }
-            let direction = element.mirrored(sight.ray.direction);
-            sight = Sight { ray: Ray { origin: element.leave, direction }, t_min: 0.0, t_max: f64::INFINITY };
+            let direction = leg.sight.ray.direction;
+            match self.world.meet(&leg.sight, comb) {
+                Met::Nothing => {
+                    let radiance = match leg.for_lights && !self.direct.has_sky() {
+                        true => Channels::ZERO,
+                        false => self.world.beyond(direction.normalize(), leg.density, comb),
+                    };
+                    seen.radiance += leg.passed * radiance;
+                    seen.covered |= leg.depth > 0;
+                    log.note(|| Note::term(leg.depth, "meets nothing", leg.passed * radiance));
+                }
+                Met::Glow(index, glow) => {
+                    let absorbed = leg.media.absorbed(self.world, glow.t * direction.length(), comb);
+                    let radiance = absorbed * glow.radiance * counted(leg.density, glow.density);
+                    seen.radiance += leg.passed * radiance;
+                    seen.covered = true;
+                    log.note(|| Note::light(leg.depth, self.world.sources[index].0, leg.passed * radiance));
+                }
+                Met::Element(found) => {
+                    if leg.depth == 0 {
+                        let Found { distance, object, material, .. } = *found;
+                        seen.first = Some(First { distance, normal: found.element.normal, object, material });
+                    }
+                    seen.covered = true;
+                    let counting = &mut Counting { counts, log: &mut log };
+                    seen.radiance += self.arrive(leg, *found, (comb, draws), counting, &mut waiting);
+                }
+            }
         }
-        (radiance, true)
+        seen
     }
 
-    /// The first surface element in sight.
-    fn meet(&self, sight: &Sight) -> Option<(Element, Material)> {
-        let hit = self.octree?.closest(&sight.ray, sight.t_min, sight.t_max)?;
-        let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
-        let element = Element::new(self.prepared, triangle, &sight.ray, &hit, self.curved)?;
-        Some((element, *self.prepared.material(triangle)))
-    }
-
-    /// Radiance that an element sends back along a ray by the direct terms.
-    fn emitted(&self, element: &Element, material: &Material, ray: &Ray, counts: &mut RayCounts) -> Bands {
-        let view = -ray.direction.normalize();
-        let mut sum = Bands::ZERO;
-        if self.ambient {
-            sum += illumination::ambient(material, self.prepared.ambient);
+    /// What an element sends back along a leg, and the legs that go on from there.
+    fn arrive(
+        &self,
+        mut leg: Leg,
+        found: Found<'_>,
+        (comb, draws): (usize, &Draws),
+        Counting { counts, log }: &mut Counting<'_, '_>,
+        waiting: &mut Vec<Leg>,
+    ) -> Channels {
+        let optics = found.optics;
+        let towards = leg.sight.ray.direction.normalize();
+        leg.passed *= leg.media.absorbed(self.world, found.distance, comb);
+        log.note(|| Note::element(leg.depth, self.world.prepared, &found));
+        let mut sum = Channels::ZERO;
+        if let Some((emission, density)) = self.world.emitted(&found, towards, comb) {
+            sum += leg.passed * emission * counted(leg.density, density);
+            log.note(|| Note::term(leg.depth, "emits", sum));
         }
-        for light in &self.lights {
-            let Some(beam) = light.beam(element.position) else { continue };
-            let part = illumination::reflected(material, &beam, element.normal, view, self.terms);
-            if part != Bands::ZERO && !(self.shadows && self.in_shadow(element, light, counts)) {
-                sum += part;
+        if leg.for_lights {
+            return sum;
+        }
+        let normal = found.element.normal;
+        let frame = optics.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
+        let lanes = self.world.wavelengths.lanes();
+        // Where wavelengths part, the one that is left is drawn together with the comb: all of them get their turn.
+        let parting = draws.point(Purpose::Wavelengths)[1];
+        let lane = leg.lane.unwrap_or(((parting * lanes as f64) as usize).min(lanes - 1));
+        let side = leg.media.side(self.world, &found, comb);
+        let sighting = Sighting { view: frame.local(-towards), comb, side, lane };
+        if let Some(ambient) = &self.world.ambient {
+            let radiance = leg.passed * optics.ambient(comb) * ambient.of(comb);
+            sum += radiance;
+            log.note(|| Note::term(leg.depth, "ambient light", radiance));
+        }
+        let mirrored = optics.mirrored(&sighting);
+        let directions = mirrored.len() + usize::from(optics.spreads());
+        let is_worth = |onward: &Onward| (leg.passed * onward.weight).max() > WORTH_PARTING;
+        let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && mirrored.iter().all(is_worth);
+        let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, parts };
+        if optics.answers_lights() {
+            let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
+            sum += leg.passed * self.direct.light(&encounter, counts, add);
+        }
+        if optics.carries_on() {
+            let point = draws.leg(leg.number, Purpose::Direction, 0);
+            let [choice, _] = draws.leg(leg.number, Purpose::Choice, 0);
+            if parts {
+                let drawn = optics.spreads().then(|| optics.onward(&sighting, choice, point, true)).flatten();
+                let legs = mirrored.into_iter().zip(0..).chain(drawn.map(|onward| (onward, 2)));
+                waiting.extend(legs.filter_map(|(onward, branch)| self.onward(&leg, &encounter, onward, branch)));
+            } else {
+                let drawn = optics.onward(&sighting, choice, point, false);
+                waiting.extend(drawn.and_then(|onward| self.onward(&leg, &encounter, onward, 0)));
             }
         }
         sum
     }
 
-    fn in_shadow(&self, element: &Element, light: &Light, counts: &mut RayCounts) -> bool {
-        counts.shadow += 1;
-        let origin = element.leave_curved;
-        let (direction, t_max) = match *light {
-            Light::Point { at, .. } => (at - origin, 1.0),
-            Light::Directional { direction, .. } => (-direction, f64::INFINITY),
-        };
-        let ray = Ray { origin, direction };
-        self.octree.is_some_and(|octree| octree.occluded(&ray, 0.0, t_max))
+    /// The leg that goes on in a direction; none if it is not worth following.
+    fn onward(&self, leg: &Leg, encounter: &Encounter<'_>, onward: Onward, branch: u32) -> Option<Leg> {
+        let Encounter { found, frame, sighting, draws, .. } = encounter;
+        let through = onward.light.z < 0.0;
+        let parts_wavelengths = through && !onward.is_straight && leg.lane.is_none() && disperses(found);
+        // Beyond the last leg, a direction that might have been drawn for a light still looks for it.
+        let is_last = leg.depth >= self.depth;
+        if is_last && (onward.density.is_none() || !self.direct.is_spread()) {
+            return None;
+        }
+        let mut passed = leg.passed * onward.weight;
+        if parts_wavelengths {
+            passed = passed.only(sighting.lane, self.world.wavelengths.lanes());
+        }
+        let number = leg.number.wrapping_mul(3).wrapping_add(branch);
+        let most = passed.max();
+        if most < ENERGY_CUTOFF {
+            let survival = most / ENERGY_CUTOFF;
+            if most <= 0.0 || draws.leg(number, Purpose::Survival, 0)[0] >= survival {
+                return None;
+            }
+            passed *= survival.recip();
+        }
+        let element = &found.element;
+        let direction = frame.world(onward.light);
+        // Of a spread lobe, what falls on the wrong side of the triangle is lost.
+        if onward.density.is_some() && (direction.dot(element.face) < 0.0) != through {
+            return None;
+        }
+        let direction = if onward.is_straight { direction } else { element.righted(direction, !through) };
+        let mut media = leg.media;
+        if through && !onward.is_straight {
+            media.cross(found);
+        }
+        let origin = if through { element.through } else { element.leave };
+        Some(Leg {
+            sight: Sight { ray: Ray { origin, direction }, t_min: 0.0, t_max: f64::INFINITY },
+            passed,
+            depth: leg.depth + 1,
+            number,
+            density: onward.density,
+            media,
+            lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
+            for_lights: is_last,
+        })
     }
+}
+
+/// How much a light counts that a leg of a density meets: the rest is what its own samples bring.
+///
+/// # Source
+/// Veach and Guibas 1995, the power heuristic.
+pub(super) fn counted(leg: Option<f64>, light: f64) -> f64 {
+    match leg {
+        None => 1.0,
+        Some(density) => {
+            let ratio = light / density;
+            if ratio.is_finite() { 1.0 / (1.0 + ratio * ratio) } else { 0.0 }
+        }
+    }
+}
+
+fn disperses(found: &Found<'_>) -> bool {
+    found.optics.interior.as_ref().is_some_and(|interior| interior.disperses)
 }

@@ -1,0 +1,104 @@
+//! The numbers that one ray carries side by side.
+
+use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub};
+
+/// How many numbers a ray carries: wavelengths, or three bands and unused ones.
+pub const LANES: usize = 8;
+
+/// A quantity at the wavelengths, or in the bands, that a ray carries.
+///
+/// Which wavelengths they are, [`super::Wavelengths`] tells. Lanes that are not used are 0 in every light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Channels(pub [f64; LANES]);
+
+impl Channels {
+    /// No light.
+    pub const ZERO: Channels = Channels([0.0; LANES]);
+    /// All of it.
+    pub const ONE: Channels = Channels([1.0; LANES]);
+
+    /// The same number in all lanes.
+    pub fn splat(value: f64) -> Channels {
+        Channels([value; LANES])
+    }
+
+    /// The number of one lane, where all others lost theirs: it stands for all of them.
+    ///
+    /// - `lanes`: how many there were.
+    pub fn only(self, lane: usize, lanes: usize) -> Channels {
+        Channels(std::array::from_fn(|i| if i == lane { self.0[i] * lanes as f64 } else { 0.0 }))
+    }
+
+    /// A function of each number.
+    #[inline]
+    pub fn map(self, function: impl Fn(f64) -> f64) -> Channels {
+        Channels(self.0.map(function))
+    }
+
+    /// The greatest number.
+    #[inline]
+    pub fn max(self) -> f64 {
+        self.0.iter().fold(0.0, |most, value| f64::max(most, *value))
+    }
+
+    /// Whether all are numbers within bounds.
+    pub fn is_finite(self) -> bool {
+        self.0.iter().all(|value| value.is_finite())
+    }
+}
+
+macro_rules! lane_by_lane {
+    ($trait:ident $method:ident $operator:tt) => {
+        impl $trait for Channels {
+            type Output = Channels;
+
+            #[inline]
+            fn $method(self, other: Channels) -> Channels {
+                Channels(std::array::from_fn(|i| self.0[i] $operator other.0[i]))
+            }
+        }
+    };
+}
+
+lane_by_lane!(Add add +);
+lane_by_lane!(Sub sub -);
+lane_by_lane!(Mul mul *);
+
+impl Mul<f64> for Channels {
+    type Output = Channels;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Channels {
+        self.map(|value| value * factor)
+    }
+}
+
+impl Neg for Channels {
+    type Output = Channels;
+
+    #[inline]
+    fn neg(self) -> Channels {
+        self.map(|value| -value)
+    }
+}
+
+impl AddAssign for Channels {
+    #[inline]
+    fn add_assign(&mut self, other: Channels) {
+        *self = *self + other;
+    }
+}
+
+impl MulAssign for Channels {
+    #[inline]
+    fn mul_assign(&mut self, other: Channels) {
+        *self = *self * other;
+    }
+}
+
+impl MulAssign<f64> for Channels {
+    #[inline]
+    fn mul_assign(&mut self, factor: f64) {
+        *self = *self * factor;
+    }
+}

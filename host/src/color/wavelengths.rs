@@ -1,0 +1,235 @@
+//! Which wavelengths rays carry, and quantities at them.
+//!
+//! Where a scene needs no spectra, a ray carries the three bands of a screen. Where it does, it carries eight
+//! wavelengths, evenly spaced over all that is seen, as a comb whose place is drawn for each sample. There are 64 combs:
+//! all together they are 512 bins less than a nanometre wide, and a quantity is tabulated once as its means over them.
+
+use super::{Bins, Channels, Color, LANES, Spectrum, color::WHITE, srgb};
+use glam::DVec3;
+
+/// Combs of wavelengths.
+const COMBS: usize = 64;
+/// Wavelengths, nm, at which indices of refraction are taken for the three bands: about where each band has its middle.
+const OF_BANDS: [f64; 3] = [611.0, 549.0, 464.0];
+
+/// What rays carry.
+#[derive(Clone, Debug)]
+pub struct Wavelengths {
+    /// For each comb the wavelength of each lane, nm; 0 for unused lanes.
+    at: Vec<[f64; LANES]>,
+    /// For each comb and lane what light of 1 there adds to linear sRGB.
+    seen: Vec<[DVec3; LANES]>,
+    spectral: bool,
+}
+
+/// A quantity at the wavelengths of each comb.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve(Vec<Channels>);
+
+impl Curve {
+    /// A quantity for each of some combs.
+    pub fn each(combs: usize, of: impl FnMut(usize) -> Channels) -> Curve {
+        Curve((0..combs.max(1)).map(of).collect())
+    }
+
+    /// The quantity at the wavelengths of a comb.
+    #[inline]
+    pub fn of(&self, comb: usize) -> Channels {
+        self.0[comb.min(self.0.len() - 1)]
+    }
+
+    /// The greatest value.
+    pub fn max(&self) -> f64 {
+        self.0.iter().fold(0.0, |most, channels| channels.max().max(most))
+    }
+
+    /// The mean over all combs.
+    pub fn mean(&self) -> Channels {
+        self.0.iter().fold(Channels::ZERO, |sum, channels| sum + *channels) * (self.0.len() as f64).recip()
+    }
+
+    /// Whether it is the same at all wavelengths.
+    pub fn is_constant(&self) -> bool {
+        let first = self.0[0].0[0];
+        self.0.iter().all(|channels| channels.0.iter().all(|value| *value == first))
+    }
+}
+
+impl Wavelengths {
+    /// Red, green and blue.
+    pub fn bands() -> Wavelengths {
+        let lane = |lane: usize| OF_BANDS.get(lane).copied().unwrap_or(0.0);
+        let unit = |lane: usize| if lane < 3 { DVec3::AXES[lane] } else { DVec3::ZERO };
+        Wavelengths { at: vec![std::array::from_fn(lane)], seen: vec![std::array::from_fn(unit)], spectral: false }
+    }
+
+    /// Eight wavelengths from 360 to 830 nm.
+    pub fn spectral() -> Wavelengths {
+        let bins = bins();
+        let weights = bins.weights();
+        let middles: Vec<f64> = bins.ranges().map(|(from, to)| 0.5 * (from + to)).collect();
+        let of = |comb: usize| std::array::from_fn(|lane| lane * COMBS + comb);
+        let combs = || (0..COMBS).map(of);
+        Wavelengths {
+            at: combs().map(|bins: [usize; LANES]| bins.map(|bin| middles[bin])).collect(),
+            seen: combs().map(|bins| bins.map(|bin| srgb::from_xyz(weights[bin]) * COMBS as f64)).collect(),
+            spectral: true,
+        }
+    }
+
+    /// Whether rays carry wavelengths, not bands.
+    pub fn is_spectral(&self) -> bool {
+        self.spectral
+    }
+
+    /// How many lanes carry light.
+    pub fn lanes(&self) -> usize {
+        if self.spectral { LANES } else { 3 }
+    }
+
+    /// The comb for a number that is uniform in 0..1.
+    pub fn comb(&self, uniform: f64) -> usize {
+        ((uniform * self.at.len() as f64) as usize).min(self.at.len() - 1)
+    }
+
+    /// How many combs there are.
+    pub fn combs(&self) -> usize {
+        self.at.len()
+    }
+
+    /// The wavelengths of a comb, nm; 0 for unused lanes.
+    pub fn at(&self, comb: usize) -> [f64; LANES] {
+        self.at[comb.min(self.at.len() - 1)]
+    }
+
+    /// What light looks like: linear sRGB. Its mean over all combs is exact.
+    pub fn seen(&self, comb: usize, light: Channels) -> DVec3 {
+        let weights = &self.seen[comb.min(self.seen.len() - 1)];
+        (0..LANES).map(|lane| weights[lane] * light.0[lane]).sum()
+    }
+
+    /// The same everywhere, also in unused lanes.
+    pub fn constant(&self, value: f64) -> Curve {
+        Curve(vec![Channels::splat(value); self.at.len()])
+    }
+
+    /// A reflectance, or another fraction.
+    pub fn reflectance(&self, color: &Color) -> Curve {
+        match color {
+            Color::Bands(bands) if bands.min_element() == bands.max_element() => self.constant(bands.x),
+            _ if !self.spectral => Curve(vec![in_bands(color.bands_of_reflectance().max(DVec3::ZERO))]),
+            Color::Spectrum(spectrum) => self.means(spectrum),
+            _ => self.quantity(color.reflectance_at()),
+        }
+    }
+
+    /// What light is multiplied with, 0 and more.
+    pub fn filter(&self, color: &Color) -> Curve {
+        match color {
+            Color::Bands(bands) if bands.max_element() > 1.0 => {
+                let greatest = bands.max_element();
+                let shape = self.reflectance(&Color::Bands(*bands / greatest));
+                Curve(shape.0.iter().map(|channels| *channels * greatest).collect())
+            }
+            _ => self.reflectance(color),
+        }
+    }
+
+    /// The strength of a light, per nanometre or in bands.
+    pub fn light(&self, color: &Color) -> Curve {
+        match color {
+            _ if !self.spectral => Curve(vec![in_bands(color.bands_of_light().max(DVec3::ZERO))]),
+            Color::Spectrum(spectrum) => self.means(spectrum),
+            Color::Bands(bands) => {
+                let greatest = bands.max_element();
+                if greatest <= 0.0 {
+                    return self.constant(0.0);
+                }
+                // Scaled first: the shape of a faint light is found as well as that of a bright one.
+                let shape = self.reflectance(&Color::Bands(*bands / greatest));
+                let white = self.means(&WHITE);
+                Curve(shape.0.iter().zip(&white.0).map(|(a, b)| *a * *b * greatest).collect())
+            }
+        }
+    }
+
+    /// A quantity that is given at every wavelength, nm, such as an index of refraction; for bands at a wavelength of each.
+    ///
+    /// Unused lanes have the value of the first.
+    pub fn quantity(&self, function: impl Fn(f64) -> f64) -> Curve {
+        let value = |wavelengths: &[f64; LANES]| {
+            Channels(wavelengths.map(|w| function(if w > 0.0 { w } else { wavelengths[0] })))
+        };
+        Curve(self.at.iter().map(value).collect())
+    }
+
+    /// Means over the bins.
+    fn means(&self, spectrum: &Spectrum) -> Curve {
+        let means = bins().means(spectrum);
+        Curve((0..COMBS).map(|comb| Channels(std::array::from_fn(|lane| means[lane * COMBS + comb]))).collect())
+    }
+}
+
+/// The bins of all combs.
+fn bins() -> Bins {
+    Bins::visible(COMBS * LANES).expect("there are bins")
+}
+
+fn in_bands(bands: DVec3) -> Channels {
+    Channels(std::array::from_fn(|lane| if lane < 3 { bands[lane] } else { 0.0 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::shipped;
+    use super::*;
+
+    fn seen(wavelengths: &Wavelengths, light: &Curve, reflectance: &Curve) -> DVec3 {
+        let combs = wavelengths.at.len();
+        let sum: DVec3 = (0..combs).map(|c| wavelengths.seen(c, light.of(c) * reflectance.of(c))).sum();
+        sum / combs as f64
+    }
+
+    #[test]
+    fn a_perfect_reflector_under_d65_is_white_for_bands_and_for_wavelengths() {
+        for wavelengths in [Wavelengths::bands(), Wavelengths::spectral()] {
+            let white = wavelengths.light(&Color::grey(2.0));
+            let perfect = wavelengths.reflectance(&Color::grey(1.0));
+            let found = seen(&wavelengths, &white, &perfect);
+            assert!((found - DVec3::splat(2.0)).length() < 2e-5, "{found}");
+        }
+    }
+
+    #[test]
+    fn colors_keep_their_bands_when_they_become_spectra() {
+        let wavelengths = Wavelengths::spectral();
+        let white = wavelengths.light(&Color::grey(1.0));
+        for bands in [DVec3::new(0.8, 0.3, 0.1), DVec3::new(0.05, 0.4, 0.9), DVec3::new(1.0, 0.0, 0.0)] {
+            let reflectance = wavelengths.reflectance(&Color::Bands(bands));
+            let found = seen(&wavelengths, &white, &reflectance);
+            assert!((found - bands).length() < 3e-4, "{bands} {found}");
+            let light = wavelengths.light(&Color::Bands(bands * 7.0));
+            let perfect = wavelengths.constant(1.0);
+            assert!((seen(&wavelengths, &light, &perfect) - bands * 7.0).length() < 1e-3, "{bands}");
+        }
+    }
+
+    #[test]
+    fn a_spectrum_is_seen_as_its_integrals_tell() {
+        let wavelengths = Wavelengths::spectral();
+        let red = Color::Spectrum(shipped::patch("red").expect("a patch"));
+        let light = wavelengths.light(&Color::grey(1.0));
+        let found = seen(&wavelengths, &light, &wavelengths.reflectance(&red));
+        assert!((found - red.bands_of_reflectance()).length() < 1e-5);
+        let lamp = Color::light_of(&shipped::light("F11").expect("a light"), 1.0).expect("visible");
+        let found = seen(&wavelengths, &wavelengths.light(&lamp), &wavelengths.constant(1.0));
+        assert!((found - lamp.bands_of_light()).length() < 1e-3, "{found} {}", lamp.bands_of_light());
+    }
+
+    #[test]
+    fn a_lane_that_is_left_alone_stands_for_all() {
+        let light = Channels([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
+        let sum: f64 = (0..LANES).map(|lane| light.only(lane, LANES).0.iter().sum::<f64>()).sum();
+        assert_eq!(sum / LANES as f64, 36.0);
+    }
+}

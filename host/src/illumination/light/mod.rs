@@ -1,0 +1,204 @@
+//! Sources of light: what a scene says of them, and what of their light arrives at a point.
+
+mod area;
+mod goniometry;
+mod patch;
+mod sky;
+mod source;
+#[cfg(test)]
+mod tests;
+
+pub use goniometry::{Goniometry, GoniometryError};
+pub use patch::Patch;
+pub use sky::Sky;
+pub use source::{Beam, Glow, Source};
+
+use crate::color::Color;
+use crate::picture::Picture;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A source of light.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Light {
+    /// A point that emits alike in all directions; its irradiance falls with the square of the distance.
+    Point {
+        /// Where it is.
+        at: DVec3,
+        /// Radiant intensity, W/sr. A source of power P has P / (4 pi).
+        intensity: Color,
+    },
+    /// Parallel light from infinitely far away.
+    Directional {
+        /// Where the light goes; any length but 0.
+        direction: DVec3,
+        /// Irradiance of a surface that faces the light, W/m².
+        irradiance: Color,
+    },
+    /// A point that emits a cone of light: all of its intensity up to the inner angle, none beyond the outer one, and
+    /// t² (3 − 2 t) between, t going from 0 to 1 with the cosine.
+    Spot {
+        /// Where it is.
+        at: DVec3,
+        /// Where the axis of the cone goes; any length but 0.
+        direction: DVec3,
+        /// Radiant intensity on the axis, W/sr.
+        intensity: Color,
+        /// Angle between the axis and where the light begins to fall, degrees.
+        inner: f64,
+        /// Angle between the axis and where there is none, degrees, up to 180.
+        outer: f64,
+    },
+    /// A luminaire that was measured: a point whose intensity is a table over the directions.
+    Luminaire {
+        /// Where it is.
+        at: DVec3,
+        /// Where its vertical angle is 0: what is down for most; any length but 0.
+        down: DVec3,
+        /// About where its horizontal angle is 0; not along `down`.
+        front: DVec3,
+        /// The table.
+        goniometry: Goniometry,
+        /// What the table is multiplied with: a color with Y = 1 leaves its candelas as they are, at 683 for 1 W/sr.
+        color: Color,
+    },
+    /// A surface that emits the same radiance in all directions, and is seen.
+    Area {
+        /// The surface.
+        patch: Patch,
+        /// Its radiance, W/(m² sr).
+        radiance: Color,
+    },
+    /// Light from infinitely far away all around: the background, too.
+    Sky {
+        /// Radiance over all directions, latitude and longitude: the first row is up (y), the middle of the rows ahead
+        /// (−z), the right quarter right (x). Without it, 1 everywhere.
+        map: Option<SkyMap>,
+        /// What the map is multiplied with.
+        radiance: Color,
+        /// Degrees by which the map is turned about the upright axis, as a right-handed screw turns.
+        turned: f64,
+    },
+}
+
+/// A picture that was read for a sky.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SkyMap {
+    /// Its file, for messages.
+    pub file: String,
+    /// The picture; empty where it is not kept.
+    #[serde(skip)]
+    pub picture: Option<Arc<Picture>>,
+}
+
+/// Why a light is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LightError {
+    /// A place or a length that is not finite.
+    #[error("{what} {value} is not finite")]
+    NotFinite {
+        /// Of what.
+        what: &'static str,
+        /// Its value.
+        value: DVec3,
+    },
+    /// A direction without length.
+    #[error("{what} {value} has no length")]
+    NoLength {
+        /// Of what.
+        what: &'static str,
+        /// Its value.
+        value: DVec3,
+    },
+    /// A strength that is negative or not finite.
+    #[error("{what} {least} to {most} is negative or not finite")]
+    Strength {
+        /// Of what.
+        what: &'static str,
+        /// Its least value.
+        least: f64,
+        /// Its greatest value.
+        most: f64,
+    },
+    /// Angles of a cone that is none.
+    #[error("a cone of {inner} to {outer} degrees: they must rise and lie within 0 to 180")]
+    Cone {
+        /// Where the light begins to fall.
+        inner: f64,
+        /// Where it ends.
+        outer: f64,
+    },
+    /// A surface that is flat or too large.
+    #[error("its surface is {0}")]
+    Patch(&'static str),
+}
+
+impl Light {
+    /// Its strength, in the unit of its kind, and what it is called.
+    pub fn strength(&self) -> (&'static str, &Color) {
+        match self {
+            Light::Point { intensity, .. } | Light::Spot { intensity, .. } => ("its intensity", intensity),
+            Light::Directional { irradiance, .. } => ("its irradiance", irradiance),
+            Light::Luminaire { color, .. } => ("its color", color),
+            Light::Area { radiance, .. } | Light::Sky { radiance, .. } => ("its radiance", radiance),
+        }
+    }
+
+    /// What it is, in words.
+    pub fn words(&self) -> &'static str {
+        match self {
+            Light::Point { .. } => "a point light",
+            Light::Directional { .. } => "parallel light",
+            Light::Spot { .. } => "a spot light",
+            Light::Luminaire { .. } => "a luminaire",
+            Light::Area { patch, .. } => patch.words(),
+            Light::Sky { .. } => "a sky",
+        }
+    }
+
+    /// Whether its color cannot be told in three bands.
+    pub fn is_spectral(&self) -> bool {
+        self.strength().1.is_spectral()
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// The first [`LightError`].
+    pub fn check(&self) -> Result<(), LightError> {
+        let (what, color) = self.strength();
+        let [least, most] = color.range();
+        if !(least >= 0.0 && most.is_finite()) {
+            return Err(LightError::Strength { what, least, most });
+        }
+        match self {
+            Light::Point { at, .. } => place(*at),
+            Light::Directional { direction, .. } => directed("its direction", *direction),
+            Light::Spot { at, direction, inner, outer, .. } => {
+                place(*at)?;
+                directed("its direction", *direction)?;
+                let possible = *inner >= 0.0 && inner < outer && *outer <= 180.0;
+                if possible { Ok(()) } else { Err(LightError::Cone { inner: *inner, outer: *outer }) }
+            }
+            Light::Luminaire { at, down, front, .. } => {
+                place(*at)?;
+                directed("down", *down)?;
+                directed("front", *front)?;
+                directed("front across down", down.cross(*front))
+            }
+            Light::Area { patch, .. } => patch.check(),
+            Light::Sky { turned, .. } if turned.is_finite() => Ok(()),
+            Light::Sky { turned, .. } => Err(LightError::NotFinite { what: "its turn", value: DVec3::splat(*turned) }),
+        }
+    }
+}
+
+fn place(at: DVec3) -> Result<(), LightError> {
+    if at.is_finite() { Ok(()) } else { Err(LightError::NotFinite { what: "its place", value: at }) }
+}
+
+fn directed(what: &'static str, value: DVec3) -> Result<(), LightError> {
+    if value.try_normalize().is_some() { Ok(()) } else { Err(LightError::NoLength { what, value }) }
+}

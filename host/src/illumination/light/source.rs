@@ -1,0 +1,213 @@
+//! Lights made ready for rendering: what arrives at a point, and what is seen of them.
+
+use super::{Goniometry, Light, Patch, Sky};
+use crate::color::observer::LUMENS_PER_WATT;
+use crate::color::{Channels, Curve, Wavelengths};
+use crate::numeric::ray::Ray;
+use glam::{DMat3, DVec3};
+use std::sync::Arc;
+
+/// Light that arrives at a point from one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    /// From the point towards the light, unit length.
+    pub towards: DVec3,
+    /// From the point to the light; infinite for light from infinitely far away.
+    pub distance: f64,
+    /// Irradiance of a surface that faces the light, W/m²: of all the light where it comes from one direction only, else
+    /// its radiance over the density with which this direction was drawn.
+    pub irradiance: Channels,
+    /// That density, 1/sr; none where light comes from one direction only.
+    pub density: Option<f64>,
+}
+
+/// What a ray sees of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glow {
+    /// How far, in lengths of the ray's direction; infinite for the sky.
+    pub t: f64,
+    /// Its radiance there, W/(m² sr); 0 on the dark side.
+    pub radiance: Channels,
+    /// The density with which [`Source::beam`] would have drawn this direction, 1/sr.
+    pub density: f64,
+}
+
+/// A light ready for rendering.
+#[derive(Clone, Debug)]
+pub struct Source {
+    strength: Curve,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Point { at: DVec3 },
+    Directional { towards: DVec3 },
+    Spot { at: DVec3, axis: DVec3, inner: f64, outer: f64 },
+    Luminaire { at: DVec3, axes: DMat3, table: Arc<Goniometry> },
+    Area(Patch),
+    Mesh(Triangles),
+    Sky(Sky),
+}
+
+/// Triangles that emit on both sides, drawn evenly by area.
+#[derive(Clone, Debug)]
+struct Triangles {
+    corners: Vec<[DVec3; 3]>,
+    /// The part of the area up to each.
+    below: Vec<f64>,
+    area: f64,
+}
+
+impl Source {
+    /// A light, ready. It should have been checked before.
+    pub fn new(light: &Light, wavelengths: &Wavelengths) -> Source {
+        let strength = wavelengths.light(light.strength().1);
+        let kind = match light {
+            Light::Point { at, .. } => Kind::Point { at: *at },
+            Light::Directional { direction, .. } => {
+                Kind::Directional { towards: -direction.normalize_or(DVec3::NEG_Y) }
+            }
+            Light::Spot { at, direction, inner, outer, .. } => Kind::Spot {
+                at: *at,
+                axis: direction.normalize_or(DVec3::NEG_Y),
+                inner: inner.to_radians().cos(),
+                outer: outer.to_radians().cos(),
+            },
+            Light::Luminaire { at, down, front, goniometry, .. } => {
+                let up = -down.normalize_or(DVec3::NEG_Y);
+                let y = up.cross(*front).normalize_or(up.any_orthonormal_vector());
+                let axes = DMat3::from_cols(y.cross(up), y, up);
+                Kind::Luminaire { at: *at, axes, table: Arc::new(goniometry.clone()) }
+            }
+            Light::Area { patch, .. } => Kind::Area(*patch),
+            Light::Sky { map, radiance, turned } => Kind::Sky(Sky::new(map.as_ref(), radiance, *turned, wavelengths)),
+        };
+        Source { strength, kind }
+    }
+
+    /// Triangles that emit the same radiance on both sides; none without area.
+    pub fn of_triangles(corners: Vec<[DVec3; 3]>, radiance: Curve) -> Option<Source> {
+        let mut area = 0.0;
+        let mut below: Vec<f64> = Vec::with_capacity(corners.len());
+        for [a, b, c] in &corners {
+            area += 0.5 * (*b - *a).cross(*c - *a).length();
+            below.push(area);
+        }
+        if !(area > 0.0 && area.is_finite()) {
+            return None;
+        }
+        below.iter_mut().for_each(|part| *part /= area);
+        Some(Source { strength: radiance, kind: Kind::Mesh(Triangles { corners, below, area }) })
+    }
+
+    /// Light that arrives at a point if nothing stands between; none where there is none, and at the light itself.
+    ///
+    /// - `uniform`: a point of the unit square, which chooses the point of a light that has a size.
+    pub fn beam(&self, point: DVec3, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+        let strength = || self.strength.of(comb);
+        match &self.kind {
+            Kind::Point { at } => from_point(*at - point, strength()),
+            Kind::Directional { towards } => {
+                Some(Beam { towards: *towards, distance: f64::INFINITY, irradiance: strength(), density: None })
+            }
+            Kind::Spot { at, axis, inner, outer } => {
+                let beam = from_point(*at - point, strength())?;
+                let part = ((-beam.towards.dot(*axis) - outer) / (inner - outer)).clamp(0.0, 1.0);
+                let part = part * part * (3.0 - 2.0 * part);
+                (part > 0.0).then(|| Beam { irradiance: beam.irradiance * part, ..beam })
+            }
+            Kind::Luminaire { at, axes, table } => {
+                let beam = from_point(*at - point, strength())?;
+                let watts = table.candelas(axes.transpose() * -beam.towards) / LUMENS_PER_WATT;
+                (watts > 0.0).then(|| Beam { irradiance: beam.irradiance * watts, ..beam })
+            }
+            Kind::Area(patch) => {
+                let drawn = patch.draw(point, uniform)?;
+                let irradiance = strength() * drawn.density.recip();
+                Some(Beam {
+                    towards: drawn.towards,
+                    distance: drawn.distance,
+                    irradiance,
+                    density: Some(drawn.density),
+                })
+            }
+            Kind::Mesh(triangles) => {
+                let (towards, distance, density) = triangles.draw(point, uniform)?;
+                Some(Beam { towards, distance, irradiance: strength() * density.recip(), density: Some(density) })
+            }
+            Kind::Sky(sky) => {
+                let (towards, density) = sky.draw(uniform)?;
+                let irradiance = sky.radiance(towards, comb) * density.recip();
+                Some(Beam { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
+            }
+        }
+    }
+
+    /// What a ray sees of a light that is a surface of its own.
+    pub fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<Glow> {
+        let Kind::Area(patch) = &self.kind else { return None };
+        let (t, front) = patch.met(ray, t_min, t_max)?;
+        let length = ray.direction.length();
+        let radiance = if front { self.strength.of(comb) } else { Channels::ZERO };
+        Some(Glow { t, radiance, density: patch.density(ray.origin, ray.direction / length, t * length) })
+    }
+
+    /// What is seen of a sky in a direction, unit length; none of another light.
+    pub fn sky(&self, towards: DVec3, comb: usize) -> Option<Glow> {
+        let Kind::Sky(sky) = &self.kind else { return None };
+        Some(Glow { t: f64::INFINITY, radiance: sky.radiance(towards, comb), density: sky.density(towards) })
+    }
+
+    /// The density with which [`Source::beam`] draws a direction in which emitting triangles are met, 1/sr.
+    ///
+    /// - `cosine`: between the direction and the normal of the triangle, any sign.
+    pub fn density_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
+        match &self.kind {
+            Kind::Mesh(triangles) if cosine != 0.0 => distance * distance / (cosine.abs() * triangles.area),
+            _ => 0.0,
+        }
+    }
+
+    /// Whether its light comes from one direction only at every point.
+    pub fn is_sharp(&self) -> bool {
+        !matches!(self.kind, Kind::Area(_) | Kind::Mesh(_) | Kind::Sky(_))
+    }
+
+    /// Whether it is a surface of its own, which rays meet.
+    pub fn is_surface(&self) -> bool {
+        matches!(self.kind, Kind::Area(_))
+    }
+
+    /// Whether it surrounds everything.
+    pub fn is_sky(&self) -> bool {
+        matches!(self.kind, Kind::Sky(_))
+    }
+}
+
+fn from_point(offset: DVec3, intensity: Channels) -> Option<Beam> {
+    let distance = offset.length();
+    (distance > 0.0 && distance.is_finite()).then(|| Beam {
+        towards: offset / distance,
+        distance,
+        irradiance: intensity * distance.recip() * distance.recip(),
+        density: None,
+    })
+}
+
+impl Triangles {
+    fn draw(&self, point: DVec3, [x, y]: [f64; 2]) -> Option<(DVec3, f64, f64)> {
+        let index = self.below.partition_point(|part| *part <= x).min(self.below.len() - 1);
+        let from = if index == 0 { 0.0 } else { self.below[index - 1] };
+        let x = ((x - from) / (self.below[index] - from)).clamp(0.0, 1.0);
+        let [a, b, c] = self.corners[index];
+        let root = x.sqrt();
+        let at = a * (1.0 - root) + b * (root * (1.0 - y)) + c * (root * y);
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let offset = at - point;
+        let distance = offset.length();
+        let towards = offset / distance;
+        let density = distance * distance / (normal.dot(towards).abs() * self.area);
+        (distance > 0.0 && density.is_finite() && density > 0.0).then_some((towards, distance, density))
+    }
+}

@@ -1,0 +1,242 @@
+//! Facts about lights: closed forms of irradiance, and densities.
+
+use super::*;
+use crate::color::Wavelengths;
+use crate::numeric::cubature::unit_square;
+use crate::numeric::ray::Ray;
+use crate::numeric::sampling::{Stream, sphere};
+use crate::picture::Pixel;
+use std::f64::consts::PI;
+
+fn source(light: Light) -> Source {
+    light.check().unwrap_or_else(|error| panic!("{error}"));
+    Source::new(&light, &Wavelengths::bands())
+}
+
+fn area(patch: Patch) -> Source {
+    source(Light::Area { patch, radiance: Color::grey(1.0) })
+}
+
+/// Irradiance of a surface element by cubature over the light.
+fn irradiance(source: &Source, point: DVec3, normal: DVec3) -> f64 {
+    let term = |uniform| {
+        source.beam(point, uniform, 0).map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
+    };
+    unit_square(term, 1e-9, 200_000).value
+}
+
+#[test]
+fn irradiance_of_a_point_falls_with_the_square_of_the_distance() {
+    let point = source(Light::Point { at: DVec3::new(0.0, 3.0, 0.0), intensity: Color::grey(18.0) });
+    let beam = point.beam(DVec3::ZERO, [0.5; 2], 0).expect("light");
+    assert_eq!((beam.irradiance.0[0], beam.distance, beam.towards), (2.0, 3.0, DVec3::Y));
+    assert!(point.beam(DVec3::new(0.0, 3.0, 0.0), [0.5; 2], 0).is_none(), "no direction at the light itself");
+    for far in [1e-9, 1e9] {
+        let beam = point.beam(DVec3::new(far, 3.0, 0.0), [0.5; 2], 0).expect("light");
+        assert!((beam.irradiance.0[0] * far * far / 18.0 - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn irradiance_of_a_sphere_is_that_of_its_solid_angle() {
+    // E = pi L (r/d)^2 cos, if all of the sphere is above the horizon.
+    for (distance, radius) in [(2.0, 1.0), (1.0001, 1.0), (1e9, 1.0), (5.0, 1e-6)] {
+        let patch = Patch::Sphere { center: DVec3::new(0.0, distance, 0.0), radius };
+        let expected = PI * (radius / distance).powi(2);
+        let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{distance} {radius}: {found} {expected}");
+    }
+    let patch = Patch::Sphere { center: DVec3::new(3.0, 4.0, 0.0), radius: 1.0 };
+    let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
+    assert!((found - PI / 25.0 * 0.8).abs() < 1e-8);
+    assert!(area(patch).beam(DVec3::new(3.0, 4.5, 0.0), [0.5; 2], 0).is_none(), "dark inside");
+}
+
+#[test]
+fn irradiance_of_a_disc_is_that_of_its_closed_form() {
+    // E = pi L r^2 / (r^2 + h^2) on the axis.
+    for (height, radius) in [(1.0, 1.0), (3.0, 0.5), (1e6, 10.0), (2.0, 1e-6)] {
+        let center = DVec3::new(0.0, height, 0.0);
+        let patch = Patch::Disc { center, normal: DVec3::NEG_Y, radius };
+        let expected = PI * radius * radius / (radius * radius + height * height);
+        let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{height} {radius}: {found} {expected}");
+        assert!(area(patch).beam(center * 2.0, [0.5; 2], 0).is_none(), "dark behind");
+    }
+}
+
+/// Lambert's formula for a polygon that is wholly above the horizon.
+fn of_polygon(corners: &[DVec3], normal: DVec3) -> f64 {
+    let count = corners.len();
+    let side = |i: usize| {
+        let (a, b) = (corners[i].normalize(), corners[(i + 1) % count].normalize());
+        let across = a.cross(b);
+        across.normalize_or_zero().dot(normal) * across.length().atan2(a.dot(b))
+    };
+    0.5 * (0..count).map(side).sum::<f64>().abs()
+}
+
+#[test]
+fn irradiance_of_a_rectangle_is_that_of_lamberts_formula() {
+    let cases = [
+        (DVec3::new(-1.0, 2.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0),
+        (DVec3::new(0.5, 0.1, -3.0), DVec3::X * 4.0, DVec3::new(0.0, 1.0, 1.0)),
+        (DVec3::new(-10.0, 1e-3, -10.0), DVec3::X * 20.0, DVec3::Z * 20.0),
+        (DVec3::new(0.0, 3.0, 0.0), DVec3::X * 1e-6, DVec3::Z * 1e-6),
+        (DVec3::new(1e4, 3e4, 0.0), DVec3::X * 2.0, DVec3::Z * 3.0),
+        // A parallelogram, which is sampled by area.
+        (DVec3::new(-1.0, 2.0, -1.0), DVec3::new(2.0, 0.0, 1.0), DVec3::Z * 2.0),
+    ];
+    for (corner, across, up) in cases {
+        let patch = Patch::Rectangle { corner, across, up };
+        // Seen from whichever side emits.
+        let front = across.cross(up).dot(-corner) > 0.0;
+        let patch = if front { patch } else { Patch::Rectangle { corner, across: up, up: across } };
+        let expected = of_polygon(&[corner, corner + across, corner + across + up, corner + up], DVec3::Y);
+        let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
+        assert!((found / expected - 1.0).abs() < 2e-5, "{patch:?}: {found} {expected}");
+    }
+}
+
+#[test]
+fn triangles_emit_as_the_rectangle_that_they_make() {
+    let (corner, across, up) = (DVec3::new(-1.0, 2.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0);
+    let corners = [corner, corner + across, corner + across + up, corner + up];
+    let triangles = vec![[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
+    let source = Source::of_triangles(triangles, Wavelengths::bands().constant(1.0)).expect("area");
+    let found = irradiance(&source, DVec3::ZERO, DVec3::Y);
+    assert!((found - of_polygon(&corners, DVec3::Y)).abs() < 1e-6);
+    assert!(Source::of_triangles(vec![[corner; 3]], Wavelengths::bands().constant(1.0)).is_none());
+}
+
+#[test]
+fn densities_are_those_of_the_drawn_directions() {
+    let patches = [
+        Patch::Sphere { center: DVec3::new(1.0, 3.0, 0.0), radius: 0.7 },
+        Patch::Disc { center: DVec3::new(1.0, 3.0, 0.0), normal: DVec3::new(-0.3, -1.0, 0.2), radius: 0.7 },
+        Patch::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::Z },
+        Patch::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::new(1.0, 0.0, 1.0) },
+    ];
+    let mut stream = Stream::new(7, 7);
+    for patch in patches {
+        let source = area(patch);
+        for _ in 0..200 {
+            let beam = source.beam(DVec3::ZERO, stream.point(), 0).expect("light");
+            let ray = Ray { origin: DVec3::ZERO, direction: beam.towards * 2.0 };
+            // A point of the border may fall on either side of it.
+            let Some(glow) = source.glow(&ray, 0.0, f64::INFINITY, 0) else { continue };
+            assert!((2.0 * glow.t - beam.distance).abs() < 1e-6, "{patch:?}");
+            assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-6, "{patch:?}");
+            assert_eq!(glow.radiance.0[0], 1.0);
+        }
+    }
+}
+
+#[test]
+fn a_spot_falls_from_all_to_nothing_between_its_angles() {
+    let spot = source(Light::Spot {
+        at: DVec3::Y,
+        direction: DVec3::NEG_Y,
+        intensity: Color::grey(1.0),
+        inner: 20.0,
+        outer: 40.0,
+    });
+    let at = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        spot.beam(DVec3::new(sin, 1.0 - cos, 0.0), [0.5; 2], 0).map_or(0.0, |beam| beam.irradiance.0[0])
+    };
+    assert!((at(0.0) - 1.0).abs() < 1e-12 && (at(19.9) - 1.0).abs() < 1e-12 && at(40.1) == 0.0);
+    let middle = ((20f64.to_radians().cos() + 40f64.to_radians().cos()) / 2.0).acos().to_degrees();
+    assert!((at(middle) - 0.5).abs() < 1e-12);
+    let bad = Light::Spot { at: DVec3::Y, direction: DVec3::X, intensity: Color::grey(1.0), inner: 50.0, outer: 40.0 };
+    assert!(bad.check().unwrap_err().to_string().contains("50 to 40"));
+}
+
+const LAMP: &str =
+    "IESNA:LM-63-2002\n[TEST] ours\nTILT=NONE\n1 -1 2 3 2 1 2 0 0 0\n1 1 60\n0 45 90\n0 90\n100 50 0\n100 80 0\n";
+
+#[test]
+fn a_luminaire_shines_as_its_file_says() {
+    let table = Goniometry::parse(LAMP).expect("a table");
+    let at = |vertical: f64, around: f64| {
+        let (sin, cos) = vertical.to_radians().sin_cos();
+        let (across, along) = around.to_radians().sin_cos();
+        table.candelas(DVec3::new(sin * along, sin * across, -cos))
+    };
+    assert_eq!((at(0.0, 0.0), table.greatest()), (200.0, 200.0));
+    for (vertical, around, expected) in [
+        (45.0, 0.0, 100.0),
+        (45.0, 90.0, 160.0),
+        (45.0, 45.0, 130.0),
+        (22.5, 0.0, 150.0),
+        (45.0, 180.0, 100.0),
+        (45.0, 270.0, 160.0),
+        (45.0, 135.0, 130.0),
+        (120.0, 0.0, 0.0),
+    ] {
+        assert!((at(vertical, around) - expected).abs() < 1e-9, "{vertical} {around}: {}", at(vertical, around));
+    }
+    let light = Light::Luminaire {
+        at: DVec3::new(0.0, 2.0, 0.0),
+        down: DVec3::NEG_Y,
+        front: DVec3::X,
+        goniometry: table,
+        color: Color::grey(1.0),
+    };
+    let beam = source(light).beam(DVec3::ZERO, [0.5; 2], 0).expect("light");
+    assert!((beam.irradiance.0[0] - 200.0 / 683.0 / 4.0).abs() < 1e-12);
+}
+
+#[test]
+fn broken_files_of_luminaires_are_errors_with_their_line() {
+    let refused = |text: &str| Goniometry::parse(text).unwrap_err().to_string();
+    assert!(refused("").contains("TILT"));
+    assert!(refused("TILT=INCLUDE\n").contains("line 1"));
+    assert!(refused(&LAMP.replace("50 0\n", "5O 0\n")).contains("line 8: an intensity is \"5O\""));
+    assert!(refused(&LAMP.replace("0 45 90", "0 95 90")).contains("rise"));
+    assert!(refused(&LAMP.replace("0 90\n", "0 70\n")).contains("horizontal"));
+    assert!(refused(&LAMP.replace("100 80 0\n", "")).contains("ends where an intensity"));
+    assert!(refused(&LAMP.replace("3 2 1", "3e9 2e9 1")).contains("whole number"));
+    assert!(refused(&LAMP.replace("100 50", "-100 50")).contains("negative"));
+}
+
+fn map() -> SkyMap {
+    let mut picture = Picture::new(8, 4).expect("small");
+    for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
+        *pixel = Pixel { radiance: [(i % 5) as f32; 3], coverage: 1.0 };
+    }
+    SkyMap { file: String::new(), picture: Some(Arc::new(picture)) }
+}
+
+#[test]
+fn a_sky_of_one_radiance_lights_a_plane_with_pi_times_it() {
+    let sky = source(Light::Sky { map: None, radiance: Color::grey(2.0), turned: 0.0 });
+    assert!((irradiance(&sky, DVec3::ZERO, DVec3::Y) - 2.0 * PI).abs() < 1e-3);
+    assert_eq!(sky.sky(DVec3::X, 0).expect("a sky").radiance.0[0], 2.0);
+}
+
+#[test]
+fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
+    let sky = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 30.0 });
+    // Irradiance by drawn directions, and by directions spread evenly.
+    let drawn = irradiance(&sky, DVec3::ZERO, DVec3::new(0.6, 0.8, 0.0));
+    let term = |uniform| {
+        let towards = sphere(uniform);
+        sky.sky(towards, 0).map_or(0.0, |glow| glow.radiance.0[0]) * towards.dot(DVec3::new(0.6, 0.8, 0.0)).max(0.0)
+    };
+    let even = 4.0 * PI * unit_square(term, 1e-4, 400_000).value;
+    assert!((drawn / even - 1.0).abs() < 2e-3, "{drawn} {even}");
+    // The density integrates to 1.
+    let all = 4.0 * PI * unit_square(|u| sky.sky(sphere(u), 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000).value;
+    assert!((all - 1.0).abs() < 2e-3, "{all}");
+    let mut stream = Stream::new(2, 2);
+    for _ in 0..100 {
+        let beam = sky.beam(DVec3::ZERO, stream.point(), 0).expect("light");
+        let glow = sky.sky(beam.towards, 0).expect("a sky");
+        assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
+    }
+    let ahead = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 0.0 });
+    let pixel = |x: usize, y: usize| ((y * 8 + x) % 5) as f64;
+    assert_eq!(ahead.sky(DVec3::new(0.1, 0.1, -1.0).normalize(), 0).expect("a sky").radiance.0[0], pixel(4, 1));
+    assert_eq!(ahead.sky(DVec3::new(1.0, 0.1, -0.1).normalize(), 0).expect("a sky").radiance.0[0], pixel(5, 1));
+}

@@ -1,0 +1,376 @@
+//! Of what a surface is: what a scene says of it, before it is made ready for rendering.
+
+use super::distribution::{DistributionError, FAMILY, Tabulated};
+use super::fresnel::{Conductor, Dielectric, IndexError};
+use crate::color::{Color, Glass, Spectrum};
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// How a surface reflects, lets through and emits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// Of what it is.
+    pub body: Body,
+    /// Radiance that it emits on both sides, W/(m² sr); per nanometre, if a spectrum.
+    pub emission: Color,
+}
+
+/// Of what a surface is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Body {
+    /// The sum of Lambert's and Phong's terms, a mirror, and what goes straight through.
+    Classic(Classic),
+    /// A fraction K, distributed by a D of the family or of the user's.
+    Shaped(Shaped),
+    /// A metal, polished or rough.
+    Metal(Metal),
+    /// Glass, water, a gem: reflects and refracts.
+    Transparent(Transparent),
+    /// A diffuse ground under a transparent coat: plastic, varnish, glaze.
+    Coated(Coated),
+}
+
+/// The sum of Lambert's and Phong's terms, a mirror, and what goes straight through.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Classic {
+    /// Diffusely reflected fraction, 0..=1.
+    pub diffuse: Color,
+    /// Fraction in the highlight of Phong's model, 0..=1.
+    pub specular: Color,
+    /// Phong's exponent n, 1 to [`Classic::MOST_EXPONENT`]; the lobe falls to one half at acos(2^(-1/n)).
+    pub exponent: f64,
+    /// Fraction reflected as by a mirror, 0..=1.
+    pub mirror: Color,
+    /// Fraction that goes straight through, 0..=1.
+    pub transparency: Color,
+}
+
+/// A fraction K, distributed by a D.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shaped {
+    /// The reflected fraction K, 0..=1.
+    pub reflectance: Color,
+    /// D.
+    pub form: Form,
+}
+
+/// A distribution D.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// A member of the family, by its name.
+    Member {
+        /// The name, as in [`FAMILY`].
+        name: String,
+        /// Its roughness m, 1e-8..=1000.
+        roughness: f64,
+    },
+    /// One that the user defined.
+    Table(Tabulated),
+}
+
+/// A metal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Metal {
+    /// Refractive index over the wavelength.
+    pub n: Spectrum,
+    /// Extinction coefficient over the wavelength.
+    pub k: Spectrum,
+    /// How it was worked.
+    pub finish: Finish,
+}
+
+/// How a surface was worked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Finish {
+    /// A mirror.
+    Polished,
+    /// Facets, distributed by a member of the family.
+    Rough {
+        /// The name, as in [`FAMILY`].
+        name: String,
+        /// Its roughness m, 1e-8..=1000.
+        roughness: f64,
+    },
+    /// Facets of a Gaussian surface, not as rough along one direction as across it.
+    Brushed {
+        /// Roughness along and across, 1e-8..=1000.
+        roughness: DVec2,
+        /// The direction, in the coordinates of the scene; any length but 0.
+        along: DVec3,
+    },
+}
+
+/// Glass, water, a gem.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Transparent {
+    /// The refractive index.
+    pub index: Index,
+    /// Roughness m of both sides of its surface, 1e-8..=1000; 0 is polished.
+    pub roughness: f64,
+    /// What is absorbed inside, in one unit of length of the scene: light falls by exp(−absorption).
+    pub absorption: Color,
+}
+
+/// A refractive index.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Index {
+    /// The same at all wavelengths, 1e-6..=1e6.
+    Constant(f64),
+    /// By Sellmeier's formula.
+    Dispersive(Glass),
+}
+
+impl Index {
+    /// The index at a wavelength, nm; where the formula of a glass does not hold, that of the nearest where it does.
+    pub fn at(&self, wavelength: f64) -> f64 {
+        match self {
+            Index::Constant(index) => *index,
+            Index::Dispersive(glass) => glass.index(wavelength.clamp(glass.from, glass.to)).unwrap_or(1.0),
+        }
+    }
+}
+
+/// A diffuse ground under a transparent coat.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coated {
+    /// What the ground reflects, 0..=1.
+    pub diffuse: Color,
+    /// Refractive index of the coat, 1e-6..=1e6.
+    pub index: f64,
+    /// Roughness m of the coat, 1e-8..=1000; 0 is polished.
+    pub roughness: f64,
+}
+
+impl Default for Classic {
+    fn default() -> Classic {
+        let [diffuse, specular, mirror, transparency] = [0.7, 0.0, 0.0, 0.0].map(Color::grey);
+        Classic { diffuse, specular, exponent: 50.0, mirror, transparency }
+    }
+}
+
+impl Classic {
+    /// Largest exponent of the highlight; beyond it the lobe is narrower than any lamp.
+    pub const MOST_EXPONENT: f64 = 1e6;
+}
+
+impl From<Classic> for Material {
+    fn from(classic: Classic) -> Material {
+        Body::Classic(classic).into()
+    }
+}
+
+impl From<Body> for Material {
+    fn from(body: Body) -> Material {
+        Material { body, emission: Color::BLACK }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Material {
+        Classic::default().into()
+    }
+}
+
+/// What a material looks like in three bands: fractions of light, linear sRGB, and the exponent of a highlight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Appearance {
+    /// Diffusely reflected fraction.
+    pub diffuse: DVec3,
+    /// Fraction in the highlight.
+    pub specular: DVec3,
+    /// Phong's exponent.
+    pub exponent: f64,
+    /// Fraction reflected as by a mirror.
+    pub mirror: DVec3,
+}
+
+/// Why a material is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MaterialError {
+    /// A fraction that is not between 0 and 1.
+    #[error("{what} {least} to {most} is not within 0 to 1")]
+    Fraction {
+        /// Which.
+        what: &'static str,
+        /// Its least value.
+        least: f64,
+        /// Its greatest value.
+        most: f64,
+    },
+    /// A quantity that is negative or not finite.
+    #[error("{what} {least} to {most} is negative or not finite")]
+    Negative {
+        /// Which.
+        what: &'static str,
+        /// Its least value.
+        least: f64,
+        /// Its greatest value.
+        most: f64,
+    },
+    /// An exponent of Phong's model that is none.
+    #[error("exponent {0} is not within 1 to {most}", most = Classic::MOST_EXPONENT)]
+    Exponent(f64),
+    /// No such distribution.
+    #[error("no distribution is called \"{name}\"; there are {known}")]
+    Unknown {
+        /// What was looked for.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// A distribution cannot be made.
+    #[error(transparent)]
+    Distribution(#[from] DistributionError),
+    /// An impossible index of refraction.
+    #[error(transparent)]
+    Index(#[from] IndexError),
+}
+
+impl Material {
+    /// Whether its color cannot be told in three bands: metals, glass that disperses, spectra from tables.
+    pub fn is_spectral(&self) -> bool {
+        self.emission.is_spectral()
+            || match &self.body {
+                Body::Classic(Classic { diffuse, specular, mirror, transparency, .. }) => {
+                    [diffuse, specular, mirror, transparency].into_iter().any(Color::is_spectral)
+                }
+                Body::Shaped(shaped) => shaped.reflectance.is_spectral(),
+                Body::Metal(_) => true,
+                Body::Transparent(Transparent { index, absorption, .. }) => {
+                    matches!(index, Index::Dispersive(_)) || absorption.is_spectral()
+                }
+                Body::Coated(coated) => coated.diffuse.is_spectral(),
+            }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// The first [`MaterialError`].
+    pub fn check(&self) -> Result<(), MaterialError> {
+        power("emission", &self.emission)?;
+        match &self.body {
+            Body::Classic(classic) => {
+                fraction("diffuse reflectance", &classic.diffuse)?;
+                fraction("specular reflectance", &classic.specular)?;
+                fraction("mirror reflectance", &classic.mirror)?;
+                fraction("transparency", &classic.transparency)?;
+                let possible = (1.0..=Classic::MOST_EXPONENT).contains(&classic.exponent);
+                if possible { Ok(()) } else { Err(MaterialError::Exponent(classic.exponent)) }
+            }
+            Body::Shaped(shaped) => {
+                fraction("reflectance", &shaped.reflectance)?;
+                match &shaped.form {
+                    Form::Member { name, roughness } => member(name, *roughness),
+                    Form::Table(_) => Ok(()),
+                }
+            }
+            Body::Metal(metal) => {
+                for (wavelength, n) in metal.n.samples() {
+                    Conductor::new(1.0, n, metal.k.at(wavelength))?;
+                }
+                match &metal.finish {
+                    Finish::Polished => Ok(()),
+                    Finish::Rough { name, roughness } => member(name, *roughness),
+                    Finish::Brushed { roughness, .. } => roughness
+                        .to_array()
+                        .into_iter()
+                        .try_for_each(|m| Ok(super::distribution::checked_roughness(m).map(|_| ())?)),
+                }
+            }
+            Body::Transparent(Transparent { index, roughness, absorption }) => {
+                power("absorption", absorption)?;
+                Dielectric::new(1.0, index.at(550.0))?;
+                polished_or_rough(*roughness)
+            }
+            Body::Coated(Coated { diffuse, index, roughness }) => {
+                fraction("diffuse reflectance", diffuse)?;
+                Dielectric::new(1.0, *index)?;
+                polished_or_rough(*roughness)
+            }
+        }
+    }
+
+    /// What it looks like in three bands, for displays that know no more of a material.
+    pub fn appearance(&self) -> Appearance {
+        let shine = |roughness: f64| (2.0 / roughness.max(1e-3).powi(2) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
+        let black = Appearance { diffuse: DVec3::ZERO, specular: DVec3::ZERO, exponent: 1.0, mirror: DVec3::ZERO };
+        let bands = |color: &Color| color.bands_of_reflectance().clamp(DVec3::ZERO, DVec3::ONE);
+        match &self.body {
+            Body::Classic(Classic { diffuse, specular, exponent, mirror, .. }) => {
+                let [diffuse, specular, mirror] = [diffuse, specular, mirror].map(bands);
+                Appearance { diffuse, specular, exponent: *exponent, mirror }
+            }
+            Body::Shaped(shaped) => Appearance { diffuse: bands(&shaped.reflectance), ..black },
+            Body::Metal(metal) => {
+                let normal = |w: f64| {
+                    Conductor::new(1.0, metal.n.at(w), metal.k.at(w)).map_or(0.0, |c| c.reflectance(1.0).mean())
+                };
+                let color = DVec3::from_array([611.0, 549.0, 464.0].map(normal));
+                match &metal.finish {
+                    Finish::Polished => Appearance { mirror: color, ..black },
+                    Finish::Rough { roughness, .. } => {
+                        Appearance { specular: color, exponent: shine(*roughness), ..black }
+                    }
+                    Finish::Brushed { roughness, .. } => {
+                        Appearance { specular: color, exponent: shine((roughness.x * roughness.y).sqrt()), ..black }
+                    }
+                }
+            }
+            Body::Transparent(Transparent { index, .. }) => {
+                Appearance { mirror: DVec3::splat(normal_reflectance(index.at(550.0))), ..black }
+            }
+            Body::Coated(Coated { diffuse, index, roughness }) => {
+                let reflected = DVec3::splat(normal_reflectance(*index));
+                let [specular, mirror] =
+                    if *roughness > 0.0 { [reflected, DVec3::ZERO] } else { [DVec3::ZERO, reflected] };
+                Appearance { diffuse: bands(diffuse), specular, exponent: shine(*roughness), mirror }
+            }
+        }
+    }
+
+    /// What it is, in a word.
+    pub fn word(&self) -> &'static str {
+        match self.body {
+            Body::Classic(_) => "classic",
+            Body::Shaped(_) => "shaped",
+            Body::Metal(_) => "metal",
+            Body::Transparent(_) => "transparent",
+            Body::Coated(_) => "coated",
+        }
+    }
+}
+
+fn normal_reflectance(index: f64) -> f64 {
+    Dielectric::new(1.0, index).map_or(0.0, |surface| surface.reflectance(1.0).mean())
+}
+
+fn fraction(what: &'static str, color: &Color) -> Result<(), MaterialError> {
+    let [least, most] = color.range();
+    // A spectrum that was measured may err a little.
+    let possible = least >= 0.0 && most <= if color.is_spectral() { 1.001 } else { 1.0 };
+    if possible { Ok(()) } else { Err(MaterialError::Fraction { what, least, most }) }
+}
+
+fn power(what: &'static str, color: &Color) -> Result<(), MaterialError> {
+    let [least, most] = color.range();
+    if least >= 0.0 && most.is_finite() { Ok(()) } else { Err(MaterialError::Negative { what, least, most }) }
+}
+
+fn polished_or_rough(roughness: f64) -> Result<(), MaterialError> {
+    if roughness == 0.0 { Ok(()) } else { Ok(super::distribution::checked_roughness(roughness).map(|_| ())?) }
+}
+
+/// Whether the family has a member of a name, for a roughness.
+fn member(name: &str, roughness: f64) -> Result<(), MaterialError> {
+    if !FAMILY.iter().any(|row| row.name == name) {
+        let names: Vec<&str> = FAMILY.iter().map(|row| row.name).collect();
+        return Err(MaterialError::Unknown { name: name.into(), known: names.join(", ") });
+    }
+    Ok(super::distribution::checked_roughness(roughness).map(|_| ())?)
+}

@@ -1,0 +1,135 @@
+//! A transparent coat on a diffuse ground: plastic, varnish, glaze.
+
+use super::Sighting;
+use crate::color::{Channels, Curve};
+use crate::illumination::distribution::{Distribution, Microfacet};
+use crate::illumination::fresnel::Dielectric;
+use crate::numeric::cubature::{GAUSS, unit_square};
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
+
+/// Steps of the table of what a rough coat lets through.
+const STEPS: usize = 64;
+/// Error of the cubature of an entry, and the most evaluations for it.
+const TOLERANCE: f64 = 1e-5;
+const MOST_EVALUATIONS: u32 = 20_000;
+
+/// What a coat reflects.
+#[derive(Clone, Debug)]
+pub(super) struct Coat {
+    surface: Dielectric,
+    /// None where it is polished.
+    facets: Option<Microfacet>,
+    /// What facets do not reflect, at even steps of the root of the cosine; empty where it is polished.
+    through: Vec<f64>,
+}
+
+impl Coat {
+    pub(super) fn new(surface: Dielectric, facets: Option<Microfacet>) -> Coat {
+        let mut coat = Coat { surface, facets, through: Vec::new() };
+        if let Some(facets) = &coat.facets {
+            let entry = |step: usize| {
+                let cosine = (step as f64 / STEPS as f64).powi(2).max(1e-6);
+                let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+                // One half of the directions is the mirror image of the other.
+                let reflected = |[x, y]: [f64; 2]| {
+                    let light = facets.sample(view, [x, 0.5 * y]);
+                    let half = light.and_then(|light| (light + view).try_normalize());
+                    light
+                        .zip(half)
+                        .map_or(0.0, |(light, half)| facets.weight(view, light) * coat.reflected(half.dot(view)))
+                };
+                1.0 - unit_square(reflected, TOLERANCE, MOST_EVALUATIONS).value.clamp(0.0, 1.0)
+            };
+            coat.through = (0..=STEPS).map(entry).collect();
+        }
+        coat
+    }
+
+    pub(super) fn is_polished(&self) -> bool {
+        self.facets.is_none()
+    }
+
+    /// Fresnel's term.
+    pub(super) fn reflected(&self, cosine: f64) -> f64 {
+        self.surface.reflectance(cosine).mean()
+    }
+
+    /// What is let through to the ground.
+    fn through(&self, cosine: f64) -> f64 {
+        if self.through.is_empty() {
+            return self.surface.transmittance(cosine).mean();
+        }
+        let place = cosine.clamp(0.0, 1.0).sqrt() * STEPS as f64;
+        let step = (place as usize).min(STEPS - 1);
+        let part = place - step as f64;
+        self.through[step] * (1.0 - part) + self.through[step + 1] * part
+    }
+
+    /// D K / (N·V), 1/sr.
+    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        let view = sighting.view;
+        let Some((facets, half)) = self.facets.as_ref().zip((light + view).try_normalize()) else {
+            return Channels::ZERO;
+        };
+        Channels::splat(self.reflected(half.dot(view)) * facets.density(light, view) / view.z)
+    }
+
+    pub(super) fn density(&self, view: DVec3, light: DVec3) -> f64 {
+        self.facets.as_ref().map_or(0.0, |facets| facets.sample_density(view, light))
+    }
+
+    pub(super) fn sample(&self, view: DVec3, point: [f64; 2]) -> Option<DVec3> {
+        self.facets.as_ref()?.sample(view, point)
+    }
+
+    /// 2 ∫ T μ dμ, with points that gather where T falls to 0 at the horizon.
+    fn mean_through(&self) -> f64 {
+        let term = |part: usize| {
+            GAUSS.iter().map(move |(at, weight)| {
+                let root = (part as f64 + at) / STEPS as f64;
+                let cosine = root * root;
+                4.0 * root * cosine * self.through(cosine) * weight / STEPS as f64
+            })
+        };
+        (0..STEPS).flat_map(term).sum()
+    }
+}
+
+/// What a diffuse ground under a coat reflects: light passes the coat twice, and what the coat reflects back down meets
+/// the ground again, any number of times.
+///
+/// D = T(N·L) T(N·V) (N·V) K (1 − R) / (π T̄ (1 − K R)), with T what the coat lets through, T̄ its mean, and R the part of
+/// diffuse light from below that it reflects back, 1 − T̄/η². All that enters leaves again if K = 1.
+///
+/// # Source
+/// The geometric series of a coat over a Lambertian ground.
+#[derive(Clone, Debug)]
+pub(super) struct Ground {
+    coat: Arc<Coat>,
+    /// K (1 − R) / (π T̄ (1 − K R))
+    fraction: Curve,
+}
+
+impl Ground {
+    /// - `index`: of the coat over that of what is above. `reflectance`: of the ground, of a comb.
+    pub(super) fn new(coat: Arc<Coat>, index: f64, reflectance: impl Fn(usize) -> Channels, combs: usize) -> Ground {
+        let mean = coat.mean_through();
+        let square = index * index;
+        // Where the coat is the thinner medium, nothing is reflected back but what Fresnel's term says.
+        let back = (1.0 - mean / square).max(0.0);
+        let factor = |k: f64| k * FRAC_1_PI * (1.0 - back) / (mean * (1.0 - k * back));
+        Ground { coat, fraction: Curve::each(combs, |comb| reflectance(comb).map(factor)) }
+    }
+
+    /// D K / (N·V), 1/sr.
+    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        self.fraction.of(sighting.comb) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
+    }
+
+    /// About what it reflects.
+    pub(super) fn strength(&self, sighting: &Sighting) -> f64 {
+        self.fraction.of(sighting.comb).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)
+    }
+}

@@ -1,0 +1,174 @@
+//! Interfaces between transparent media: what is reflected, and what goes through.
+//!
+//! Indices may differ from lane to lane. A direction that one lane is refracted to is then not that of the others: where
+//! it is drawn, it is drawn for the lane of the [`Sighting`], and a renderer keeps that lane alone.
+
+use super::{Onward, Sighting};
+use crate::color::{Channels, LANES};
+use crate::illumination::distribution::Facets;
+use crate::illumination::fresnel::Dielectric;
+use glam::{DVec2, DVec3};
+
+/// A smooth interface.
+#[derive(Clone, Debug)]
+pub(super) struct Smooth;
+
+/// A rough interface, of facets that each reflect and refract.
+#[derive(Clone, Debug)]
+pub(super) struct Rough {
+    pub(super) facets: Facets,
+    pub(super) roughness: DVec2,
+}
+
+/// The interface for one lane.
+fn interface(sighting: &Sighting, lane: usize) -> Option<Dielectric> {
+    Dielectric::new(sighting.side.before.0[lane], sighting.side.behind.0[lane]).ok()
+}
+
+/// What the lanes reflect at a facet.
+fn reflected(sighting: &Sighting, cosine: f64) -> Channels {
+    Channels(std::array::from_fn(|lane| interface(sighting, lane).map_or(0.0, |s| s.reflectance(cosine).mean())))
+}
+
+/// By how much radiance falls as it leaves what is behind: it grows by the square of the index on its way in.
+fn thinned(sighting: &Sighting) -> Channels {
+    let side = &sighting.side;
+    Channels(std::array::from_fn(|lane| (side.before.0[lane] / side.behind.0[lane]).powi(2)))
+}
+
+impl Smooth {
+    /// What is reflected and what comes through.
+    pub(super) fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+        let view = sighting.view;
+        let onward = |light: DVec3, weight: Channels| Onward { light, weight, density: None, is_straight: false };
+        let fraction = reflected(sighting, view.z);
+        let reflection = onward(DVec3::new(-view.x, -view.y, view.z), fraction);
+        let through = Channels(std::array::from_fn(|lane| {
+            interface(sighting, lane).map_or(0.0, |surface| surface.transmittance(view.z).mean())
+        }));
+        let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
+        let refraction =
+            refracted.filter(|light| light.z < 0.0).map(|light| onward(light, through * thinned(sighting)));
+        [Some(reflection).filter(|onward| onward.weight.max() > 0.0), refraction.filter(|o| o.weight.max() > 0.0)]
+    }
+
+    /// One of the two, by its part.
+    pub(super) fn sample(&self, sighting: &Sighting, choice: f64) -> Option<Onward> {
+        let [reflection, refraction] = self.mirrored(sighting);
+        let (Some(reflection), Some(refraction)) = (reflection, refraction) else { return reflection.or(refraction) };
+        // Neither is left to chances too small for what it may bring.
+        let chance = reflection.weight.max().clamp(0.05, 0.95);
+        Some(if choice < chance {
+            Onward { weight: reflection.weight * chance.recip(), ..reflection }
+        } else {
+            Onward { weight: refraction.weight * (1.0 - chance).recip(), ..refraction }
+        })
+    }
+}
+
+impl Rough {
+    /// The chance that a facet is taken to reflect.
+    fn chance(&self, sighting: &Sighting, cosine: f64) -> f64 {
+        let fraction = interface(sighting, sighting.lane).map_or(1.0, |surface| surface.reflectance(cosine).mean());
+        if fraction >= 1.0 { 1.0 } else { fraction.clamp(0.05, 0.95) }
+    }
+
+    /// Draws a facet as the viewer sees it, and reflects or refracts there.
+    pub(super) fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<DVec3> {
+        let view = sighting.view;
+        let facet = self.facets.visible(view, self.roughness, point)?;
+        let cosine = facet.dot(view);
+        if cosine <= 0.0 {
+            return None;
+        }
+        if choice < self.chance(sighting, cosine) {
+            (facet * (2.0 * cosine) - view).try_normalize().filter(|light| light.z > 0.0)
+        } else {
+            interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
+        }
+    }
+
+    /// The facet that would send light to the viewer, through or not, on the side of the viewer.
+    fn facet(&self, sighting: &Sighting, light: DVec3, lane: usize) -> Option<DVec3> {
+        let view = sighting.view;
+        let facet = if light.z > 0.0 {
+            light + view
+        } else {
+            // Along −(n_before V + n_behind L); towards the viewer, whichever index is greater.
+            let (before, behind) = (sighting.side.before.0[lane], sighting.side.behind.0[lane]);
+            let facet = -(view * before + light * behind);
+            if facet.z < 0.0 { -facet } else { facet }
+        };
+        let facet = facet.try_normalize()?;
+        let sees = facet.dot(view) > 0.0 && (light.z > 0.0 || facet.dot(light) < 0.0);
+        (sees && facet.z > 0.0).then_some(facet)
+    }
+
+    /// How much of the directions around a facet goes to one solid angle of light.
+    fn jacobian(&self, sighting: &Sighting, light: DVec3, facet: DVec3, lane: usize) -> f64 {
+        let (to_view, to_light) = (facet.dot(sighting.view), facet.dot(light));
+        if light.z > 0.0 {
+            return 0.25 / to_light;
+        }
+        let ratio = sighting.side.before.0[lane] / sighting.side.behind.0[lane];
+        let sum = to_light + ratio * to_view;
+        to_light.abs() / (sum * sum)
+    }
+
+    /// The density of samples, 1/sr.
+    pub(super) fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+        let view = sighting.view;
+        if view.z <= 0.0 || light.z == 0.0 {
+            return 0.0;
+        }
+        let Some(facet) = self.facet(sighting, light, sighting.lane) else { return 0.0 };
+        let cosine = facet.dot(view);
+        let chance = self.chance(sighting, cosine);
+        let chance = if light.z > 0.0 { chance } else { 1.0 - chance };
+        let seen = cosine * self.facets.area(facet, self.roughness) / self.facets.projected(view, self.roughness);
+        let density = chance * seen * self.jacobian(sighting, light, facet, sighting.lane);
+        if density.is_finite() { density } else { 0.0 }
+    }
+
+    /// Radiance towards the viewer for a unit of flux density, 1/sr.
+    ///
+    /// # Source
+    /// Walter et al. 2007, equations 20 and 21; heights of light and viewer correlated.
+    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        let view = sighting.view;
+        if view.z <= 0.0 || light.z == 0.0 {
+            return Channels::ZERO;
+        }
+        let above = DVec3::new(light.x, light.y, light.z.abs());
+        let [l, v] = [above, view].map(|towards| self.facets.projected(towards, self.roughness));
+        // Area that shows to both over both cosines: G / (|N·L| (N·V)).
+        let masking = if light.z > 0.0 {
+            (view.z * l + above.z * (v - view.z)).recip()
+        } else {
+            // Above and below, one hides what the other does not: G is a beta function of the two Λ.
+            let (lambda_v, lambda_l) = (v / view.z - 1.0, l / above.z - 1.0);
+            beta(1.0 + lambda_v, 1.0 + lambda_l) / (view.z * above.z)
+        };
+        let of_lane = |lane: usize| {
+            let Some((facet, surface)) = self.facet(sighting, light, lane).zip(interface(sighting, lane)) else {
+                return 0.0;
+            };
+            let cosine = facet.dot(view);
+            let area = self.facets.area(facet, self.roughness);
+            let jacobian = self.jacobian(sighting, light, facet, lane);
+            let value = if light.z > 0.0 {
+                surface.reflectance(cosine).mean() * area * cosine * jacobian * masking
+            } else {
+                let ratio = sighting.side.before.0[lane] / sighting.side.behind.0[lane];
+                surface.transmittance(cosine).mean() * area * cosine * jacobian * masking * ratio * ratio
+            };
+            if value.is_finite() { value } else { 0.0 }
+        };
+        Channels(std::array::from_fn::<f64, LANES, _>(of_lane))
+    }
+}
+
+/// Euler's beta function.
+fn beta(a: f64, b: f64) -> f64 {
+    (libm::lgamma(a) + libm::lgamma(b) - libm::lgamma(a + b)).exp()
+}

@@ -1,0 +1,168 @@
+//! One lobe of what a surface scatters.
+
+use super::coat::{Coat, Ground};
+use super::facets::{Metallic, Shape};
+use super::interface::{Rough, Smooth};
+use super::{Onward, Sighting};
+use crate::color::{Channels, Curve};
+use crate::illumination::distribution::{Distribution, Phong};
+use crate::illumination::fresnel::Conductor;
+use crate::numeric::sampling::cosine_hemisphere;
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
+
+/// The refractive indices on both sides of an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// On the side of the viewer, for each lane.
+    pub before: Channels,
+    /// Behind.
+    pub behind: Channels,
+}
+
+/// A part of what a surface scatters.
+#[derive(Clone, Debug)]
+pub(super) enum Lobe {
+    /// Equal luminance everywhere.
+    Diffuse(Curve),
+    /// Phong's highlight.
+    Phong(Curve, Phong),
+    /// A mirror.
+    Mirror(Curve),
+    /// What goes straight through.
+    Straight(Curve),
+    /// A fraction, distributed by a D.
+    Shaped(Curve, Arc<dyn Distribution>),
+    /// A polished metal.
+    Polished(Arc<Vec<[Conductor; crate::color::LANES]>>),
+    /// A metal of facets.
+    Metallic(Metallic),
+    /// What a transparent coat reflects.
+    Coat(Arc<Coat>),
+    /// What a diffuse ground under a coat reflects.
+    Ground(Ground),
+    /// A smooth interface between transparent media.
+    Smooth(Smooth),
+    /// A rough one.
+    Rough(Rough),
+}
+
+impl Lobe {
+    /// Whether it knows single directions only.
+    pub(super) fn is_mirror(&self) -> bool {
+        match self {
+            Lobe::Mirror(_) | Lobe::Straight(_) | Lobe::Polished(_) | Lobe::Smooth(_) => true,
+            Lobe::Coat(coat) => coat.is_polished(),
+            _ => false,
+        }
+    }
+
+    /// Radiance towards the viewer for a unit of flux density, 1/sr; 0 for what only knows single directions.
+    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        let view = sighting.view;
+        if let Lobe::Rough(rough) = self {
+            return rough.value(sighting, light);
+        }
+        if light.z <= 0.0 || view.z <= 0.0 {
+            return Channels::ZERO;
+        }
+        match self {
+            Lobe::Diffuse(fraction) => fraction.of(sighting.comb) * FRAC_1_PI,
+            Lobe::Phong(fraction, phong) => fraction.of(sighting.comb) * (phong.density(light, view) / view.z),
+            Lobe::Shaped(fraction, form) => fraction.of(sighting.comb) * (form.density(light, view) / view.z),
+            Lobe::Metallic(metal) => metal.value(sighting, light),
+            Lobe::Coat(coat) => coat.value(sighting, light),
+            Lobe::Ground(ground) => ground.value(sighting, light),
+            _ => Channels::ZERO,
+        }
+    }
+
+    /// The density of its samples, 1/sr.
+    pub(super) fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+        let view = sighting.view;
+        if let Lobe::Rough(rough) = self {
+            return rough.density(sighting, light);
+        }
+        if light.z <= 0.0 || view.z <= 0.0 {
+            return 0.0;
+        }
+        match self {
+            Lobe::Diffuse(_) | Lobe::Ground(_) => light.z * FRAC_1_PI,
+            Lobe::Phong(_, phong) => phong.sample_density(view, light),
+            Lobe::Shaped(_, form) => form.sample_density(view, light),
+            Lobe::Metallic(metal) => metal.shape.sample_density(view, light),
+            Lobe::Coat(coat) => coat.density(view, light),
+            _ => 0.0,
+        }
+    }
+
+    /// Draws a direction to light; its weight is right for single directions only, the others have a density.
+    pub(super) fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward> {
+        let view = sighting.view;
+        let spread = |light: DVec3| Onward { light, weight: Channels::ZERO, density: Some(0.0), is_straight: false };
+        match self {
+            Lobe::Diffuse(_) | Lobe::Ground(_) => {
+                Some(cosine_hemisphere(point, DVec3::Z)).filter(|light| light.z > 0.0).map(spread)
+            }
+            Lobe::Phong(_, phong) => phong.sample(view, point).map(spread),
+            Lobe::Shaped(_, form) => form.sample(view, point).map(spread),
+            Lobe::Metallic(metal) => metal.shape.sample(view, point).map(spread),
+            Lobe::Coat(coat) if !coat.is_polished() => coat.sample(view, point).map(spread),
+            Lobe::Rough(rough) => rough.sample(sighting, choice, point).map(spread),
+            Lobe::Smooth(smooth) => smooth.sample(sighting, choice),
+            _ => self.mirrored(sighting).into_iter().flatten().next(),
+        }
+    }
+
+    /// Its single directions.
+    pub(super) fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+        let Sighting { view, comb, .. } = *sighting;
+        let reflected = DVec3::new(-view.x, -view.y, view.z);
+        let onward = |light: DVec3, weight: Channels| Onward { light, weight, density: None, is_straight: false };
+        match self {
+            Lobe::Mirror(fraction) => [Some(onward(reflected, fraction.of(comb))), None],
+            Lobe::Polished(metal) => {
+                [Some(onward(reflected, reflectance(&metal[comb.min(metal.len() - 1)], view.z))), None]
+            }
+            Lobe::Straight(fraction) => [Some(Onward { is_straight: true, ..onward(-view, fraction.of(comb)) }), None],
+            Lobe::Coat(coat) if coat.is_polished() => {
+                [Some(onward(reflected, Channels::splat(coat.reflected(view.z)))), None]
+            }
+            Lobe::Smooth(smooth) => smooth.mirrored(sighting),
+            _ => [None, None],
+        }
+    }
+
+    /// About what it reflects to the viewer of all the light; more than 0 where it reflects anything.
+    pub(super) fn strength(&self, sighting: &Sighting) -> f64 {
+        let Sighting { view, comb, .. } = *sighting;
+        match self {
+            Lobe::Diffuse(fraction)
+            | Lobe::Phong(fraction, _)
+            | Lobe::Mirror(fraction)
+            | Lobe::Straight(fraction)
+            | Lobe::Shaped(fraction, _) => fraction.of(comb).max(),
+            Lobe::Polished(_) | Lobe::Metallic(_) | Lobe::Smooth(_) | Lobe::Rough(_) => 1.0,
+            // Where Fresnel's term vanishes, so does what is reflected; a rough coat may still show tilted facets.
+            Lobe::Coat(coat) => coat.reflected(view.z).max(if coat.is_polished() { 0.0 } else { 0.02 }),
+            Lobe::Ground(ground) => ground.strength(sighting),
+        }
+    }
+}
+
+impl Shape {
+    /// The density of samples, where the viewer is given and the light is drawn.
+    pub(super) fn sample_density(&self, view: DVec3, light: DVec3) -> f64 {
+        self.as_distribution().sample_density(view, light)
+    }
+
+    pub(super) fn sample(&self, view: DVec3, point: [f64; 2]) -> Option<DVec3> {
+        self.as_distribution().sample(view, point)
+    }
+}
+
+/// Fresnel's term of a metal, lane by lane.
+pub(super) fn reflectance(metal: &[Conductor; crate::color::LANES], cosine: f64) -> Channels {
+    Channels(metal.map(|conductor| conductor.reflectance(cosine).mean()))
+}

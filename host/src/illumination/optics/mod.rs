@@ -1,0 +1,179 @@
+//! Materials made ready for rendering: what they scatter, tabulated at the wavelengths that rays carry.
+//!
+//! Directions are unit vectors in the frame of the surface element: z is its normal on the side of the viewer. Light may
+//! come from above, or from below where a surface lets it through.
+//!
+//! An [`Optics`] is a sum of lobes. Some end a ray's way: they answer lights and ambient light only, as Lambert's and
+//! Phong's terms do where diffuse interreflection is left out. The others carry it on.
+
+mod coat;
+mod facets;
+mod interface;
+mod library;
+mod lobe;
+#[cfg(test)]
+mod tests;
+
+pub use library::Library;
+pub use lobe::Side;
+
+use crate::color::{Channels, Curve};
+use glam::DVec3;
+use lobe::Lobe;
+
+/// Which of the lobes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Those that carry a ray on.
+    Continued,
+    /// Those that answer lights only.
+    Ended,
+}
+
+/// A material made ready for rendering.
+#[derive(Clone, Debug)]
+pub struct Optics {
+    lobes: Vec<(Which, Lobe)>,
+    /// What the ambient term reflects.
+    ambient: Curve,
+    /// Radiance that it emits; none if it does not.
+    pub emission: Option<Curve>,
+    /// What is inside, where it is transparent.
+    pub interior: Option<Interior>,
+    /// The direction along which it is brushed.
+    pub along: Option<DVec3>,
+    /// The part of light that goes straight through; none if none does.
+    pub passing: Option<Curve>,
+}
+
+/// What is behind the surface of a transparent body.
+#[derive(Clone, Debug)]
+pub struct Interior {
+    /// Its refractive index.
+    pub index: Curve,
+    /// What it absorbs in a unit of length.
+    pub absorption: Curve,
+    /// Whether the index differs with the wavelength.
+    pub disperses: bool,
+}
+
+/// How an element is seen, and what is on its two sides.
+#[derive(Clone, Copy, Debug)]
+pub struct Sighting {
+    /// Towards the viewer.
+    pub view: DVec3,
+    /// Which wavelengths are carried.
+    pub comb: usize,
+    /// The refractive index on the side of the viewer and behind.
+    pub side: Side,
+    /// For which lane refracted directions are drawn.
+    pub lane: usize,
+}
+
+/// Where a ray goes on, backwards to where its light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Onward {
+    /// Towards the light.
+    pub light: DVec3,
+    /// What of the radiance from there comes to the viewer, over the density with which the direction was drawn.
+    pub weight: Channels,
+    /// That density, 1/sr; none for the one direction of a mirror or a smooth interface.
+    pub density: Option<f64>,
+    /// Whether it goes straight on, as if nothing was there.
+    pub is_straight: bool,
+}
+
+impl Optics {
+    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr: D K / (N·V).
+    ///
+    /// Of directions that only a mirror or a smooth interface would reach nothing is known here.
+    pub fn value(&self, which: Which, sighting: &Sighting, light: DVec3) -> Channels {
+        self.of(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
+    }
+
+    /// The density with which [`Optics::onward`] draws a direction, 1/sr.
+    ///
+    /// - `only_spread`: as there.
+    pub fn density(&self, sighting: &Sighting, light: DVec3, only_spread: bool) -> f64 {
+        let shares = self.shares(sighting, only_spread);
+        let lobes = self.of(Which::Continued).zip(&shares);
+        lobes.map(|(lobe, share)| share * lobe.density(sighting, light)).sum()
+    }
+
+    /// The directions of mirrors and smooth interfaces, all of them.
+    pub fn mirrored(&self, sighting: &Sighting) -> Vec<Onward> {
+        self.of(Which::Continued).flat_map(|lobe| lobe.mirrored(sighting)).flatten().collect()
+    }
+
+    /// One direction, drawn about as what comes from there counts; none where what is drawn counts nothing.
+    ///
+    /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.
+    /// - `only_spread`: leaves out what [`Optics::mirrored`] gives.
+    pub fn onward(&self, sighting: &Sighting, choice: f64, point: [f64; 2], only_spread: bool) -> Option<Onward> {
+        let shares = self.shares(sighting, only_spread);
+        let (index, choice) = chosen(&shares, choice)?;
+        let lobe = self.of(Which::Continued).nth(index)?;
+        let drawn = lobe.sample(sighting, choice, point)?;
+        if drawn.density.is_none() {
+            return Some(Onward { weight: drawn.weight * shares[index].recip(), ..drawn });
+        }
+        // What all lobes give there, over the density with which all of them draw it.
+        let light = drawn.light;
+        let (mut value, mut density) = (Channels::ZERO, 0.0);
+        for (lobe, share) in self.of(Which::Continued).zip(&shares).filter(|(_, share)| **share > 0.0) {
+            value += lobe.value(sighting, light);
+            density += share * lobe.density(sighting, light);
+        }
+        let weight = value * (light.z.abs() / density);
+        (density > 0.0 && weight.is_finite()).then_some(Onward { weight, density: Some(density), ..drawn })
+    }
+
+    /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
+    pub fn ambient(&self, comb: usize) -> Channels {
+        self.ambient.of(comb)
+    }
+
+    /// Whether some lobe of a kind answers lights.
+    pub fn answers_lights(&self) -> bool {
+        self.lobes.iter().any(|(_, lobe)| !lobe.is_mirror())
+    }
+
+    /// Whether rays are carried on.
+    pub fn carries_on(&self) -> bool {
+        self.of(Which::Continued).next().is_some()
+    }
+
+    /// Whether some lobe that carries rays on does so in more than single directions.
+    pub fn spreads(&self) -> bool {
+        self.of(Which::Continued).any(|lobe| !lobe.is_mirror())
+    }
+
+    fn of(&self, which: Which) -> impl Iterator<Item = &Lobe> {
+        self.lobes.iter().filter(move |(kind, _)| *kind == which).map(|(_, lobe)| lobe)
+    }
+
+    /// The chances of the lobes that carry on; they add up to 1, or are all 0.
+    fn shares(&self, sighting: &Sighting, only_spread: bool) -> Vec<f64> {
+        let share = |lobe: &Lobe| if only_spread && lobe.is_mirror() { 0.0 } else { lobe.strength(sighting) };
+        let mut shares: Vec<f64> = self.of(Which::Continued).map(share).collect();
+        let all: f64 = shares.iter().sum();
+        if all > 0.0 {
+            shares.iter_mut().for_each(|share| *share /= all);
+        }
+        shares
+    }
+}
+
+/// The share in which a number falls, and where in it, 0..1.
+fn chosen(shares: &[f64], choice: f64) -> Option<(usize, f64)> {
+    let mut below = 0.0;
+    let mut last = None;
+    for (index, share) in shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+        if choice < below + share {
+            return Some((index, ((choice - below) / share).clamp(0.0, 1.0_f64.next_down())));
+        }
+        below += share;
+        last = Some((index, 1.0_f64.next_down()));
+    }
+    last
+}

@@ -1,0 +1,255 @@
+//! Facts about what surfaces scatter: white furnaces, closed forms, and samples against densities.
+
+use super::*;
+use crate::color::{Color, Wavelengths, shipped};
+use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
+use crate::numeric::cubature::unit_square;
+use crate::numeric::sampling::{Stream, sphere};
+use std::f64::consts::{PI, TAU};
+
+fn ready(material: &Material, wavelengths: &Wavelengths) -> Optics {
+    Library::new(wavelengths, false).optics(material, true).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn sighting(degrees: f64, before: f64, behind: f64) -> Sighting {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let side = Side { before: Channels::splat(before), behind: Channels::splat(behind) };
+    Sighting { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0 }
+}
+
+fn copper(finish: Finish) -> Material {
+    let shipped::Metal { n, k } = shipped::metal("copper").expect("a metal");
+    Body::Metal(Metal { n, k, finish }).into()
+}
+
+fn rough(name: &str, roughness: f64) -> Finish {
+    Finish::Rough { name: name.into(), roughness }
+}
+
+/// Light that comes to the viewer of a radiance of 1 from everywhere, by samples that are spread evenly.
+fn furnace(optics: &Optics, sighting: &Sighting) -> f64 {
+    let mirrored: f64 = optics.mirrored(sighting).iter().map(|onward| onward.weight.0[0]).sum();
+    let spread = |choice: f64| {
+        let drawn = |point| optics.onward(sighting, choice, point, true).map_or(0.0, |onward| onward.weight.0[0]);
+        unit_square(drawn, 1e-4, 20_000).value
+    };
+    // Lobes are chosen by the first number; it is averaged over evenly.
+    let steps = 64;
+    mirrored + (0..steps).map(|k| spread((f64::from(k) + 0.5) / f64::from(steps))).sum::<f64>() / f64::from(steps)
+}
+
+/// The integral of value times cosine over all directions, by cubature.
+fn integral(optics: &Optics, sighting: &Sighting) -> f64 {
+    let half = |below: f64| {
+        let term = |[x, y]: [f64; 2]| {
+            let cosine = x.sqrt();
+            let (sin, cos) = (TAU * y).sin_cos();
+            let sine = (1.0 - x).max(0.0).sqrt();
+            let light = DVec3::new(sine * cos, sine * sin, cosine * below);
+            PI * [Which::Continued, Which::Ended]
+                .map(|which| optics.value(which, sighting, light).0[0])
+                .iter()
+                .sum::<f64>()
+        };
+        unit_square(term, 1e-5, 400_000).value
+    };
+    half(1.0) + half(-1.0)
+}
+
+#[test]
+fn a_white_coated_ground_returns_what_it_gets() {
+    let wavelengths = Wavelengths::bands();
+    for (index, roughness) in [(1.5, 0.0), (1.33, 0.0), (2.4, 0.0), (1.0, 0.0), (1.5, 0.1), (1.5, 0.7)] {
+        let material = Body::Coated(Coated { diffuse: Color::grey(1.0), index, roughness }).into();
+        let optics = ready(&material, &wavelengths);
+        for degrees in [0.0, 40.0, 75.0, 88.0] {
+            let sighting = sighting(degrees, 1.0, 1.0);
+            let mirrored: f64 = optics.mirrored(&sighting).iter().map(|onward| onward.weight.0[0]).sum();
+            let all = mirrored + integral(&optics, &sighting);
+            assert!((all - 1.0).abs() < 3e-4, "{index} {roughness} at {degrees}: {all}");
+        }
+    }
+}
+
+#[test]
+fn samples_and_values_tell_the_same_of_every_material() {
+    let wavelengths = Wavelengths::bands();
+    let classic =
+        Classic { diffuse: Color::grey(0.4), specular: Color::grey(0.3), exponent: 20.0, ..Classic::default() };
+    let glass = |roughness| {
+        Material::from(Body::Transparent(Transparent {
+            index: Index::Constant(1.5),
+            roughness,
+            absorption: Color::BLACK,
+        }))
+    };
+    let shaped = Form::Member { name: "Blinn".into(), roughness: 0.4 };
+    let materials = [
+        (Material::from(classic), 1.0),
+        (copper(rough("Beckmann", 0.3)), 1.0),
+        (copper(rough("GGX, all", 0.6)), 1.0),
+        (copper(rough("improved (7)", 0.4)), 1.0),
+        (Body::Shaped(Shaped { reflectance: Color::grey(0.8), form: shaped }).into(), 1.0),
+        (Body::Coated(Coated { diffuse: Color::grey(0.6), index: 1.5, roughness: 0.2 }).into(), 1.0),
+        (glass(0.3), 1.5),
+        (glass(0.15), 1.5),
+    ];
+    for (material, behind) in materials {
+        let optics = ready(&material, &wavelengths);
+        for degrees in [5.0, 60.0] {
+            for (before, behind) in [(1.0, behind), (behind, 1.0)] {
+                let sighting = sighting(degrees, before, behind);
+                let (drawn, sum) = (furnace(&optics, &sighting), integral(&optics, &sighting));
+                let error = (drawn - sum).abs() / sum.max(0.1);
+                assert!(error < 0.02, "{} at {degrees} from {before}: {drawn} {sum}", material.word());
+            }
+        }
+    }
+}
+
+#[test]
+fn densities_are_those_with_which_directions_are_drawn() {
+    let wavelengths = Wavelengths::bands();
+    let rough_glass = Transparent { index: Index::Constant(1.5), roughness: 0.4, absorption: Color::BLACK };
+    let materials = [
+        copper(rough("GGX", 0.4)),
+        Body::Coated(Coated { diffuse: Color::grey(0.6), index: 1.5, roughness: 0.3 }).into(),
+        Body::Transparent(rough_glass).into(),
+    ];
+    for material in materials {
+        let optics = ready(&material, &wavelengths);
+        for (before, behind) in [(1.0, 1.5), (1.5, 1.0)] {
+            let sighting = sighting(35.0, before, behind);
+            // Share of samples in a cap, counted and integrated.
+            let mut stream = Stream::new(5, 1);
+            let axis = DVec3::new(-0.4, 0.3, if matches!(material.body, Body::Transparent(_)) { -0.6 } else { 0.6 });
+            let (axis, cosine) = (axis.normalize(), 0.8);
+            let count = 40_000;
+            let mut inside = 0.0;
+            for _ in 0..count {
+                let onward = optics.onward(&sighting, stream.uniform(), stream.point(), false);
+                inside += f64::from(u8::from(onward.is_some_and(|onward| onward.light.dot(axis) > cosine)));
+            }
+            let frame = crate::illumination::distribution::Frame::about(axis);
+            let term = |[x, y]: [f64; 2]| {
+                let z = 1.0 - x * (1.0 - cosine);
+                let (sin, cos) = (TAU * y).sin_cos();
+                let sine = (1.0 - z * z).sqrt();
+                optics.density(&sighting, frame.world(DVec3::new(sine * cos, sine * sin, z)), false)
+            };
+            let expected = TAU * (1.0 - cosine) * unit_square(term, 1e-5, 100_000).value;
+            let found = inside / f64::from(count);
+            let error = (expected * (1.0 - expected) / f64::from(count)).sqrt();
+            assert!((found - expected).abs() < 5.0 * error + 1e-3, "{}: {found} {expected}", material.word());
+        }
+    }
+}
+
+#[test]
+fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
+    let wavelengths = Wavelengths::bands();
+    let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::BLACK };
+    let optics = ready(&Body::Transparent(glass).into(), &wavelengths);
+    for degrees in [0.0, 30.0, 80.0, 89.9] {
+        let sighting = sighting(degrees, 1.0, 1.5);
+        let [reflected, refracted] = optics.mirrored(&sighting).try_into().expect("two directions");
+        let all = reflected.weight.0[0] + refracted.weight.0[0] * 2.25;
+        assert!((all - 1.0).abs() < 1e-12, "{degrees}: {all}");
+        assert!((refracted.light.x + degrees.to_radians().sin() / 1.5).abs() < 1e-12);
+    }
+    let total = optics.mirrored(&sighting(60.0, 1.5, 1.0));
+    assert_eq!((total.len(), total[0].weight.0[0]), (1, 1.0), "total reflection");
+}
+
+#[test]
+fn a_rough_metal_with_all_reflections_loses_only_what_it_absorbs() {
+    // A metal that reflects everything: n = 0, k > 0.
+    let flat = |value: f64| {
+        crate::color::Spectrum::regular(300.0, 600.0, vec![value; 2], crate::color::Beyond::Held).expect("a spectrum")
+    };
+    let wavelengths = Wavelengths::bands();
+    for roughness in [0.1, 0.5, 1.0] {
+        let metal = Metal { n: flat(0.0), k: flat(3.0), finish: rough("GGX, all", roughness) };
+        let optics = ready(&Body::Metal(metal).into(), &wavelengths);
+        for degrees in [0.0, 45.0, 80.0] {
+            let all = integral(&optics, &sighting(degrees, 1.0, 1.0));
+            assert!((all - 1.0).abs() < 3e-4, "{roughness} at {degrees}: {all}");
+        }
+    }
+}
+
+#[test]
+fn copper_under_white_light_has_the_color_of_its_reflectance() {
+    let wavelengths = Wavelengths::spectral();
+    let optics = ready(&copper(Finish::Polished), &wavelengths);
+    let white = wavelengths.light(&Color::grey(1.0));
+    let combs = wavelengths.combs();
+    let seen: DVec3 = (0..combs)
+        .map(|comb| {
+            let sighting = Sighting { comb, ..sighting(0.0, 1.0, 1.0) };
+            wavelengths.seen(comb, optics.mirrored(&sighting)[0].weight * white.of(comb))
+        })
+        .sum::<DVec3>()
+        / combs as f64;
+    // Chromaticity and Y from colour-science 0.4.7, from the same indices.
+    let xyz = crate::color::srgb::to_xyz(seen);
+    let xy = crate::color::observer::chromaticity(xyz).expect("not black");
+    assert!(
+        (xy - glam::DVec2::new(0.355777, 0.345619)).length() < 2e-4 && (xyz.y - 0.681141).abs() < 2e-4,
+        "{xy} {xyz}"
+    );
+}
+
+#[test]
+fn straight_light_goes_on_and_impossible_materials_are_errors() {
+    let wavelengths = Wavelengths::bands();
+    let curtain = Classic { transparency: Color::grey(0.25), ..Classic::default() };
+    let optics = ready(&curtain.into(), &wavelengths);
+    let straight = optics.mirrored(&sighting(30.0, 1.0, 1.0));
+    assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && optics.passing.is_some());
+    let mut library = Library::new(&wavelengths, false);
+    let mut refused = |material: Material| library.optics(&material, true).unwrap_err().to_string();
+    let loud = Classic { diffuse: Color::grey(1.5), ..Classic::default() };
+    assert!(refused(loud.into()).contains("diffuse reflectance"));
+    assert!(refused(copper(rough("Beckman", 0.3))).contains("there are Lambert, Phong"));
+    assert!(refused(copper(rough("Beckmann", -0.3))).contains("roughness"));
+    let hollow = Coated { diffuse: Color::grey(0.5), index: 0.0, roughness: 0.0 };
+    assert!(refused(Body::Coated(hollow).into()).contains("index"));
+}
+
+#[test]
+fn nothing_is_infinite_at_the_extremes() {
+    let wavelengths = Wavelengths::bands();
+    let glass = |index, roughness| {
+        Material::from(Body::Transparent(Transparent {
+            index: Index::Constant(index),
+            roughness,
+            absorption: Color::BLACK,
+        }))
+    };
+    let mut materials =
+        vec![glass(1.0 + 1e-9, 0.0), glass(1e3, 0.0), glass(1.0 + 1e-9, 0.1), glass(1e3, 1e-6), glass(1.5, 10.0)];
+    for roughness in [1e-6, 1e-3, 1.0, 10.0] {
+        materials.extend(
+            ["Beckmann", "GGX, all", "Cook-Torrance", "improved (7)"].map(|name| copper(rough(name, roughness))),
+        );
+    }
+    let mut stream = Stream::new(3, 3);
+    for material in materials {
+        let optics = ready(&material, &wavelengths);
+        let index = optics.interior.as_ref().map_or(1.0, |interior| interior.index.of(0).0[0]);
+        for (before, behind) in [(1.0, index), (index, 1.0)] {
+            for degrees in [0.0, 60.0, 89.9999] {
+                let sighting = sighting(degrees, before, behind);
+                for _ in 0..200 {
+                    let light = sphere(stream.point());
+                    let value = optics.value(Which::Continued, &sighting, light);
+                    assert!(value.is_finite() && value.0.iter().all(|v| *v >= 0.0));
+                    assert!(optics.density(&sighting, light, false) >= 0.0);
+                    let onward = optics.onward(&sighting, stream.uniform(), stream.point(), false);
+                    assert!(onward.is_none_or(|o| o.weight.is_finite() && (o.light.length() - 1.0).abs() < 1e-6));
+                }
+            }
+        }
+    }
+}

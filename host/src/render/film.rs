@@ -1,0 +1,185 @@
+//! What the samples of all pixels add up to.
+
+use crate::picture::{Picture, PictureError, Pixel};
+use glam::DVec3;
+
+/// Weights of red, green and blue in luminance (ITU-R BT.709).
+pub const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+
+/// Below this luminance errors count as if it was this, so that black pixels do not take all the samples.
+const LEAST_LUMINANCE: f64 = 0.05;
+
+/// Samples of a picture, added up pixel by pixel. More can be added at any time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    tallies: Vec<Tally>,
+}
+
+/// What is known of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Sum of radiance, linear sRGB.
+    pub sum: DVec3,
+    /// Sum of squared luminance.
+    pub squares: f64,
+    /// Samples.
+    pub count: u32,
+    /// Those that met an object.
+    pub covered: u32,
+    /// Sum of the distances of the elements that were seen first, scene units.
+    pub distances: f64,
+    /// Sum of their normals.
+    pub normals: DVec3,
+    /// How many samples saw an element first.
+    pub elements: u32,
+    /// Object and its material that the first of them saw.
+    pub seen: [u32; 2],
+}
+
+/// One sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Radiance, linear sRGB.
+    pub radiance: DVec3,
+    /// Whether it met anything.
+    pub covered: bool,
+    /// The first element that it saw: distance, normal, object and material.
+    pub first: Option<(f64, DVec3, [u32; 2])>,
+}
+
+impl Tally {
+    /// Adds a sample; one that is not a number is taken for black.
+    pub fn add(&mut self, sample: &Sample) {
+        let radiance = if sample.radiance.is_finite() { sample.radiance } else { DVec3::ZERO };
+        self.sum += radiance;
+        self.squares += radiance.dot(LUMINANCE).powi(2);
+        self.count += 1;
+        self.covered += u32::from(sample.covered);
+        if let Some((distance, normal, seen)) = sample.first {
+            if self.elements == 0 {
+                self.seen = seen;
+            }
+            self.distances += distance;
+            self.normals += normal;
+            self.elements += 1;
+        }
+    }
+
+    /// Mean radiance; black without samples.
+    pub fn mean(&self) -> DVec3 {
+        self.sum / f64::from(self.count.max(1))
+    }
+
+    /// Variance of the mean luminance, as if samples were independent: evenly spread ones are better.
+    pub fn variance(&self) -> f64 {
+        if self.count < 2 {
+            return f64::INFINITY;
+        }
+        let count = f64::from(self.count);
+        let mean = self.sum.dot(LUMINANCE) / count;
+        ((self.squares / count - mean * mean).max(0.0)) / (count - 1.0)
+    }
+
+    /// Standard error of the mean luminance over the luminance.
+    pub fn relative_error(&self) -> f64 {
+        self.variance().sqrt() / self.mean().dot(LUMINANCE).abs().max(LEAST_LUMINANCE)
+    }
+}
+
+impl Film {
+    /// A film without samples.
+    ///
+    /// # Errors
+    /// [`PictureError::Size`].
+    pub fn new(width: u32, height: u32) -> Result<Film, PictureError> {
+        let count = Picture::pixels_of(width, height)?;
+        Ok(Film { width, height, tallies: vec![Tally::default(); count] })
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn tallies(&self) -> &[Tally] {
+        &self.tallies
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn tallies_mut(&mut self) -> &mut [Tally] {
+        &mut self.tallies
+    }
+
+    /// The picture so far; pixels without samples are black and uncovered.
+    pub fn picture(&self) -> Result<Picture, PictureError> {
+        let mut picture = Picture::new(self.width, self.height)?;
+        for (pixel, tally) in picture.pixels_mut().iter_mut().zip(&self.tallies) {
+            let coverage = f64::from(tally.covered) / f64::from(tally.count.max(1));
+            *pixel = Pixel { radiance: tally.mean().as_vec3().to_array(), coverage: coverage as f32 };
+        }
+        Ok(picture)
+    }
+
+    /// Which pixels, or one of those beside them, have a greater relative error than asked for.
+    pub fn uncertain(&self, target: f64) -> Vec<bool> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let errors: Vec<f64> = self.tallies.iter().map(Tally::relative_error).collect();
+        let is_uncertain = |index: usize| {
+            let (x, y) = (index % width, index / width);
+            let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
+            let mut rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
+            rows.any(|row| columns.clone().any(|column| errors[row * width + column] > target))
+        };
+        (0..errors.len()).map(is_uncertain).collect()
+    }
+
+    /// Root of the mean variance of all pixels: about the RMSE of the luminance, as far as chance goes.
+    pub fn standard_error(&self) -> f64 {
+        let finite = self.tallies.iter().map(Tally::variance).filter(|variance| variance.is_finite());
+        let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), variance| (sum + variance, count + 1.0));
+        if count > 0.0 { f64::sqrt(sum / count) } else { f64::INFINITY }
+    }
+
+    /// Fewest and most samples of a pixel.
+    pub fn samples(&self) -> [u32; 2] {
+        self.tallies.iter().fold([u32::MAX, 0], |[least, most], t| [least.min(t.count), most.max(t.count)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(value: f64) -> Sample {
+        Sample { radiance: DVec3::splat(value), covered: true, first: None }
+    }
+
+    #[test]
+    fn the_error_of_a_mean_is_that_of_its_samples() {
+        let mut tally = Tally::default();
+        [1.0, 3.0].iter().for_each(|value| tally.add(&sample(*value)));
+        assert!((tally.mean() - DVec3::splat(2.0)).length() < 1e-12 && (tally.variance() - 1.0).abs() < 1e-12);
+        assert!((tally.relative_error() - 0.5).abs() < 1e-12);
+        tally.add(&Sample { radiance: DVec3::NAN, ..sample(0.0) });
+        assert!(tally.mean().is_finite() && tally.count == 3);
+        assert_eq!(Tally::default().variance(), f64::INFINITY);
+    }
+
+    #[test]
+    fn pixels_beside_uncertain_ones_are_uncertain() {
+        let mut film = Film::new(5, 5).expect("small");
+        film.tallies_mut().iter_mut().for_each(|tally| [1.0, 1.0].iter().for_each(|v| tally.add(&sample(*v))));
+        film.tallies_mut()[12].add(&sample(9.0));
+        let uncertain = film.uncertain(0.1);
+        assert_eq!(uncertain.iter().filter(|u| **u).count(), 9);
+        assert_eq!((film.samples(), film.picture().expect("small").get(0, 0).expect("inside").coverage), ([2, 3], 1.0));
+    }
+}

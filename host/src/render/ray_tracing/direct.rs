@@ -1,0 +1,105 @@
+//! Light that comes to an element from lights, without a way in between.
+
+use super::draws::Purpose;
+use super::tracer::counted;
+use super::world::{Encounter, World};
+use crate::color::Channels;
+use crate::illumination::light::Beam;
+use crate::illumination::optics::Which;
+use crate::numeric::ray::Ray;
+use crate::render::RayCounts;
+
+/// How much shorter a ray to a triangle that emits is, so that it does not meet it.
+const SHORT: f64 = 1.0 - 1e-7;
+
+/// Asks lights.
+pub(super) struct Direct<'a> {
+    world: &'a World<'a>,
+    shadows: bool,
+    /// Points of each light that has a size.
+    samples: u32,
+    /// Whether some light has a size.
+    spread: bool,
+}
+
+impl<'a> Direct<'a> {
+    pub(super) fn new(world: &'a World<'a>, shadows: bool, samples: u32) -> Direct<'a> {
+        let spread = world.sources.iter().any(|(_, source)| !source.is_sharp());
+        Direct { world, shadows, samples, spread }
+    }
+
+    /// Whether some light has a size, so that other rays may meet it.
+    pub(super) fn is_spread(&self) -> bool {
+        self.spread
+    }
+
+    /// Whether something surrounds everything.
+    pub(super) fn has_sky(&self) -> bool {
+        self.world.sources.iter().any(|(_, source)| source.is_sky())
+    }
+
+    /// Radiance towards the viewer by the light of all lights.
+    ///
+    /// - `add`: is told what each light brings, by its number.
+    pub(super) fn light(
+        &self,
+        encounter: &Encounter<'_>,
+        counts: &mut RayCounts,
+        mut add: impl FnMut(usize, Channels),
+    ) -> Channels {
+        let Encounter { found, sighting, draws, leg, .. } = encounter;
+        let mut sum = Channels::ZERO;
+        for (index, (number, source)) in self.world.sources.iter().enumerate() {
+            let samples = if source.is_sharp() { 1 } else { self.samples };
+            let mut part = Channels::ZERO;
+            for sample in 0..samples {
+                let purpose = (*number as u32).wrapping_mul(self.samples).wrapping_add(sample);
+                let uniform = draws.leg(*leg, Purpose::Lights, purpose);
+                if let Some(beam) = source.beam(found.element.position, uniform, sighting.comb) {
+                    part += self.arriving(encounter, index, &beam, counts);
+                }
+            }
+            if part != Channels::ZERO {
+                part *= f64::from(samples).recip();
+                add(*number, part);
+                sum += part;
+            }
+        }
+        sum
+    }
+
+    /// What a beam adds.
+    fn arriving(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, counts: &mut RayCounts) -> Channels {
+        let Encounter { found, frame, sighting, parts, .. } = encounter;
+        let optics = found.optics;
+        let light = frame.local(beam.towards);
+        let mut continued = optics.value(Which::Continued, sighting, light);
+        if let Some(density) = beam.density
+            && continued != Channels::ZERO
+        {
+            // The rest is what a further leg brings that meets the light.
+            continued *= counted(Some(density), optics.density(sighting, light, *parts));
+        }
+        let value = optics.value(Which::Ended, sighting, light) + continued;
+        let radiance = value * beam.irradiance * light.z.abs();
+        if radiance == Channels::ZERO || !radiance.is_finite() || !self.shadows {
+            return if radiance.is_finite() { radiance } else { Channels::ZERO };
+        }
+        counts.shadow += 1;
+        radiance * self.passed(encounter, index, beam, light.z > 0.0)
+    }
+
+    /// The part of a beam that nothing holds back.
+    fn passed(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, above: bool) -> Channels {
+        let Encounter { found, sighting, .. } = encounter;
+        let (element, comb) = (&found.element, sighting.comb);
+        let origin = if above { element.leave_curved } else { element.through };
+        if !beam.distance.is_finite() {
+            return self.world.passed(&Ray { origin, direction: beam.towards }, f64::INFINITY, index, comb);
+        }
+        let source = &self.world.sources[index].1;
+        let at = element.position + beam.towards * beam.distance;
+        let t_max = if source.is_sharp() || source.is_surface() { 1.0 } else { SHORT };
+        self.world.passed(&Ray { origin, direction: at - origin }, t_max, index, comb)
+    }
+}

@@ -1,0 +1,70 @@
+//! Tells the way of a sample, and every term that it adds.
+
+use super::world::Found;
+use crate::color::Channels;
+use crate::scene::Prepared;
+use glam::DVec3;
+use serde::Serialize;
+
+/// Something that happened on the way of a sample.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Note {
+    /// How many legs came before.
+    pub depth: u32,
+    /// What happened, in words.
+    pub what: String,
+    /// Where, if at an element, scene units.
+    pub at: Option<DVec3>,
+    /// What it adds to the radiance that comes to the eye, at the wavelengths or in the bands of the sample.
+    pub adds: Option<Vec<f64>>,
+}
+
+/// Where notes go; nowhere for most samples.
+pub(super) struct Log<'a>(Option<&'a mut Vec<Note>>);
+
+impl<'a> Log<'a> {
+    /// Notes nothing.
+    pub(super) const SILENT: Log<'static> = Log(None);
+
+    pub(super) fn to(notes: &'a mut Vec<Note>) -> Log<'a> {
+        Log(Some(notes))
+    }
+
+    /// Notes something, if anyone listens.
+    #[inline]
+    pub(super) fn note(&mut self, note: impl FnOnce() -> Note) {
+        if let Some(notes) = &mut self.0 {
+            notes.push(note());
+        }
+    }
+}
+
+impl Note {
+    fn new(depth: u32, what: String, adds: Option<Channels>) -> Note {
+        Note { depth, what, at: None, adds: adds.map(|adds| adds.0.to_vec()) }
+    }
+
+    pub(super) fn light(depth: u32, number: usize, adds: Channels) -> Note {
+        Note::new(depth, format!("meets light {}", number + 1), Some(adds))
+    }
+
+    pub(super) fn term(depth: u32, what: &str, adds: Channels) -> Note {
+        Note::new(depth, what.into(), Some(adds))
+    }
+
+    pub(super) fn lit(depth: u32, number: usize, adds: Channels) -> Note {
+        Note::new(depth, format!("lit by light {}", number + 1), Some(adds))
+    }
+
+    pub(super) fn element(depth: u32, prepared: &Prepared, found: &Found<'_>) -> Note {
+        let object = &prepared.objects[found.object as usize];
+        let side = if found.element.outside { "" } else { " from inside" };
+        let material = prepared.material(found.triangle).word();
+        let normal = found.element.normal;
+        let what = format!(
+            "meets {}{side}, {material} material, after {:.6}; normal {:.4} {:.4} {:.4}",
+            object.name, found.distance, normal.x, normal.y, normal.z
+        );
+        Note { at: Some(found.element.position), ..Note::new(depth, what, None) }
+    }
+}

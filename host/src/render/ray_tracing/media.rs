@@ -1,0 +1,72 @@
+//! What a ray goes through: transparent bodies, one within another.
+
+use super::world::{Found, World};
+use crate::color::Channels;
+use crate::illumination::optics::Side;
+
+/// Most bodies within one another that a ray keeps in mind.
+const MOST: usize = 6;
+
+/// The bodies that a ray is in, each by its object and material, the innermost last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Media {
+    bodies: [(u32, u32); MOST],
+    count: usize,
+}
+
+impl Media {
+    fn innermost(&self) -> Option<(u32, u32)> {
+        self.count.checked_sub(1).map(|last| self.bodies[last])
+    }
+
+    /// The part of light that comes through a length of what is here.
+    pub(super) fn absorbed(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
+        let interior = self.innermost().and_then(|(object, material)| world.optics(object, material).interior.as_ref());
+        match interior {
+            Some(interior) if interior.absorption.max() > 0.0 => {
+                interior.absorption.of(comb).map(|absorption| (-absorption * length).exp())
+            }
+            _ => Channels::ONE,
+        }
+    }
+
+    /// The refractive indices before and behind an element; 1 where there is no body.
+    pub(super) fn side(&self, world: &World<'_>, found: &Found<'_>, comb: usize) -> Side {
+        let index = |body: Option<(u32, u32)>| {
+            let interior = body.and_then(|(object, material)| world.optics(object, material).interior.as_ref());
+            interior.map_or(Channels::ONE, |interior| interior.index.of(comb))
+        };
+        let own = Some((found.object, found.material));
+        if found.optics.interior.is_none() {
+            let before = index(self.innermost());
+            return Side { before, behind: before };
+        }
+        if found.element.outside {
+            return Side { before: index(self.innermost()), behind: index(own) };
+        }
+        // From inside, also where the eye was in the body from the beginning.
+        let mut beyond = *self;
+        beyond.leave(found.object);
+        Side { before: index(own), behind: index(beyond.innermost()) }
+    }
+
+    /// Goes through an element, into its body or out of it.
+    pub(super) fn cross(&mut self, found: &Found<'_>) {
+        if found.optics.interior.is_none() {
+            return;
+        }
+        if !found.element.outside {
+            self.leave(found.object);
+        } else if self.count < MOST {
+            self.bodies[self.count] = (found.object, found.material);
+            self.count += 1;
+        }
+    }
+
+    fn leave(&mut self, object: u32) {
+        if let Some(place) = self.bodies[..self.count].iter().rposition(|(other, _)| *other == object) {
+            self.bodies.copy_within(place + 1..self.count, place);
+            self.count -= 1;
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Functions of the scene language that say of what objects are, one row each.
+
+use super::argument::Bound;
+use super::builder::{Builder, value};
+use super::function::Default::{Is, Required};
+use super::function::{Done, Function, Kind, OBJECT, Parameter, parameter};
+use super::lighting::{SPECTRUM, color_of_light};
+use crate::color::{Color, shipped};
+use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
+use glam::DVec2;
+
+/// A roughness; 0 is polished.
+const ROUGHNESS: Parameter = parameter(
+    "roughness",
+    Kind::Number(0.0, 1000.0),
+    Is("0: polished"),
+    "roughness m: root mean square slope of its facets, times the root of 2",
+);
+
+/// The functions.
+pub(super) const FUNCTIONS: &[Function] = &[
+    Function {
+        name: "material",
+        summary: "Says how the surface of an object reflects; what is not given becomes the default. Faces of a combined object keep what their operand was given.",
+        parameters: &[
+            OBJECT,
+            parameter("diffuse", Kind::Reflectance, Is("0.7"), "diffusely reflected fraction"),
+            parameter("specular", Kind::Reflectance, Is("0"), "fraction in the highlight"),
+            parameter("exponent", Kind::Number(1.0, Classic::MOST_EXPONENT), Is("50"), "sharpness of the highlight"),
+            parameter("mirror", Kind::Reflectance, Is("0"), "mirrored fraction"),
+            parameter("transparency", Kind::Reflectance, Is("0"), "fraction that goes straight through"),
+        ],
+        example: "pot.material(#{ diffuse: [0.8, 0.5, 0.3], specular: 0.1, exponent: 60, mirror: 0.1 });",
+        action: |builder, bound| {
+            let Classic { diffuse, specular, exponent, mirror, transparency } = Classic::default();
+            let classic = Classic {
+                diffuse: bound.color("diffuse").unwrap_or(diffuse),
+                specular: bound.color("specular").unwrap_or(specular),
+                exponent: bound.number("exponent").unwrap_or(exponent),
+                mirror: bound.color("mirror").unwrap_or(mirror),
+                transparency: bound.color("transparency").unwrap_or(transparency),
+            };
+            give(builder, bound, Body::Classic(classic))
+        },
+    },
+    Function {
+        name: "metal",
+        summary: "Makes an object of a metal, with the refractive indices that were measured of it.",
+        parameters: &[
+            OBJECT,
+            parameter("name", Kind::Text, Required, "copper, gold, silver, aluminium or iron"),
+            ROUGHNESS,
+            parameter(
+                "distribution",
+                Kind::Text,
+                Is("\"Beckmann, all\""),
+                "how its facets are distributed: a member of the family that peris study illumination lists",
+            ),
+            parameter("along", Kind::Vector, Is("not brushed"), "the direction in which it is brushed"),
+            parameter("across", Kind::Number(1e-8, 1000.0), Is("roughness"), "roughness across that direction"),
+        ],
+        example: "pot.metal(\"copper\", 0.2);",
+        action: add_metal,
+    },
+    Function {
+        name: "glass",
+        summary: "Makes an object of glass, water or a gem: it reflects, refracts and absorbs. It must be closed.",
+        parameters: &[
+            OBJECT,
+            parameter("index", Kind::Number(1e-6, 1e6), Is("1.5"), "refractive index, of all wavelengths"),
+            parameter("name", Kind::Text, Is("none"), "a glass that disperses: BK7, F2, SF11 and others"),
+            ROUGHNESS,
+            parameter("absorption", Kind::Powers, Is("0"), "light falls by exp(-absorption) in one unit of length"),
+        ],
+        example: "pot.glass(#{ name: \"BK7\", absorption: [0.3, 0.05, 0.1] });",
+        action: |builder, bound| {
+            let index = match (bound.number("index"), bound.text("name")) {
+                (Some(_), Some(_)) => return Err("give either an index or the name of a glass".into()),
+                (index, None) => Index::Constant(index.unwrap_or(1.5)),
+                (None, Some(name)) => Index::Dispersive(shipped::glass(name).map_err(|error| error.to_string())?),
+            };
+            let roughness = bound.number("roughness").unwrap_or(0.0);
+            let absorption = bound.vector("absorption").map_or(Color::BLACK, Color::Bands);
+            give(builder, bound, Body::Transparent(Transparent { index, roughness, absorption }))
+        },
+    },
+    Function {
+        name: "coated",
+        summary: "Gives an object a diffuse ground under a transparent coat, as plastic, varnish and glaze have it.",
+        parameters: &[
+            OBJECT,
+            parameter("diffuse", Kind::Reflectance, Is("0.7"), "what the ground reflects"),
+            ROUGHNESS,
+            parameter("index", Kind::Number(1e-6, 1e6), Is("1.5"), "refractive index of the coat"),
+        ],
+        example: "pot.coated([0.7, 0.1, 0.1], 0.05);",
+        action: |builder, bound| {
+            let diffuse = bound.color("diffuse").unwrap_or(Color::grey(0.7));
+            let (index, roughness) = (bound.number("index").unwrap_or(1.5), bound.number("roughness").unwrap_or(0.0));
+            give(builder, bound, Body::Coated(Coated { diffuse, index, roughness }))
+        },
+    },
+    Function {
+        name: "shaped",
+        summary: "Lets an object reflect a fraction, distributed by a member of the family of distributions.",
+        parameters: &[
+            OBJECT,
+            parameter("reflectance", Kind::Reflectance, Required, "the reflected fraction K"),
+            parameter("distribution", Kind::Text, Required, "its name, as peris study illumination lists it"),
+            parameter("roughness", Kind::Number(1e-8, 1000.0), Is("0.3"), "its roughness m"),
+        ],
+        example: "pot.shaped(#{ reflectance: 0.6, distribution: \"Blinn\", roughness: 0.2 });",
+        action: |builder, bound| {
+            let form = Form::Member {
+                name: bound.text("distribution").unwrap_or_default().to_owned(),
+                roughness: bound.number("roughness").unwrap_or(0.3),
+            };
+            let reflectance = bound.color("reflectance").unwrap_or(Color::BLACK);
+            give(builder, bound, Body::Shaped(Shaped { reflectance, form }))
+        },
+    },
+    Function {
+        name: "emits",
+        summary: "Lets the surface of an object emit light, beside what it reflects.",
+        parameters: &[OBJECT, parameter("radiance", Kind::Powers, Required, "its radiance, W/(m² sr)"), SPECTRUM],
+        example: "pot.emits([3, 2, 1]);",
+        action: |builder, bound| {
+            let emission = color_of_light(bound, bound.vector("radiance").unwrap_or_default())?;
+            let object = builder.object(bound.object("object"))?;
+            object.material.get_or_insert_default().emission = emission;
+            Ok(value(bound.object("object")))
+        },
+    },
+];
+
+/// Gives an object a body; what it emits stays.
+fn give(builder: &mut Builder, bound: &Bound, body: Body) -> Done {
+    let object = builder.object(bound.object("object"))?;
+    let emission = object.material.as_ref().map_or(Color::BLACK, |material| material.emission.clone());
+    let material = Material { body, emission };
+    material.check().map_err(|error| error.to_string())?;
+    object.material = Some(material);
+    Ok(value(bound.object("object")))
+}
+
+fn add_metal(builder: &mut Builder, bound: &Bound) -> Done {
+    let shipped::Metal { n, k } =
+        shipped::metal(bound.text("name").unwrap_or_default()).map_err(|error| error.to_string())?;
+    let roughness = bound.number("roughness").unwrap_or(0.0);
+    let name = bound.text("distribution");
+    let finish = match (bound.vector("along"), bound.number("across")) {
+        (Some(along), across) => {
+            if along.try_normalize().is_none() {
+                return Err("along must not have the length 0".into());
+            }
+            if name.is_some() {
+                return Err("a brushed metal has Beckmann's facets; leave the distribution out".into());
+            }
+            Finish::Brushed { roughness: DVec2::new(roughness, across.unwrap_or(roughness)), along }
+        }
+        (None, Some(_)) => return Err("across needs along".into()),
+        (None, None) if roughness == 0.0 => Finish::Polished,
+        (None, None) => Finish::Rough { name: name.unwrap_or("Beckmann, all").to_owned(), roughness },
+    };
+    give(builder, bound, Body::Metal(Metal { n, k, finish }))
+}
