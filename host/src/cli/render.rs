@@ -4,13 +4,17 @@ use super::source::stem;
 use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
 use crate::picture::Picture;
 use crate::plan::Plan;
-use crate::render::ray_tracing::RayTracer;
+use crate::render::ray_tracing::{Explanation, RayTracer};
 use crate::render::{Order, Renderer, Rendering, Watch};
-use crate::scene::Prepared;
+use crate::scene::{Prepared, View};
 use clap::{Args, FromArgMatches};
+use glam::DVec3;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// Most samples of a pixel that are explained.
+const EXPLAINED: usize = 4;
 
 pub(super) const ROW: Row = Row {
     name: "render",
@@ -46,6 +50,21 @@ struct Arguments {
     /// Tessellation tolerance in scene units, instead of that of the scene
     #[arg(long, value_name = "LENGTH")]
     tolerance: Option<f64>,
+    /// Relative error of the luminance at which a pixel has samples enough; --samples is then the most of them
+    #[arg(long, value_name = "PART", value_parser = super::length)]
+    error: Option<f64>,
+    /// Begins no sample after so many seconds; --samples is then the most of them
+    #[arg(long, value_name = "SECONDS", value_parser = super::length)]
+    seconds: Option<f64>,
+    /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too
+    #[arg(long)]
+    layers: bool,
+    /// Renders one pixel only, counted from the upper left corner, and prints its radiance; writes no file
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pixel: Option<[u32; 2]>,
+    /// Prints the ways of the first samples of the pixel, and every term that they add
+    #[arg(long, requires = "pixel")]
+    explain: bool,
     /// Leaves nothing out; the picture is the same
     #[arg(long)]
     everything: bool,
@@ -74,13 +93,24 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
     let tracer = RayTracer::new(&prepared, &plan)?;
     let build_seconds = start.elapsed().as_secs_f64();
-    let order = Order { threads: arguments.threads, ..Order::of(&prepared.settings) };
+    let order = Order {
+        threads: arguments.threads,
+        target: arguments.error,
+        seconds: arguments.seconds,
+        ..Order::of(&prepared.settings)
+    };
+    if let Some(pixel) = arguments.pixel {
+        return explain(arguments, &tracer, &view, &order, pixel);
+    }
     let progress = Progress::new("rendering", arguments.json);
     let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
     let rendering = tracer.render(&view, &order, &watch);
     progress.finish();
     let rendering = rendering?;
-    outputs.iter().try_for_each(|path| rendering.picture.write(path))?;
+    outputs.iter().try_for_each(|path| match arguments.layers && Picture::is_exr(path) {
+        true => rendering.film.write_layers(path, &prepared),
+        false => rendering.picture.write(path),
+    })?;
     report(arguments, &outputs, &prepared, &rendering, build_seconds)?;
     if rendering.complete {
         Ok(())
@@ -89,6 +119,53 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = format!("interrupted; pixels have {least} to {most} samples, which are kept");
         Err(Failure::new(Exit::Interrupted, anyhow::anyhow!(message)))
     }
+}
+
+/// Reads the place of a pixel.
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let (x, y) = text.split_once(',').ok_or("give X,Y")?;
+    let number = |text: &str| text.trim().parse().map_err(|_| format!("'{text}' is no number of a pixel"));
+    Ok([number(x)?, number(y)?])
+}
+
+/// Prints what is known of one pixel.
+fn explain(
+    arguments: &Arguments,
+    tracer: &RayTracer<'_>,
+    view: &View,
+    order: &Order,
+    [x, y]: [u32; 2],
+) -> Result<(), Failure> {
+    if x >= order.width || y >= order.height {
+        let message = format!("pixel {x},{y} is outside the picture of {} x {}", order.width, order.height);
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+    }
+    let samples = tracer.explain(view, order, [x, y], order.samples)?;
+    let mean = samples.iter().map(|sample| DVec3::from_array(sample.radiance)).sum::<DVec3>() / samples.len() as f64;
+    let told = if arguments.explain { EXPLAINED.min(samples.len()) } else { 0 };
+    if arguments.json {
+        let json = serde_json::json!({ "pixel": [x, y], "radiance": mean.to_array(), "samples": &samples[..told] });
+        say!("{}", serde_json::to_string_pretty(&json)?);
+        return Ok(());
+    }
+    say!("pixel {x},{y}: radiance {:.6} {:.6} {:.6}, mean of {} samples", mean.x, mean.y, mean.z, samples.len());
+    for Explanation { sample, wavelengths, notes, radiance: [r, g, b] } in &samples[..told] {
+        say!("sample {}: {r:.6} {g:.6} {b:.6}", sample + 1);
+        if let Some(wavelengths) = wavelengths {
+            say!("  wavelengths {} nm", short(wavelengths, 1));
+        }
+        for note in notes {
+            let indent = "  ".repeat(note.depth as usize + 1);
+            let at = note.at.map_or(String::new(), |p| format!(" at {:.4} {:.4} {:.4}", p.x, p.y, p.z));
+            let adds = note.adds.as_ref().map_or(String::new(), |adds| format!(": {}", short(adds, 6)));
+            say!("{indent}{}{at}{adds}", note.what);
+        }
+    }
+    Ok(())
+}
+
+fn short(values: &[f64], digits: usize) -> String {
+    values.iter().map(|value| format!("{value:.digits$}")).collect::<Vec<_>>().join(" ")
 }
 
 /// The size of the picture, when the command line gives one side or both.
@@ -117,7 +194,8 @@ fn report(
             "files": outputs,
             "width": picture.width(),
             "height": picture.height(),
-            "samples": prepared.settings.samples,
+            "samples": rendering.film.samples(),
+            "standard_error": Some(rendering.film.standard_error()).filter(|error| error.is_finite()),
             "seed": prepared.settings.seed,
             "triangles": prepared.triangles.len(),
             "build_seconds": build_seconds,
@@ -129,14 +207,17 @@ fn report(
         say!("{}", serde_json::to_string_pretty(&json)?);
         return Ok(());
     }
+    let [least, most] = rendering.film.samples();
     let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
     let rays = rendering.rays;
     say!(
-        "{}: {} x {} pixels, {} samples each",
+        "{}: {} x {} pixels, {} to {} samples each; standard error of luminance {:.2e}",
         names.join(", "),
         picture.width(),
         picture.height(),
-        prepared.settings.samples
+        least,
+        most,
+        rendering.film.standard_error()
     );
     say!("{} triangles, built in {build_seconds:.3} s", prepared.triangles.len());
     say!(

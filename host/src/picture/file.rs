@@ -19,6 +19,14 @@ pub enum PictureError {
         /// Rows asked for.
         height: u32,
     },
+    /// The file with layers cannot be written.
+    #[error("{}: {problem}", path.display())]
+    Layers {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        problem: String,
+    },
     /// Two pictures that were to be compared differ in size.
     #[error("pictures of different size: {0} x {1} and {2} x {3} pixels")]
     Mismatch(u32, u32, u32, u32),
@@ -55,6 +63,11 @@ fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
 }
 
 impl Picture {
+    /// Whether a name is that of an EXR file.
+    pub fn is_exr(path: &Path) -> bool {
+        matches!(format_of(path), Ok(ImageFormat::OpenExr))
+    }
+
     /// Whether [`Picture::write`] knows the format that the name ends in; asked before a long computation.
     ///
     /// # Errors

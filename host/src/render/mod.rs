@@ -1,6 +1,7 @@
 //! Renderers: from a prepared scene and a view to a picture.
 
 mod film;
+mod layers;
 pub mod ray_tracing;
 
 pub use film::{Film, LUMINANCE, Sample, Tally};

@@ -60,7 +60,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 7] = [
+pub const EMBEDDED: [Embedded; 9] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -95,6 +95,16 @@ pub const EMBEDDED: [Embedded; 7] = [
         name: "manifold",
         summary: "pipes with the accurate curves in which they meet, on saddles with rounded edges",
         text: include_str!("../../scenes/manifold.rhai"),
+    },
+    Embedded {
+        name: "materials",
+        summary: "metals, glass that disperses, varnish, plastic, glaze and plain colors under lights that have a size",
+        text: include_str!("../../scenes/materials.rhai"),
+    },
+    Embedded {
+        name: "vases",
+        summary: "a copper vase under daylight by three forms of Cook and Torrance's idea, side by side",
+        text: include_str!("../../scenes/vases.rhai"),
     },
 ];
 

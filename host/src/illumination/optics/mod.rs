@@ -21,6 +21,9 @@ use crate::color::{Channels, Curve};
 use glam::DVec3;
 use lobe::Lobe;
 
+/// Most lobes of a material.
+const MOST_LOBES: usize = 4;
+
 /// Which of the lobes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
@@ -101,8 +104,9 @@ impl Optics {
     }
 
     /// The directions of mirrors and smooth interfaces, all of them.
-    pub fn mirrored(&self, sighting: &Sighting) -> Vec<Onward> {
-        self.of(Which::Continued).flat_map(|lobe| lobe.mirrored(sighting)).flatten().collect()
+    pub fn mirrored(&self, sighting: &Sighting) -> impl Iterator<Item = Onward> {
+        let lobes = self.of(Which::Continued).filter(|lobe| lobe.is_mirror());
+        lobes.flat_map(|lobe| lobe.mirrored(sighting)).flatten()
     }
 
     /// One direction, drawn about as what comes from there counts; none where what is drawn counts nothing.
@@ -153,9 +157,11 @@ impl Optics {
     }
 
     /// The chances of the lobes that carry on; they add up to 1, or are all 0.
-    fn shares(&self, sighting: &Sighting, only_spread: bool) -> Vec<f64> {
-        let share = |lobe: &Lobe| if only_spread && lobe.is_mirror() { 0.0 } else { lobe.strength(sighting) };
-        let mut shares: Vec<f64> = self.of(Which::Continued).map(share).collect();
+    fn shares(&self, sighting: &Sighting, only_spread: bool) -> [f64; MOST_LOBES] {
+        let mut shares = [0.0; MOST_LOBES];
+        for (share, lobe) in shares.iter_mut().zip(self.of(Which::Continued)) {
+            *share = if only_spread && lobe.is_mirror() { 0.0 } else { lobe.strength(sighting) };
+        }
         let all: f64 = shares.iter().sum();
         if all > 0.0 {
             shares.iter_mut().for_each(|share| *share /= all);

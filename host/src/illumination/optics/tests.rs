@@ -28,7 +28,7 @@ fn rough(name: &str, roughness: f64) -> Finish {
 
 /// Light that comes to the viewer of a radiance of 1 from everywhere, by samples that are spread evenly.
 fn furnace(optics: &Optics, sighting: &Sighting) -> f64 {
-    let mirrored: f64 = optics.mirrored(sighting).iter().map(|onward| onward.weight.0[0]).sum();
+    let mirrored: f64 = optics.mirrored(sighting).map(|onward| onward.weight.0[0]).sum();
     let spread = |choice: f64| {
         let drawn = |point| optics.onward(sighting, choice, point, true).map_or(0.0, |onward| onward.weight.0[0]);
         unit_square(drawn, 1e-4, 20_000).value
@@ -64,7 +64,7 @@ fn a_white_coated_ground_returns_what_it_gets() {
         let optics = ready(&material, &wavelengths);
         for degrees in [0.0, 40.0, 75.0, 88.0] {
             let sighting = sighting(degrees, 1.0, 1.0);
-            let mirrored: f64 = optics.mirrored(&sighting).iter().map(|onward| onward.weight.0[0]).sum();
+            let mirrored: f64 = optics.mirrored(&sighting).map(|onward| onward.weight.0[0]).sum();
             let all = mirrored + integral(&optics, &sighting);
             assert!((all - 1.0).abs() < 3e-4, "{index} {roughness} at {degrees}: {all}");
         }
@@ -152,12 +152,13 @@ fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
     let optics = ready(&Body::Transparent(glass).into(), &wavelengths);
     for degrees in [0.0, 30.0, 80.0, 89.9] {
         let sighting = sighting(degrees, 1.0, 1.5);
-        let [reflected, refracted] = optics.mirrored(&sighting).try_into().expect("two directions");
+        let both: Vec<Onward> = optics.mirrored(&sighting).collect();
+        let [reflected, refracted] = both.try_into().expect("two directions");
         let all = reflected.weight.0[0] + refracted.weight.0[0] * 2.25;
         assert!((all - 1.0).abs() < 1e-12, "{degrees}: {all}");
         assert!((refracted.light.x + degrees.to_radians().sin() / 1.5).abs() < 1e-12);
     }
-    let total = optics.mirrored(&sighting(60.0, 1.5, 1.0));
+    let total: Vec<Onward> = optics.mirrored(&sighting(60.0, 1.5, 1.0)).collect();
     assert_eq!((total.len(), total[0].weight.0[0]), (1, 1.0), "total reflection");
 }
 
@@ -187,7 +188,8 @@ fn copper_under_white_light_has_the_color_of_its_reflectance() {
     let seen: DVec3 = (0..combs)
         .map(|comb| {
             let sighting = Sighting { comb, ..sighting(0.0, 1.0, 1.0) };
-            wavelengths.seen(comb, optics.mirrored(&sighting)[0].weight * white.of(comb))
+            let mirrored = optics.mirrored(&sighting).next().expect("a mirror");
+            wavelengths.seen(comb, mirrored.weight * white.of(comb))
         })
         .sum::<DVec3>()
         / combs as f64;
@@ -205,7 +207,7 @@ fn straight_light_goes_on_and_impossible_materials_are_errors() {
     let wavelengths = Wavelengths::bands();
     let curtain = Classic { transparency: Color::grey(0.25), ..Classic::default() };
     let optics = ready(&curtain.into(), &wavelengths);
-    let straight = optics.mirrored(&sighting(30.0, 1.0, 1.0));
+    let straight: Vec<Onward> = optics.mirrored(&sighting(30.0, 1.0, 1.0)).collect();
     assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && optics.passing.is_some());
     let mut library = Library::new(&wavelengths, false);
     let mut refused = |material: Material| library.optics(&material, true).unwrap_err().to_string();

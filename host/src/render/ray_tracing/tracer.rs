@@ -171,10 +171,11 @@ impl<'a> Tracer<'a> {
             sum += radiance;
             log.note(|| Note::term(leg.depth, "ambient light", radiance));
         }
-        let mirrored = optics.mirrored(&sighting);
-        let directions = mirrored.len() + usize::from(optics.spreads());
-        let is_worth = |onward: &Onward| (leg.passed * onward.weight).max() > WORTH_PARTING;
-        let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && mirrored.iter().all(is_worth);
+        let is_worth = |onward: Onward| (leg.passed * onward.weight).max() > WORTH_PARTING;
+        let (count, all_worth) =
+            optics.mirrored(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));
+        let directions = count + usize::from(optics.spreads());
+        let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
         let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, parts };
         if optics.answers_lights() {
             let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
@@ -185,7 +186,7 @@ impl<'a> Tracer<'a> {
             let [choice, _] = draws.leg(leg.number, Purpose::Choice, 0);
             if parts {
                 let drawn = optics.spreads().then(|| optics.onward(&sighting, choice, point, true)).flatten();
-                let legs = mirrored.into_iter().zip(0..).chain(drawn.map(|onward| (onward, 2)));
+                let legs = optics.mirrored(&sighting).zip(0..).chain(drawn.map(|onward| (onward, 2)));
                 waiting.extend(legs.filter_map(|(onward, branch)| self.onward(&leg, &encounter, onward, branch)));
             } else {
                 let drawn = optics.onward(&sighting, choice, point, false);

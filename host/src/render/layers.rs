@@ -1,0 +1,100 @@
+//! Films as EXR files with layers: what is known of each pixel beside its radiance.
+
+use super::film::{Film, Tally};
+use crate::picture::PictureError;
+use crate::scene::Prepared;
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
+use std::path::Path;
+
+/// A layer: its name, and its value of a pixel.
+struct Layer {
+    name: &'static str,
+    value: fn(&Tally) -> f64,
+}
+
+/// Layers of numbers. What no sample saw is at infinite depth, and has no normal.
+const LAYERS: &[Layer] = &[
+    Layer { name: "R", value: |tally| tally.mean().x },
+    Layer { name: "G", value: |tally| tally.mean().y },
+    Layer { name: "B", value: |tally| tally.mean().z },
+    Layer { name: "A", value: |tally| f64::from(tally.covered) / f64::from(tally.count.max(1)) },
+    Layer { name: "Z", value: |tally| seen(tally, tally.distances).unwrap_or(f64::INFINITY) },
+    Layer { name: "normal.X", value: |tally| seen(tally, tally.normals.x).unwrap_or(0.0) },
+    Layer { name: "normal.Y", value: |tally| seen(tally, tally.normals.y).unwrap_or(0.0) },
+    Layer { name: "normal.Z", value: |tally| seen(tally, tally.normals.z).unwrap_or(0.0) },
+    Layer { name: "variance.Y", value: Tally::variance },
+];
+
+/// The mean over the samples that saw an element.
+fn seen(tally: &Tally, sum: f64) -> Option<f64> {
+    (tally.elements > 0).then(|| sum / f64::from(tally.elements))
+}
+
+impl Film {
+    /// Writes an EXR file with layers: R, G, B and A; the distance Z of what is seen first, its normal, its object and
+    /// material, counted from 1; the number of samples, and the variance of the mean luminance.
+    ///
+    /// # Errors
+    /// [`PictureError::Layers`].
+    pub fn write_layers(&self, path: &Path, prepared: &Prepared) -> Result<(), PictureError> {
+        let tallies = self.tallies();
+        let floats = LAYERS.iter().map(|layer| {
+            let values = tallies.iter().map(|tally| (layer.value)(tally) as f32).collect();
+            AnyChannel::new(layer.name, FlatSamples::F32(values))
+        });
+        // Materials are counted over all objects.
+        let firsts: Vec<u32> = prepared
+            .objects
+            .iter()
+            .scan(1, |next, object| {
+                let first = *next;
+                *next += object.materials.len() as u32;
+                Some(first)
+            })
+            .collect();
+        let of_seen = |number: &dyn Fn([u32; 2]) -> u32| {
+            let of = |tally: &Tally| if tally.elements > 0 { number(tally.seen) } else { 0 };
+            FlatSamples::U32(tallies.iter().map(of).collect())
+        };
+        let numbers = [
+            AnyChannel::new("object.id", of_seen(&|[object, _]| object + 1)),
+            AnyChannel::new(
+                "material.id",
+                of_seen(&|[object, material]| firsts.get(object as usize).map_or(0, |first| first + material)),
+            ),
+            AnyChannel::new("samples.count", FlatSamples::U32(tallies.iter().map(|tally| tally.count).collect())),
+        ];
+        let channels = AnyChannels::sort(floats.chain(numbers).collect());
+        let size = (self.width() as usize, self.height() as usize);
+        let written = Image::from_channels(size, channels).write().to_file(path);
+        written.map_err(|error| PictureError::Layers { path: path.into(), problem: error.to_string() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Sample;
+    use crate::scene::Scene;
+    use exr::prelude::read_first_flat_layer_from_file;
+    use glam::DVec3;
+
+    #[test]
+    fn layers_hold_what_the_film_knows() {
+        let mut film = Film::new(2, 1).expect("small");
+        let first = Some((4.0, DVec3::Y, [0, 0]));
+        film.tallies_mut()[1].add(&Sample { radiance: DVec3::new(1.0, 2.0, 3.0), covered: true, first });
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("a.exr");
+        let prepared = Prepared::new(&Scene::default()).expect("nothing");
+        film.write_layers(&path, &prepared).expect("written");
+        let read = read_first_flat_layer_from_file(&path).expect("layers");
+        let value = |name: &str, pixel: usize| {
+            let channel = read.layer_data.channel_data.list.iter().find(|c| c.name.to_string() == name).expect("there");
+            channel.sample_data.values_as_f32().nth(pixel).expect("two pixels")
+        };
+        assert_eq!([value("R", 1), value("B", 1), value("A", 1), value("Z", 1)], [1.0, 3.0, 1.0, 4.0]);
+        assert_eq!([value("normal.Y", 1), value("object.id", 1), value("samples.count", 1)], [1.0, 1.0, 1.0]);
+        assert_eq!([value("Z", 0), value("object.id", 0)], [f32::INFINITY, 0.0]);
+    }
+}
