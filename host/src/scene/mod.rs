@@ -86,6 +86,9 @@ pub struct Settings {
     pub light_samples: u32,
     /// Whether diffuse light is carried on from surface to surface, up to the same depth.
     pub interreflection: bool,
+    /// Whether light counts that a mirror or glass throws from a lamp on what is neither. Rays from the eye find it by
+    /// chance only: such pictures take very many samples. Light of a sky always counts.
+    pub caustics: bool,
     /// Whether rays carry spectra; without a word, where a material or a light has one.
     pub spectral: Option<bool>,
     /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
@@ -106,6 +109,7 @@ impl Default for Settings {
             reflection_depth: 6,
             light_samples: 1,
             interreflection: false,
+            caustics: false,
             spectral: None,
             tolerance: None,
             angle: 45.0,

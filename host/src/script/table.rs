@@ -236,6 +236,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
+        name: "caustics",
+        summary: "Lets light count that mirrors and glass throw from lamps; rays from the eye find it by chance only, and need very many samples.",
+        parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does")],
+        example: "caustics();",
+        action: |builder, bound| {
+            builder.scene.settings.caustics = bound.flag("on").unwrap_or(true);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
         name: "spectral",
         summary: "Lets rays carry spectra, or three bands only, whatever the scene needs.",
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether they do")],

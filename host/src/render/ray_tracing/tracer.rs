@@ -37,6 +37,8 @@ struct Leg {
     lane: Option<usize>,
     /// Whether it only looks for lights: it is one too many for anything else.
     for_lights: bool,
+    /// Whether a direction was drawn before the last mirror: a light that is met then is a caustic.
+    after_spread: bool,
 }
 
 /// What a sample found.
@@ -70,13 +72,16 @@ pub(super) struct Tracer<'a> {
     direct: Direct<'a>,
     /// Most legs after the first.
     depth: u32,
+    /// Whether light of a lamp counts that a mirror or glass throws on what is not.
+    caustics: bool,
 }
 
 impl<'a> Tracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
     pub(super) fn new(world: &'a World<'a>, depth: u32, shadows: bool) -> Tracer<'a> {
         let samples = world.prepared.settings.light_samples.max(1);
-        Tracer { world, direct: Direct::new(world, shadows, samples), depth }
+        let caustics = world.prepared.settings.caustics;
+        Tracer { world, direct: Direct::new(world, shadows, samples), depth, caustics }
     }
 
     /// The radiance that arrives along a line of sight.
@@ -98,6 +103,7 @@ impl<'a> Tracer<'a> {
             media: Media::default(),
             lane: None,
             for_lights: false,
+            after_spread: false,
         };
         let mut waiting = vec![first];
         while let Some(leg) = waiting.pop() {
@@ -118,7 +124,8 @@ impl<'a> Tracer<'a> {
                 }
                 Met::Glow(index, glow) => {
                     let absorbed = leg.media.absorbed(self.world, glow.t * direction.length(), comb);
-                    let radiance = absorbed * glow.radiance * counted(leg.density, glow.density);
+                    let part = self.part(&leg, glow.density);
+                    let radiance = absorbed * glow.radiance * part;
                     seen.radiance += leg.passed * radiance;
                     seen.covered = true;
                     log.note(|| Note::light(leg.depth, self.world.sources[index].0, leg.passed * radiance));
@@ -152,7 +159,7 @@ impl<'a> Tracer<'a> {
         log.note(|| Note::element(leg.depth, self.world.prepared, &found));
         let mut sum = Channels::ZERO;
         if let Some((emission, density)) = self.world.emitted(&found, towards, comb) {
-            sum += leg.passed * emission * counted(leg.density, density);
+            sum += leg.passed * emission * self.part(&leg, density);
             log.note(|| Note::term(leg.depth, "emits", sum));
         }
         if leg.for_lights {
@@ -194,6 +201,12 @@ impl<'a> Tracer<'a> {
             }
         }
         sum
+    }
+
+    /// How much a light counts that a leg meets.
+    fn part(&self, leg: &Leg, light: f64) -> f64 {
+        let is_caustic = leg.density.is_none() && leg.after_spread;
+        if is_caustic && !self.caustics { 0.0 } else { counted(leg.density, light) }
     }
 
     /// The leg that goes on in a direction; none if it is not worth following.
@@ -240,6 +253,7 @@ impl<'a> Tracer<'a> {
             media,
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,
+            after_spread: leg.after_spread || onward.density.is_some(),
         })
     }
 }
