@@ -16,7 +16,7 @@ import mitsuba as mi
 import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-RUNS = 6
+RUNS = 8
 
 
 def columns(path):
@@ -70,20 +70,28 @@ def box(everything):
     }
 
 
-def sphere(bsdf):
+def spheres(bsdf):
+    def panel(size, place, *color):
+        return dict(cube(size, place, diffuse(0, 0, 0)), emitter={"type": "area", "radiance": rgb(*color)})
     return {
         "type": "scene", "integrator": {"type": "path", "max_depth": 21, "rr_depth": 30},
-        "sensor": sensor([0, 1, 6], 30, 96, 48),
-        "floor": cube([40, 1, 40], [0, -1.5, 0], diffuse(0.5, 0.5, 0.5)),
+        "sensor": sensor([0, 1, 6], 32, 64, 64),
         "ball": {"type": "sphere", "radius": 1.0, "bsdf": bsdf},
-        "sky": {"type": "constant", "radiance": rgb(0.8, 0.9, 1.0)},
+        "left": panel([0.8, 3, 0.1], [-1.2, 0.2, -2], 2, 0.5, 0.2),
+        "middle": panel([0.8, 3, 0.1], [0.1, 0.2, -2], 0.3, 1.5, 0.4),
+        "right": panel([0.8, 3, 0.1], [1.4, 0.2, -2], 0.2, 0.4, 2),
+        "behind": panel([3, 0.5, 0.1], [0, 1.5, 9], 3, 3, 2),
+        "sky": {"type": "constant", "radiance": rgb(0.2, 0.25, 0.3)},
     }
 
 
-# Name, script, what it is told, variant of Mitsuba, its scene, and whether light goes on from diffuse surfaces in both.
+# Name, script, what it is told, variant of Mitsuba, and its scene.
 CASES = [
     ("direct light in a box", "box.rhai", {}, "scalar_rgb", lambda: box(False)),
     ("all light in a box", "box.rhai", {"all": "true"}, "scalar_rgb", lambda: box(True)),
+    ("glass sphere", "spheres.rhai", {}, "scalar_rgb", lambda: spheres({"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0})),
+    ("copper sphere, spectral", "spheres.rhai", {"which": "copper"}, "scalar_spectral",
+     lambda: spheres(dict(copper(), type="conductor"))),
 ]
 
 

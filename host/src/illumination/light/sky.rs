@@ -147,7 +147,7 @@ impl Map {
 
     /// A place, by the light that comes from its pixel.
     fn draw(&self, [x, y]: [f64; 2]) -> Option<DVec2> {
-        if !(self.rows.last().copied()? > 0.0) {
+        if self.rows.last().is_none_or(|all| *all <= 0.0) {
             return None;
         }
         let [width, height] = self.size();

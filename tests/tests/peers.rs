@@ -1,0 +1,65 @@
+//! Pictures against those that another renderer made of the same scenes: its values are kept in `peers/mitsuba.json`,
+//! which `peers/mitsuba_check.py` renews where that renderer is installed.
+
+use host::plan::Plan;
+use host::render::ray_tracing::RayTracer;
+use host::render::{LUMINANCE, Order, Renderer, Watch};
+use host::scene::Prepared;
+use host::script::{Definition, load_file};
+use serde_json::Value;
+use std::path::Path;
+
+/// Blocks along each side of a picture of which the other renderer's means are kept.
+const BLOCKS: usize = 8;
+/// Most standard errors of both that the mean of a block may be off; there are 128 blocks.
+const MOST: f64 = 5.0;
+/// Luminance below which errors count as if it was this.
+const DARK: f64 = 1e-3;
+
+fn luminance(block: &Value) -> f64 {
+    (0..3).map(|band| LUMINANCE[band] * block[band].as_f64().expect("a number")).sum()
+}
+
+#[test]
+fn means_of_blocks_are_those_of_mitsuba_within_the_errors_of_both() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers");
+    let text = std::fs::read_to_string(folder.join("mitsuba.json")).expect("the values");
+    let kept: Value = serde_json::from_str(&text).expect("JSON");
+    let cases = kept["cases"].as_object().expect("cases");
+    assert!(cases.len() >= 2);
+    for (name, case) in cases {
+        let told = case["told"].as_object().expect("what the script is told");
+        let mut given: Vec<Definition> = told
+            .iter()
+            .map(|(name, value)| Definition { name: name.clone(), value: value.as_str().expect("text").to_owned() })
+            .collect();
+        given.push(Definition { name: "count".into(), value: "64".into() });
+        let script = folder.join(case["script"].as_str().expect("a script"));
+        let scene = load_file(&script, &given).unwrap_or_else(|error| panic!("{error}")).scene;
+        let prepared = Prepared::new(&scene).expect("a scene");
+        let view = prepared.view();
+        let plan = Plan::new(&prepared, &view);
+        let tracer = RayTracer::new(&prepared, &plan).expect("a tracer");
+        let film = tracer.render(&view, &Order::of(&prepared.settings), &Watch::NOBODY).expect("a picture").film;
+        let (columns, rows) = (film.width() as usize / BLOCKS, film.height() as usize / BLOCKS);
+        let mut squares = 0.0;
+        for block in 0..BLOCKS * BLOCKS {
+            let (x, y) = (block % BLOCKS, block / BLOCKS);
+            let pixels = (0..columns * rows).map(|pixel| {
+                let (row, column) = (y * rows + pixel / columns, x * columns + pixel % columns);
+                &film.tallies()[row * film.width() as usize + column]
+            });
+            let count = (columns * rows) as f64;
+            let ours = pixels.clone().map(|tally| tally.mean().dot(LUMINANCE)).sum::<f64>() / count;
+            let own = pixels.map(|tally| tally.variance()).sum::<f64>() / (count * count);
+            let theirs = luminance(&case["blocks"][y][x]);
+            // The bands err together: at the most as their sum.
+            let error = (own + luminance(&case["errors"][y][x]).powi(2)).sqrt().max(DARK * 1e-3);
+            let off = (ours - theirs) / error;
+            squares += off * off;
+            assert!(off.abs() < MOST, "{name}: block {x}, {y} is {ours}, not {theirs}: {off:.1} standard errors");
+        }
+        let mean = squares / (BLOCKS * BLOCKS) as f64;
+        assert!(mean < 1.6, "{name}: blocks are off by {:.2} standard errors", mean.sqrt());
+    }
+}
