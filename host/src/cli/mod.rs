@@ -4,8 +4,10 @@
 mod say;
 mod boolean;
 mod check;
+mod compose;
 mod continuity;
 mod convert;
+mod diff;
 mod exit;
 mod formula;
 mod functions;
@@ -52,6 +54,8 @@ pub const COMMANDS: &[Row] = &[
     job::RUN,
     show::ROW,
     render::ROW,
+    compose::ROW,
+    diff::ROW,
     plan::ROW,
     octree::ROW,
     study::ROW,

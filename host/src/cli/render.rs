@@ -59,6 +59,10 @@ struct Arguments {
     /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too
     #[arg(long)]
     layers: bool,
+    /// Leaves the background out where nothing stands before it, so that `peris compose` can put another one there; it
+    /// stays behind glass and in mirrors
+    #[arg(long)]
+    matte: bool,
     /// Renders one pixel only, counted from the upper left corner, and prints its radiance; writes no file
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pixel: Option<[u32; 2]>,
@@ -97,6 +101,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         threads: arguments.threads,
         target: arguments.error,
         seconds: arguments.seconds,
+        matte: arguments.matte,
         ..Order::of(&prepared.settings)
     };
     if let Some(pixel) = arguments.pixel {

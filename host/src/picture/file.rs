@@ -19,7 +19,7 @@ pub enum PictureError {
         /// Rows asked for.
         height: u32,
     },
-    /// The file with layers cannot be written.
+    /// The file with layers cannot be read or written.
     #[error("{}: {problem}", path.display())]
     Layers {
         /// The file.
@@ -27,7 +27,17 @@ pub enum PictureError {
         /// Why.
         problem: String,
     },
-    /// Two pictures that were to be compared differ in size.
+    /// A file holds a number that is infinite or none.
+    #[error("{}: pixel {x},{y} holds something that is no finite number", path.display())]
+    Number {
+        /// The file.
+        path: PathBuf,
+        /// Column, from the left.
+        x: u32,
+        /// Row, from the top.
+        y: u32,
+    },
+    /// Two pictures that were to be compared or combined differ in size.
     #[error("pictures of different size: {0} x {1} and {2} x {3} pixels")]
     Mismatch(u32, u32, u32, u32),
     /// The name ends in something else than the formats known.
@@ -105,6 +115,8 @@ impl Picture {
 
     /// Reads a PNG or EXR file back into linear light. Without an alpha channel, everything counts as covered.
     ///
+    /// PNG files hold colours beside their alpha; these are premultiplied by it here, as EXR files hold them.
+    ///
     /// # Errors
     /// [`PictureError`] for a file that is missing, broken, of another format or too large.
     pub fn read(path: &Path) -> Result<Picture, PictureError> {
@@ -124,11 +136,33 @@ impl Picture {
             }
         } else {
             for (pixel, p) in picture.pixels.iter_mut().zip(decoded.to_rgba8().pixels()) {
-                let radiance = [p[0], p[1], p[2]].map(linear_from_srgb);
-                *pixel = Pixel { radiance, coverage: f32::from(p[3]) / 255.0 };
+                let coverage = f32::from(p[3]) / 255.0;
+                *pixel = Pixel { radiance: [p[0], p[1], p[2]].map(|c| coverage * linear_from_srgb(c)), coverage };
             }
         }
         Ok(picture)
+    }
+
+    /// Reads a PNG or EXR file as [`Picture::read`] does, in which every number must be finite.
+    ///
+    /// # Errors
+    /// Those of [`Picture::read`], and [`PictureError::Number`] for the first pixel with another number.
+    pub fn read_finite(path: &Path) -> Result<Picture, PictureError> {
+        let picture = Picture::read(path)?;
+        picture.check_finite(path)?;
+        Ok(picture)
+    }
+
+    /// [`PictureError::Number`] for the first pixel that is not finite.
+    pub(super) fn check_finite(&self, path: &Path) -> Result<(), PictureError> {
+        let is_wrong = |p: &Pixel| !p.coverage.is_finite() || p.radiance.iter().any(|c| !c.is_finite());
+        match self.pixels.iter().position(is_wrong) {
+            None => Ok(()),
+            Some(at) => {
+                let (x, y) = (at as u32 % self.width, at as u32 / self.width);
+                Err(PictureError::Number { path: path.into(), x, y })
+            }
+        }
     }
 }
 
@@ -161,6 +195,26 @@ mod tests {
         let back = Picture::read(&path).expect("read");
         assert_eq!(back.to_srgb8(), sample().to_srgb8());
         assert!(back.pixels().iter().all(|p| p.coverage == 1.0));
+    }
+
+    #[test]
+    fn colours_of_a_png_file_are_premultiplied_by_its_alpha() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("a.png");
+        image::save_buffer(&path, &[255, 255, 255, 51, 9, 9, 9, 0], 2, 1, image::ColorType::Rgba8).expect("written");
+        let read = Picture::read_finite(&path).expect("read");
+        assert_eq!(read.get(0, 0), Some(Pixel { radiance: [0.2; 3], coverage: 0.2 }));
+        assert!(read.get(1, 0) == Some(Pixel::default()) && read.is_matte() && !sample().is_matte());
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_found() {
+        let folder = tempfile::tempdir().expect("folder");
+        let path = folder.path().join("a.exr");
+        let mut picture = sample();
+        picture.pixels_mut()[7].radiance[1] = f32::NAN;
+        picture.write(&path).expect("written");
+        assert!(matches!(Picture::read_finite(&path), Err(PictureError::Number { x: 2, y: 1, .. })));
     }
 
     #[test]

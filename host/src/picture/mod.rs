@@ -1,10 +1,16 @@
-//! Pictures in linear light, with coverage: files, and how far two of them are apart.
+//! Pictures in linear light, with coverage: files, how far two of them are apart, and how two become one.
 
+mod compose;
+mod depth;
 mod difference;
 mod file;
+mod flip;
 
+pub use compose::{Operator, compose, compose_by_depth};
+pub use depth::Deep;
 pub use difference::{Difference, difference};
 pub use file::PictureError;
+pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip};
 
 use protocol::raster::srgb_from_linear;
 
@@ -13,7 +19,9 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 
 /// A picture of linear radiance in three bands, with the share of each pixel that an object covers.
 ///
-/// Row 0 is the *top* row. The radiance of a pixel already includes the background behind and beside the objects.
+/// Row 0 is the *top* row. The radiance of a pixel already includes the background behind and beside the objects, unless
+/// the picture is a *matte*: then only covered samples have radiance, which is thus premultiplied by the coverage, as
+/// [`compose`] needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     width: u32,
@@ -85,6 +93,11 @@ impl Picture {
     /// The coverage as eight bits a pixel, from the top row on; 255 is full coverage.
     pub fn coverage8(&self) -> Vec<u8> {
         self.pixels.iter().map(|p| (p.coverage.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
+    }
+
+    /// Whether nothing has radiance where nothing is covered, as in a matte.
+    pub fn is_matte(&self) -> bool {
+        self.pixels.iter().all(|p| p.coverage > 0.0 || p.radiance == [0.0; 3])
     }
 
     /// Whether every number in it is finite.

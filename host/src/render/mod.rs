@@ -42,6 +42,9 @@ pub struct Order {
     pub target: Option<f64>,
     /// Seconds after which no sample is begun.
     pub seconds: Option<f64>,
+    /// Whether samples that meet nothing are black: a picture whose radiance is premultiplied by its coverage. The
+    /// background behind glass and in mirrors stays.
+    pub matte: bool,
     /// Seed of the sample positions.
     pub seed: u64,
     /// Threads; every core without a number.
@@ -52,7 +55,7 @@ impl Order {
     /// What the scene's settings ask for, on every core.
     pub fn of(settings: &crate::scene::Settings) -> Order {
         let crate::scene::Settings { width, height, samples, seed, .. } = *settings;
-        Order { width, height, samples, target: None, seconds: None, seed, threads: None }
+        Order { width, height, samples, target: None, seconds: None, matte: false, seed, threads: None }
     }
 }
 

@@ -175,12 +175,15 @@ impl<'a> RayTracer<'a> {
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
             let radiance = wavelengths.seen(comb, self.world.beyond(glam::DVec3::NEG_Z, None, comb));
+            let radiance = if order.matte { glam::DVec3::ZERO } else { radiance };
             return (Sample { radiance, covered: false, first: None }, comb);
         };
         let seen = tracer.radiance(&sight, comb, &draws, counts, log);
         let first =
             seen.first.map(|First { distance, normal, object, material }| (distance, normal, [object, material]));
-        (Sample { radiance: wavelengths.seen(comb, seen.radiance), covered: seen.covered, first }, comb)
+        let left_out = order.matte && !seen.covered;
+        let radiance = if left_out { glam::DVec3::ZERO } else { wavelengths.seen(comb, seen.radiance) };
+        (Sample { radiance, covered: seen.covered, first }, comb)
     }
 
     /// Tells how the samples of a pixel come to their radiance.
