@@ -4,7 +4,7 @@ use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
 use crate::illumination::{Bands, Light, Material};
-use crate::picture::difference;
+use crate::picture::{Operator, compose, difference};
 use crate::scene::{Camera, Object, Projection, Scene, Settings, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3, DVec4};
@@ -415,4 +415,26 @@ fn degenerate_views_are_errors() {
     let view = View::Projection(Projection { to_clip: DMat4::ZERO, depth_clipping: true });
     let result = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY);
     assert!(matches!(result, Err(RenderError::View)));
+}
+
+#[test]
+fn a_matte_over_the_background_is_the_picture() {
+    let mut scene = still_life();
+    scene.settings.samples = 5;
+    let prepared = Prepared::new(&scene).expect("a scene");
+    let view = prepared.view();
+    let plan = Plan::new(&prepared, &view);
+    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let [picture, matte] = [false, true].map(|matte| {
+        let order = Order { matte, ..Order::of(&scene.settings) };
+        tracer.render(&view, &order, &Watch::NOBODY).expect("a picture").picture
+    });
+    let parts = matte.pixels().iter().filter(|p| p.coverage > 0.0 && p.coverage < 1.0).count();
+    assert!(matte.is_matte() && !picture.is_matte() && parts > 10, "{parts}");
+    let mut background = matte.clone();
+    let behind = scene.background.as_vec3().to_array();
+    background.pixels_mut().iter_mut().for_each(|pixel| pixel.radiance = behind);
+    let both = compose(&matte, Operator::Over, &background).expect("same size");
+    let d = difference(&both, &picture).expect("same size");
+    assert!(d.largest < 1e-5, "{}", d.largest);
 }
