@@ -86,9 +86,9 @@ struct Appearance {
 
 impl Appearance {
     fn new(picture: &Picture, density: f64) -> Appearance {
-        let clipped = |value: f32| f64::from(value.max(0.0).min(1.0));
+        let light = |value: f32| f64::from(clipped(value));
         let opponents: Vec<DVec3> =
-            picture.pixels().par_iter().map(|pixel| opponent(DVec3::from_array(pixel.radiance.map(clipped)))).collect();
+            picture.pixels().par_iter().map(|pixel| opponent(DVec3::from_array(pixel.radiance.map(light)))).collect();
         let (width, height) = (picture.width() as usize, picture.height() as usize);
         let plane = |band: usize| Plane { width, height, values: opponents.iter().map(|o| o[band] as f32).collect() };
         let filtered = [0, 1, 2].map(|band| plane(band).as_seen(&SENSITIVITY[band], density));
@@ -101,6 +101,11 @@ impl Appearance {
         let colors = (0..opponents.len()).into_par_iter().map(color).collect();
         Appearance { colors, features: luminance.features(density) }
     }
+}
+
+/// A value brought into 0..=1; what is not a number is 0.
+fn clipped(value: f32) -> f32 {
+    if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
 
 /// Y, Cx and Cz: a linear form of L*, a* and b*.
@@ -240,7 +245,7 @@ pub fn error_map(width: u32, height: u32, map: &[f32]) -> Result<Picture, Pictur
         [[0.0, 0.0, 0.0], [0.06, 0.006, 0.18], [0.5, 0.03, 0.14], [1.0, 0.33, 0.07], [1.0, 1.0, 0.75]];
     let mut picture = Picture::new(width, height)?;
     for (pixel, error) in picture.pixels_mut().iter_mut().zip(map) {
-        let at = error.max(0.0).min(1.0) * (RAMP.len() - 1) as f32;
+        let at = clipped(*error) * (RAMP.len() - 1) as f32;
         let below = (at as usize).min(RAMP.len() - 2);
         let part = at - below as f32;
         pixel.radiance = [0, 1, 2].map(|band| RAMP[below][band] * (1.0 - part) + RAMP[below + 1][band] * part);
