@@ -87,7 +87,7 @@ fn glass_of_the_index_of_air_cannot_be_seen_and_absorbs_by_its_thickness() {
         scene.settings.samples = 64;
         let found = mean(&trace(&scene, Some(from_above(0.5)), false, 1));
         // What comes through, and what is reflected before or within and comes from the background, too.
-        let (r, a) = (((index - 1.0) / (index + 1.0) as f64).powi(2), f64::exp(-2.0 * absorption));
+        let (r, a) = (f64::powi((index - 1.0) / (index + 1.0), 2), f64::exp(-2.0 * absorption));
         let expected = r + (1.0 - r) * (1.0 - r) * a / (1.0 - r * a);
         assert!((found - expected).abs() < 2e-3, "{index} {absorption}: {found} {expected}");
     }
