@@ -98,7 +98,7 @@ pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
     // Of a light that has a size, the middle counts; the machine knows no light from all around.
     let beam = |light: &Light| {
         let source = Source::new(light, &bands);
-        let beam = if source.is_sky() { None } else { source.beam(at, [0.5; 2], 0) }?;
+        let beam = if source.is_sky() { None } else { source.beam(at, None, [0.5; 2], 0) }?;
         let [red, green, blue, ..] = beam.irradiance.0;
         Some((beam.towards, Bands::new(red, green, blue)))
     };

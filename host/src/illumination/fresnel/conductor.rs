@@ -33,7 +33,8 @@ impl Complex {
 
     /// The root in the first quadrant, of a number in the upper half plane.
     fn root(self) -> Complex {
-        let larger = ((self.real.hypot(self.imaginary) + self.real.abs()) / 2.0).sqrt();
+        // No index is so great or small that its square is lost.
+        let larger = ((self.square().sqrt() + self.real.abs()) / 2.0).sqrt();
         let smaller = if larger > 0.0 { self.imaginary / (2.0 * larger) } else { 0.0 };
         let (real, imaginary) = if self.real >= 0.0 { (larger, smaller) } else { (smaller, larger) };
         Complex { real, imaginary }

@@ -2,6 +2,7 @@
 
 use super::SkyMap;
 use crate::color::{Channels, Color, Curve, Wavelengths};
+use crate::numeric::sampling::{cosine_hemisphere, sphere};
 use crate::picture::Picture;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -51,18 +52,23 @@ impl Sky {
     }
 
     /// A direction, about as bright as it is, and its density, 1/sr.
-    pub(super) fn draw(&self, [x, y]: [f64; 2]) -> Option<(DVec3, f64)> {
+    ///
+    /// - `normal`: of the element that is lit, unit length; a sky of one radiance is then drawn by its cosine above it.
+    pub(super) fn draw(&self, [x, y]: [f64; 2], normal: Option<DVec3>) -> Option<(DVec3, f64)> {
         let Some(map) = &self.map else {
-            return Some((crate::numeric::sampling::sphere([x, y]), 0.5 / TAU));
+            let towards = normal.map_or_else(|| sphere([x, y]), |normal| cosine_hemisphere([x, y], normal));
+            return Some((towards, self.density(towards, normal))).filter(|(_, density)| *density > 0.0);
         };
         let at = map.draw([x, y])?;
         let towards = self.forth(direction(at));
-        Some((towards, self.density(towards))).filter(|(_, density)| *density > 0.0)
+        Some((towards, self.density(towards, normal))).filter(|(_, density)| *density > 0.0)
     }
 
-    /// The density of a direction, 1/sr.
-    pub(super) fn density(&self, towards: DVec3) -> f64 {
-        let Some(map) = &self.map else { return 0.5 / TAU };
+    /// The density of a direction, 1/sr; the normal as in [`Sky::draw`].
+    pub(super) fn density(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
+        let Some(map) = &self.map else {
+            return normal.map_or(0.5 / TAU, |normal| normal.dot(towards).max(0.0) / PI);
+        };
         let back = self.back(towards);
         let sine = back.x.hypot(back.z);
         if sine > 0.0 { map.density(place(back)) / (sine * PI * TAU) } else { 0.0 }

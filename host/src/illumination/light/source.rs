@@ -103,8 +103,9 @@ impl Source {
 
     /// Light that arrives at a point if nothing stands between; none where there is none, and at the light itself.
     ///
+    /// - `normal`: of the element at the point, unit length, if there is one: directions above it are drawn more often.
     /// - `uniform`: a point of the unit square, which chooses the point of a light that has a size.
-    pub fn beam(&self, point: DVec3, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+    pub fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
         let strength = || self.strength.of(comb);
         match &self.kind {
             Kind::Point { at } => from_point(*at - point, strength()),
@@ -137,7 +138,7 @@ impl Source {
                 Some(Beam { towards, distance, irradiance: strength() * density.recip(), density: Some(density) })
             }
             Kind::Sky(sky) => {
-                let (towards, density) = sky.draw(uniform)?;
+                let (towards, density) = sky.draw(uniform, normal)?;
                 let irradiance = sky.radiance(towards, comb) * density.recip();
                 Some(Beam { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
             }
@@ -154,9 +155,11 @@ impl Source {
     }
 
     /// What is seen of a sky in a direction, unit length; none of another light.
-    pub fn sky(&self, towards: DVec3, comb: usize) -> Option<Glow> {
+    ///
+    /// - `normal`: of the element from which it is seen, as in [`Source::beam`].
+    pub fn sky(&self, towards: DVec3, normal: Option<DVec3>, comb: usize) -> Option<Glow> {
         let Kind::Sky(sky) = &self.kind else { return None };
-        Some(Glow { t: f64::INFINITY, radiance: sky.radiance(towards, comb), density: sky.density(towards) })
+        Some(Glow { t: f64::INFINITY, radiance: sky.radiance(towards, comb), density: sky.density(towards, normal) })
     }
 
     /// The density with which [`Source::beam`] draws a direction in which emitting triangles are met, 1/sr.

@@ -20,7 +20,9 @@ fn area(patch: Patch) -> Source {
 /// Irradiance of a surface element by cubature over the light.
 fn irradiance(source: &Source, point: DVec3, normal: DVec3) -> f64 {
     let term = |uniform| {
-        source.beam(point, uniform, 0).map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
+        source
+            .beam(point, None, uniform, 0)
+            .map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
     };
     unit_square(term, 1e-9, 200_000).value
 }
@@ -28,11 +30,11 @@ fn irradiance(source: &Source, point: DVec3, normal: DVec3) -> f64 {
 #[test]
 fn irradiance_of_a_point_falls_with_the_square_of_the_distance() {
     let point = source(Light::Point { at: DVec3::new(0.0, 3.0, 0.0), intensity: Color::grey(18.0) });
-    let beam = point.beam(DVec3::ZERO, [0.5; 2], 0).expect("light");
+    let beam = point.beam(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
     assert_eq!((beam.irradiance.0[0], beam.distance, beam.towards), (2.0, 3.0, DVec3::Y));
-    assert!(point.beam(DVec3::new(0.0, 3.0, 0.0), [0.5; 2], 0).is_none(), "no direction at the light itself");
+    assert!(point.beam(DVec3::new(0.0, 3.0, 0.0), None, [0.5; 2], 0).is_none(), "no direction at the light itself");
     for far in [1e-9, 1e9] {
-        let beam = point.beam(DVec3::new(far, 3.0, 0.0), [0.5; 2], 0).expect("light");
+        let beam = point.beam(DVec3::new(far, 3.0, 0.0), None, [0.5; 2], 0).expect("light");
         assert!((beam.irradiance.0[0] * far * far / 18.0 - 1.0).abs() < 1e-12);
     }
 }
@@ -49,7 +51,7 @@ fn irradiance_of_a_sphere_is_that_of_its_solid_angle() {
     let patch = Patch::Sphere { center: DVec3::new(3.0, 4.0, 0.0), radius: 1.0 };
     let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
     assert!((found - PI / 25.0 * 0.8).abs() < 1e-8);
-    assert!(area(patch).beam(DVec3::new(3.0, 4.5, 0.0), [0.5; 2], 0).is_none(), "dark inside");
+    assert!(area(patch).beam(DVec3::new(3.0, 4.5, 0.0), None, [0.5; 2], 0).is_none(), "dark inside");
 }
 
 #[test]
@@ -61,7 +63,7 @@ fn irradiance_of_a_disc_is_that_of_its_closed_form() {
         let expected = PI * radius * radius / (radius * radius + height * height);
         let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
         assert!((found / expected - 1.0).abs() < 1e-6, "{height} {radius}: {found} {expected}");
-        assert!(area(patch).beam(center * 2.0, [0.5; 2], 0).is_none(), "dark behind");
+        assert!(area(patch).beam(center * 2.0, None, [0.5; 2], 0).is_none(), "dark behind");
     }
 }
 
@@ -121,7 +123,7 @@ fn densities_are_those_of_the_drawn_directions() {
     for patch in patches {
         let source = area(patch);
         for _ in 0..200 {
-            let beam = source.beam(DVec3::ZERO, stream.point(), 0).expect("light");
+            let beam = source.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
             let ray = Ray { origin: DVec3::ZERO, direction: beam.towards * 2.0 };
             // A point of the border may fall on either side of it.
             let Some(glow) = source.glow(&ray, 0.0, f64::INFINITY, 0) else { continue };
@@ -143,7 +145,7 @@ fn a_spot_falls_from_all_to_nothing_between_its_angles() {
     });
     let at = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        spot.beam(DVec3::new(sin, 1.0 - cos, 0.0), [0.5; 2], 0).map_or(0.0, |beam| beam.irradiance.0[0])
+        spot.beam(DVec3::new(sin, 1.0 - cos, 0.0), None, [0.5; 2], 0).map_or(0.0, |beam| beam.irradiance.0[0])
     };
     assert!((at(0.0) - 1.0).abs() < 1e-12 && (at(19.9) - 1.0).abs() < 1e-12 && at(40.1) == 0.0);
     let middle = ((20f64.to_radians().cos() + 40f64.to_radians().cos()) / 2.0).acos().to_degrees();
@@ -183,7 +185,7 @@ fn a_luminaire_shines_as_its_file_says() {
         goniometry: table,
         color: Color::grey(1.0),
     };
-    let beam = source(light).beam(DVec3::ZERO, [0.5; 2], 0).expect("light");
+    let beam = source(light).beam(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
     assert!((beam.irradiance.0[0] - 200.0 / 683.0 / 4.0).abs() < 1e-12);
 }
 
@@ -212,7 +214,13 @@ fn map() -> SkyMap {
 fn a_sky_of_one_radiance_lights_a_plane_with_pi_times_it() {
     let sky = source(Light::Sky { map: None, radiance: Color::grey(2.0), turned: 0.0 });
     assert!((irradiance(&sky, DVec3::ZERO, DVec3::Y) - 2.0 * PI).abs() < 1e-3);
-    assert_eq!(sky.sky(DVec3::X, 0).expect("a sky").radiance.0[0], 2.0);
+    assert_eq!(sky.sky(DVec3::X, None, 0).expect("a sky").radiance.0[0], 2.0);
+    // By the cosine above an element, each direction brings as much.
+    for uniform in [[0.1, 0.2], [0.7, 0.9], [0.99, 0.5]] {
+        let beam = sky.beam(DVec3::ZERO, Some(DVec3::Y), uniform, 0).expect("light");
+        assert!((beam.irradiance.0[0] * beam.towards.y - 2.0 * PI).abs() < 1e-9);
+        assert_eq!(sky.sky(beam.towards, Some(DVec3::Y), 0).map(|glow| glow.density), beam.density);
+    }
 }
 
 #[test]
@@ -222,21 +230,23 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     let drawn = irradiance(&sky, DVec3::ZERO, DVec3::new(0.6, 0.8, 0.0));
     let term = |uniform| {
         let towards = sphere(uniform);
-        sky.sky(towards, 0).map_or(0.0, |glow| glow.radiance.0[0]) * towards.dot(DVec3::new(0.6, 0.8, 0.0)).max(0.0)
+        sky.sky(towards, None, 0).map_or(0.0, |glow| glow.radiance.0[0])
+            * towards.dot(DVec3::new(0.6, 0.8, 0.0)).max(0.0)
     };
     let even = 4.0 * PI * unit_square(term, 1e-4, 400_000).value;
     assert!((drawn / even - 1.0).abs() < 2e-3, "{drawn} {even}");
     // The density integrates to 1.
-    let all = 4.0 * PI * unit_square(|u| sky.sky(sphere(u), 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000).value;
+    let all =
+        4.0 * PI * unit_square(|u| sky.sky(sphere(u), None, 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000).value;
     assert!((all - 1.0).abs() < 2e-3, "{all}");
     let mut stream = Stream::new(2, 2);
     for _ in 0..100 {
-        let beam = sky.beam(DVec3::ZERO, stream.point(), 0).expect("light");
-        let glow = sky.sky(beam.towards, 0).expect("a sky");
+        let beam = sky.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
+        let glow = sky.sky(beam.towards, None, 0).expect("a sky");
         assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
     }
     let ahead = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 0.0 });
     let pixel = |x: usize, y: usize| ((y * 8 + x) % 5) as f64;
-    assert_eq!(ahead.sky(DVec3::new(0.1, 0.1, -1.0).normalize(), 0).expect("a sky").radiance.0[0], pixel(4, 1));
-    assert_eq!(ahead.sky(DVec3::new(1.0, 0.1, -0.1).normalize(), 0).expect("a sky").radiance.0[0], pixel(5, 1));
+    assert_eq!(ahead.sky(DVec3::new(0.1, 0.1, -1.0).normalize(), None, 0).expect("a sky").radiance.0[0], pixel(4, 1));
+    assert_eq!(ahead.sky(DVec3::new(1.0, 0.1, -0.1).normalize(), None, 0).expect("a sky").radiance.0[0], pixel(5, 1));
 }

@@ -55,7 +55,9 @@ impl<'a> Direct<'a> {
             for sample in 0..samples {
                 let purpose = (*number as u32).wrapping_mul(self.samples).wrapping_add(sample);
                 let uniform = draws.leg(*leg, Purpose::Lights, purpose);
-                if let Some(beam) = source.beam(found.element.position, uniform, sighting.comb) {
+                if let Some(beam) =
+                    source.beam(found.element.position, Some(found.element.normal), uniform, sighting.comb)
+                {
                     part += self.arriving(encounter, index, &beam, counts);
                 }
             }

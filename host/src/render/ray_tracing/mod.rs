@@ -174,7 +174,7 @@ impl<'a> RayTracer<'a> {
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
-            let radiance = wavelengths.seen(comb, self.world.beyond(glam::DVec3::NEG_Z, None, comb));
+            let radiance = wavelengths.seen(comb, self.world.beyond(glam::DVec3::NEG_Z, None, None, comb));
             let radiance = if order.matte { glam::DVec3::ZERO } else { radiance };
             return (Sample { radiance, covered: false, first: None }, comb);
         };

@@ -31,6 +31,8 @@ struct Leg {
     number: u32,
     /// The density with which its direction was drawn, 1/sr; none where there was no choice.
     density: Option<f64>,
+    /// The normal of the element from which it goes on.
+    normal: Option<DVec3>,
     /// What it goes through.
     media: Media,
     /// The only lane that is left, after wavelengths parted.
@@ -100,6 +102,7 @@ impl<'a> Tracer<'a> {
             depth: 0,
             number: 1,
             density: None,
+            normal: None,
             media: Media::default(),
             lane: None,
             for_lights: false,
@@ -116,7 +119,7 @@ impl<'a> Tracer<'a> {
                 Met::Nothing => {
                     let radiance = match leg.for_lights && !self.direct.has_sky() {
                         true => Channels::ZERO,
-                        false => self.world.beyond(direction.normalize(), leg.density, comb),
+                        false => self.world.beyond(direction.normalize(), leg.density, leg.normal, comb),
                     };
                     seen.radiance += leg.passed * radiance;
                     seen.covered |= leg.depth > 0;
@@ -250,6 +253,7 @@ impl<'a> Tracer<'a> {
             depth: leg.depth + 1,
             number,
             density: onward.density,
+            normal: Some(element.normal),
             media,
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,

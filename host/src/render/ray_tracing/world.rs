@@ -199,9 +199,9 @@ impl<'a> World<'a> {
 
     /// Radiance where there is nothing: of the skies, or the background without any.
     ///
-    /// - `leg`: the density with which the direction was drawn, if it was.
-    pub(super) fn beyond(&self, direction: DVec3, leg: Option<f64>, comb: usize) -> Channels {
-        let skies = self.sources.iter().filter_map(|(_, source)| source.sky(direction, comb));
+    /// - `leg`: the density with which the direction was drawn, if it was. `normal`: of the element from which it goes on.
+    pub(super) fn beyond(&self, direction: DVec3, leg: Option<f64>, normal: Option<DVec3>, comb: usize) -> Channels {
+        let skies = self.sources.iter().filter_map(|(_, source)| source.sky(direction, normal, comb));
         let sum = skies.map(|glow| glow.radiance * counted(leg, glow.density)).reduce(|a, b| a + b);
         sum.unwrap_or_else(|| self.background.of(comb))
     }

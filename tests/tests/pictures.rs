@@ -1,0 +1,82 @@
+//! Commands that make, explain, compare and combine pictures, as a user gives them.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+use tests::{Ended, run};
+
+const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
+const LIMIT: Duration = Duration::from_secs(300);
+
+/// A ball over a floor, and another before it that the parameter leaves out.
+const SCENE: &str = r#"
+    image(48, 32); samples(16);
+    if parameter("floor", true) { ground(20).material(#{ diffuse: 0.5 }); }
+    if parameter("ball", true) { sphere(1).translate(0, 1, 0).metal("copper", 0.3); }
+    rectangle_light(#{ corner: [-1, 5, -1], across: [2, 0, 0], up: [0, 0, 2], power: 80 });
+    ambient(0.1);
+    camera(#{ from: [0, 3, 9], at: [0, 0.8, 0], field_of_view: 28 });
+"#;
+
+fn peris(arguments: &[&str], folder: &Path) -> Ended {
+    let ended = run(PERIS, arguments, &[], folder, LIMIT);
+    assert!(ended.code.is_some(), "{arguments:?} did not end by itself");
+    ended
+}
+
+fn json(arguments: &[&str], folder: &Path) -> Value {
+    let ended = peris(arguments, folder);
+    serde_json::from_str(&ended.out).unwrap_or_else(|error| panic!("{arguments:?}: {error}\n{}", ended.out))
+}
+
+#[test]
+fn a_pixel_is_explained_as_it_is_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("a.rhai"), SCENE).unwrap();
+    let told = json(&["render", "a.rhai", "--pixel", "24,14", "--explain", "--json"], folder);
+    let samples = told["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 4);
+    assert_eq!(samples[0]["wavelengths"].as_array().unwrap().len(), 8, "copper needs spectra");
+    let notes = samples[0]["notes"].as_array().unwrap();
+    assert!(notes.iter().any(|note| note["what"].as_str().unwrap().starts_with("meets sphere, metal material")));
+    let ended = peris(&["render", "a.rhai", "--pixel", "48,0"], folder);
+    assert!(ended.code == Some(2) && ended.errors.contains("outside the picture"), "{}", ended.errors);
+}
+
+#[test]
+fn a_picture_of_parts_is_that_of_the_whole_where_they_throw_no_light_on_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // In ambient light only, nothing that is apart in the picture touches anything else.
+    let script = SCENE
+        .replace("rectangle_light", "if false { } // rectangle_light")
+        .replace("metal(\"copper\", 0.3)", "material(#{})");
+    fs::write(folder.join("a.rhai"), script).unwrap();
+    for (name, given) in [("whole", "ball=true"), ("ball", "floor=false"), ("floor", "ball=false")] {
+        let file = format!("{name}.exr");
+        let ended = peris(&["render", "a.rhai", "-o", &file, "--layers", "--matte", "-D", given], folder);
+        assert_eq!(ended.code, Some(0), "{}", ended.errors);
+    }
+    let ended = peris(&["compose", "ball.exr", "over", "floor.exr", "-o", "both.exr", "--depth"], folder);
+    assert_eq!(ended.code, Some(0), "{}", ended.errors);
+    let apart = json(&["diff", "both.exr", "whole.exr", "--json"], folder);
+    assert!(apart["rmse"].as_f64().unwrap() < 0.01, "{apart}");
+    let same = peris(&["diff", "whole.exr", "whole.exr", "--tolerance", "1e-12"], folder);
+    let other = peris(&["diff", "whole.exr", "floor.exr", "--tolerance", "1e-3"], folder);
+    assert_eq!((same.code, other.code), (Some(0), Some(1)), "{}", other.out);
+}
+
+#[test]
+fn a_rendering_ends_at_an_error_or_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("a.rhai"), SCENE).unwrap();
+    let rough = json(&["render", "a.rhai", "--samples", "1024", "--error", "0.2", "--json"], folder);
+    let counts = |report: &Value| [0, 1].map(|k| report["samples"][k].as_u64().unwrap());
+    let [least, most] = counts(&rough);
+    assert!(least < most && most <= 1024, "some pixels need more samples than others: {least} to {most}");
+    let brief = json(&["render", "a.rhai", "--samples", "65536", "--seconds", "0.5", "--json"], folder);
+    assert!(counts(&brief)[0] < 65536 && brief["complete"] == true);
+}
