@@ -123,6 +123,28 @@ impl Wavelengths {
         }
     }
 
+    /// The reflectances that red, green and blue of an image stand for; they add up to 1 at all wavelengths, so that every
+    /// mixture of them is a reflectance and that of equal parts is grey.
+    pub fn primaries(&self) -> [Curve; 3] {
+        if !self.spectral {
+            return DVec3::AXES.map(|axis| Curve(vec![in_bands(axis)]));
+        }
+        let [red, blue] = [DVec3::X, DVec3::Z].map(|axis| self.reflectance(&Color::Bands(axis)));
+        // Where the other two overlap they share.
+        let shared = |comb: usize| red.of(comb).0.iter().zip(blue.of(comb).0).map(|(r, b)| (r + b).max(1.0)).collect();
+        let shares: Vec<Vec<f64>> = (0..self.combs()).map(shared).collect();
+        let part = |curve: &Curve| {
+            Curve::each(self.combs(), |comb| {
+                let own = curve.of(comb);
+                Channels(std::array::from_fn(|lane| own.0[lane] / shares[comb][lane]))
+            })
+        };
+        let [red, blue] = [part(&red), part(&blue)];
+        let green =
+            Curve::each(self.combs(), |comb| (Channels::ONE - red.of(comb) - blue.of(comb)).map(|g| g.max(0.0)));
+        [red, green, blue]
+    }
+
     /// What light is multiplied with, 0 and more.
     pub fn filter(&self, color: &Color) -> Curve {
         match color {
@@ -211,6 +233,24 @@ mod tests {
             let light = wavelengths.light(&Color::Bands(bands * 7.0));
             let perfect = wavelengths.constant(1.0);
             assert!((seen(&wavelengths, &light, &perfect) - bands * 7.0).length() < 7e-3, "{bands}");
+        }
+    }
+
+    #[test]
+    fn mixtures_of_primaries_are_the_colors_that_they_stand_for() {
+        for wavelengths in [Wavelengths::bands(), Wavelengths::spectral()] {
+            let primaries = wavelengths.primaries();
+            let white = wavelengths.light(&Color::grey(1.0));
+            for bands in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.2, 0.9, 0.4), DVec3::ONE] {
+                let mixture = Curve::each(wavelengths.combs(), |comb| {
+                    let part = |band: usize| primaries[band].of(comb) * bands[band];
+                    part(0) + part(1) + part(2)
+                });
+                let found = seen(&wavelengths, &white, &mixture);
+                assert!((found - bands).length() < 3e-3, "{bands} {found}");
+                let lanes = (0..wavelengths.combs()).flat_map(|comb| mixture.of(comb).0);
+                assert!(lanes.into_iter().all(|part| (0.0..=1.0 + 1e-12).contains(&part)));
+            }
         }
     }
 

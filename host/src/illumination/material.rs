@@ -2,6 +2,7 @@
 
 use super::distribution::{DistributionError, FAMILY, Tabulated};
 use super::fresnel::{Conductor, Dielectric, IndexError};
+use super::texture::{Paint, Relief, TextureError};
 use crate::color::{Color, Glass, Spectrum};
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,8 @@ pub struct Material {
     pub body: Body,
     /// Radiance that it emits on both sides, W/(m² sr); per nanometre, if a spectrum.
     pub emission: Color,
+    /// What of it is higher than it looks.
+    pub relief: Option<Relief>,
 }
 
 /// Of what a surface is.
@@ -36,22 +39,22 @@ pub enum Body {
 #[serde(default)]
 pub struct Classic {
     /// Diffusely reflected fraction, 0..=1.
-    pub diffuse: Color,
+    pub diffuse: Paint,
     /// Fraction in the highlight of Phong's model, 0..=1.
-    pub specular: Color,
+    pub specular: Paint,
     /// Phong's exponent n, 1 to [`Classic::MOST_EXPONENT`]; the lobe falls to one half at acos(2^(-1/n)).
     pub exponent: f64,
     /// Fraction reflected as by a mirror, 0..=1.
-    pub mirror: Color,
+    pub mirror: Paint,
     /// Fraction that goes straight through, 0..=1.
-    pub transparency: Color,
+    pub transparency: Paint,
 }
 
 /// A fraction K, distributed by a D.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shaped {
     /// The reflected fraction K, 0..=1.
-    pub reflectance: Color,
+    pub reflectance: Paint,
     /// D.
     pub form: Form,
 }
@@ -139,7 +142,7 @@ impl Index {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coated {
     /// What the ground reflects, 0..=1.
-    pub diffuse: Color,
+    pub diffuse: Paint,
     /// Refractive index of the coat, 1e-6..=1e6.
     pub index: f64,
     /// Roughness m of the coat, 1e-8..=1000; 0 is polished.
@@ -148,7 +151,7 @@ pub struct Coated {
 
 impl Default for Classic {
     fn default() -> Classic {
-        let [diffuse, specular, mirror, transparency] = [0.7, 0.0, 0.0, 0.0].map(Color::grey);
+        let [diffuse, specular, mirror, transparency] = [0.7, 0.0, 0.0, 0.0].map(Paint::grey);
         Classic { diffuse, specular, exponent: 50.0, mirror, transparency }
     }
 }
@@ -166,7 +169,7 @@ impl From<Classic> for Material {
 
 impl From<Body> for Material {
     fn from(body: Body) -> Material {
-        Material { body, emission: Color::BLACK }
+        Material { body, emission: Color::BLACK, relief: None }
     }
 }
 
@@ -229,23 +232,46 @@ pub enum MaterialError {
     /// An impossible index of refraction.
     #[error(transparent)]
     Index(#[from] IndexError),
+    /// An impossible pattern or relief.
+    #[error(transparent)]
+    Texture(#[from] TextureError),
 }
 
 impl Material {
     /// Whether its color cannot be told in three bands: metals, glass that disperses, spectra from tables.
     pub fn is_spectral(&self) -> bool {
         self.emission.is_spectral()
+            || self.paints().into_iter().any(Paint::is_spectral)
             || match &self.body {
-                Body::Classic(Classic { diffuse, specular, mirror, transparency, .. }) => {
-                    [diffuse, specular, mirror, transparency].into_iter().any(Color::is_spectral)
-                }
-                Body::Shaped(shaped) => shaped.reflectance.is_spectral(),
                 Body::Metal(_) => true,
                 Body::Transparent(Transparent { index, absorption, .. }) => {
                     matches!(index, Index::Dispersive(_)) || absorption.is_spectral()
                 }
-                Body::Coated(coated) => coated.diffuse.is_spectral(),
+                Body::Classic(_) | Body::Shaped(_) | Body::Coated(_) => false,
             }
+    }
+
+    /// The fractions of light in it.
+    pub fn paints(&self) -> Vec<&Paint> {
+        match &self.body {
+            Body::Classic(Classic { diffuse, specular, mirror, transparency, .. }) => {
+                vec![diffuse, specular, mirror, transparency]
+            }
+            Body::Shaped(shaped) => vec![&shaped.reflectance],
+            Body::Coated(coated) => vec![&coated.diffuse],
+            Body::Metal(_) | Body::Transparent(_) => Vec::new(),
+        }
+    }
+
+    /// Whether it changes from place to place.
+    pub fn is_textured(&self) -> bool {
+        self.relief.is_some() || self.paints().into_iter().any(Paint::is_pattern)
+    }
+
+    /// Whether parameters of the surface are needed to tell what it is like at a place.
+    pub fn needs_parameters(&self) -> bool {
+        self.relief.as_ref().is_some_and(Relief::needs_parameters)
+            || self.paints().into_iter().any(Paint::needs_parameters)
     }
 
     /// Checks every number.
@@ -254,6 +280,7 @@ impl Material {
     /// The first [`MaterialError`].
     pub fn check(&self) -> Result<(), MaterialError> {
         power("emission", &self.emission)?;
+        self.relief.as_ref().map_or(Ok(()), Relief::check)?;
         match &self.body {
             Body::Classic(classic) => {
                 fraction("diffuse reflectance", &classic.diffuse)?;
@@ -300,7 +327,7 @@ impl Material {
     pub fn appearance(&self) -> Appearance {
         let shine = |roughness: f64| (2.0 / roughness.max(1e-3).powi(2) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
         let black = Appearance { diffuse: DVec3::ZERO, specular: DVec3::ZERO, exponent: 1.0, mirror: DVec3::ZERO };
-        let bands = |color: &Color| color.bands_of_reflectance().clamp(DVec3::ZERO, DVec3::ONE);
+        let bands = |paint: &Paint| paint.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
         match &self.body {
             Body::Classic(Classic { diffuse, specular, exponent, mirror, .. }) => {
                 let [diffuse, specular, mirror] = [diffuse, specular, mirror].map(bands);
@@ -350,11 +377,17 @@ fn normal_reflectance(index: f64) -> f64 {
     Dielectric::new(1.0, index).map_or(0.0, |surface| surface.reflectance(1.0).mean())
 }
 
-fn fraction(what: &'static str, color: &Color) -> Result<(), MaterialError> {
-    let [least, most] = color.range();
-    // A spectrum that was measured may err a little.
-    let possible = least >= 0.0 && most <= if color.is_spectral() { 1.001 } else { 1.0 };
-    if possible { Ok(()) } else { Err(MaterialError::Fraction { what, least, most }) }
+fn fraction(what: &'static str, paint: &Paint) -> Result<(), MaterialError> {
+    paint.check()?;
+    for color in paint.colors() {
+        let [least, most] = color.range();
+        // A spectrum that was measured may err a little.
+        let possible = least >= 0.0 && most <= if color.is_spectral() { 1.001 } else { 1.0 };
+        if !possible {
+            return Err(MaterialError::Fraction { what, least, most });
+        }
+    }
+    Ok(())
 }
 
 fn power(what: &'static str, color: &Color) -> Result<(), MaterialError> {

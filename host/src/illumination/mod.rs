@@ -18,9 +18,11 @@ pub mod fresnel;
 pub mod light;
 pub mod material;
 pub mod optics;
+pub mod texture;
 
 pub use light::Light;
 pub use material::Material;
+pub use texture::Paint;
 
 use glam::DVec3;
 

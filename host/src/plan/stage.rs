@@ -14,6 +14,8 @@ pub enum Stage {
     Normals,
     /// Spectra in place of three bands.
     Spectra,
+    /// Patterns and reliefs.
+    Textures,
     /// Lambert's term.
     Diffuse,
     /// Highlights: Phong's term, and what facets reflect.
@@ -124,10 +126,11 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 9] = [
+    pub const ALL: [Stage; 10] = [
         Stage::Octree,
         Stage::Normals,
         Stage::Spectra,
+        Stage::Textures,
         Stage::Diffuse,
         Stage::Specular,
         Stage::Ambient,
@@ -142,6 +145,7 @@ impl Stage {
             Stage::Octree => "octree",
             Stage::Normals => "interpolated normals",
             Stage::Spectra => "spectra",
+            Stage::Textures => "textures",
             Stage::Diffuse => "Lambert's term",
             Stage::Specular => "highlights",
             Stage::Ambient => "ambient term",
@@ -161,6 +165,7 @@ impl Stage {
             Stage::Octree => octree(facts),
             Stage::Normals => normals(facts),
             Stage::Spectra => spectra(facts),
+            Stage::Textures => textures(facts),
             Stage::Diffuse => direct(facts, "diffuse part", has_diffuse),
             Stage::Specular => direct(facts, "highlight", has_highlight),
             Stage::Ambient => ambient(facts),
@@ -185,6 +190,13 @@ fn normals(facts: &Facts<'_>) -> Decision {
     match facts.kept().filter(|o| o.is_curved()).count() {
         0 => Decision::new(false, "every object has flat faces"),
         n => Decision::new(true, format!("{} with curved surfaces", counted(n, "object"))),
+    }
+}
+
+fn textures(facts: &Facts<'_>) -> Decision {
+    match facts.count(Material::is_textured) {
+        0 => Decision::new(false, "no material changes from place to place"),
+        n => Decision::new(true, format!("{} with a pattern or relief", counted(n, "object"))),
     }
 }
 

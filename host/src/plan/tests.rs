@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::color::Color;
+use crate::illumination::Paint;
 use crate::illumination::material::{Body, Classic};
 use crate::illumination::{Bands, Light, Material};
 use crate::scene::{Camera, Object, Scene, Shape};
@@ -9,7 +10,7 @@ use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
 fn object(name: &str, shape: Shape, at: DVec3) -> Object {
-    let material = Classic { diffuse: Color::grey(0.5), ..Classic::default() }.into();
+    let material = Classic { diffuse: Paint::grey(0.5), ..Classic::default() }.into();
     Object {
         name: name.into(),
         shape,
@@ -66,15 +67,15 @@ fn each_property_brings_its_stage() {
         change(&mut scene);
         plan(&scene)
     };
-    assert!(with(|s| material(s).mirror = Color::grey(0.1)).needs(Stage::Reflection));
-    assert!(with(|s| material(s).specular = Color::grey(0.1)).needs(Stage::Specular));
+    assert!(with(|s| material(s).mirror = Paint::grey(0.1)).needs(Stage::Reflection));
+    assert!(with(|s| material(s).specular = Paint::grey(0.1)).needs(Stage::Specular));
     assert!(with(|s| s.ambient = Bands::splat(0.1)).needs(Stage::Ambient));
     assert!(with(|s| s.settings.samples = 2).needs(Stage::AntiAliasing));
     assert!(with(|s| s.objects[0].shape = Shape::Solid(Primitive::Sphere { radius: 1.0 })).needs(Stage::Normals));
     let dark = with(|s| s.lights.clear());
     assert!(!dark.needs(Stage::Shadows) && !dark.needs(Stage::Diffuse));
     let shallow = with(|s| {
-        material(s).mirror = Color::grey(0.1);
+        material(s).mirror = Paint::grey(0.1);
         s.settings.reflection_depth = 0;
     });
     assert!(!shallow.needs(Stage::Reflection));
@@ -90,7 +91,7 @@ fn an_object_out_of_view_is_kept_for_its_shadow_or_its_mirror_image_only() {
     let mut lamp = scene();
     lamp.lights = vec![Light::Point { at: DVec3::new(9.0, 9.0, 9.0), intensity: Color::grey(1.0) }];
     assert!(!plan(&lamp).keeps_object(1), "beyond the lamp");
-    material(&mut lamp).mirror = Color::grey(0.5);
+    material(&mut lamp).mirror = Paint::grey(0.5);
     assert!(plan(&lamp).keeps_object(1), "a mirror may show it");
 }
 

@@ -270,8 +270,9 @@ mod tests {
 
     #[test]
     fn faces_keep_the_material_that_their_operand_was_given() {
-        let paint =
-            |r, g, b| Material::from(Classic { diffuse: Color::Bands(DVec3::new(r, g, b)), ..Classic::default() });
+        let paint = |r, g, b| {
+            Material::from(Classic { diffuse: Color::Bands(DVec3::new(r, g, b)).into(), ..Classic::default() })
+        };
         let red = paint(0.9, 0.1, 0.1);
         let blue = paint(0.1, 0.1, 0.9);
         let all = |one: Option<&Material>, two: Option<&Material>, whole: Option<&Material>| {

@@ -6,6 +6,7 @@ mod cage;
 mod composite;
 mod error;
 mod meeting;
+mod placing;
 mod prepared;
 mod sculpture;
 mod shape;
@@ -16,6 +17,7 @@ pub use cage::{Cage, Sharp, Sharpening};
 pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
 pub use meeting::{Meeting, meetings};
+pub use placing::{Sides, footprint};
 pub use prepared::{Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, Sheet};
 pub use shape::{Made, Rounded, Shape, ShapeError};
@@ -91,6 +93,8 @@ pub struct Settings {
     pub caustics: bool,
     /// Whether rays carry spectra; without a word, where a material or a light has one.
     pub spectral: Option<bool>,
+    /// Over how much of what a sample stands for the mean of a texture is taken: 1 is all of it, 0 a point.
+    pub texture_filter: f64,
     /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
     /// diagonal of each object.
     pub tolerance: Option<f64>,
@@ -111,6 +115,7 @@ impl Default for Settings {
             interreflection: false,
             caustics: false,
             spectral: None,
+            texture_filter: 1.0,
             tolerance: None,
             angle: 45.0,
         }
@@ -238,6 +243,10 @@ impl Settings {
         }
         if self.reflection_depth > MAX_REFLECTION_DEPTH {
             return Err(SceneError::Limit { what: "reflections in a chain", limit: u64::from(MAX_REFLECTION_DEPTH) });
+        }
+        if !(0.0..=1000.0).contains(&self.texture_filter) {
+            let problem = format!("texture filter {} is not within 0 to 1000", self.texture_filter);
+            return Err(SceneError::Setting(problem));
         }
         if !(self.angle > 0.0 && self.angle <= 180.0) {
             return Err(SceneError::Setting(format!("angle {} is not within 0 to 180 degrees", self.angle)));

@@ -1,11 +1,12 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
+use super::placing;
 use super::{Camera, Made, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::surface::Tolerance;
-use glam::{DMat3, DMat4, DVec3, Vec3};
+use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 
 /// Most triangles in a scene.
 pub const MAX_TRIANGLES: u64 = 1 << 30;
@@ -25,6 +26,8 @@ pub struct Prepared {
     pub object_of: Vec<u32>,
     /// Unit normals at the corners, for the triangles of curved objects only; see [`Prepared::corner_normals`].
     normals: Vec<[Vec3; 3]>,
+    /// Parameters of the corners, for the triangles of objects whose textures need them.
+    parameters: Vec<[DVec2; 3]>,
     /// For the triangles of objects of several materials, which of them.
     material_of: Vec<u32>,
     /// The objects, in the order of the scene.
@@ -62,6 +65,10 @@ pub struct PreparedObject {
     pub tolerance: f64,
     /// Where its corner normals begin; none for an object with flat faces.
     normals_from: Option<u32>,
+    /// Where the parameters of its corners begin; none for an object that needs none.
+    parameters_from: Option<u32>,
+    /// From scene coordinates to its own.
+    pub to_own: DMat4,
     /// Where its numbers of materials begin; none for an object of one material.
     materials_from: Option<u32>,
 }
@@ -85,6 +92,7 @@ impl Prepared {
             triangles: Vec::new(),
             object_of: Vec::new(),
             normals: Vec::new(),
+            parameters: Vec::new(),
             material_of: Vec::new(),
             objects: Vec::new(),
             lights: scene.lights.clone(),
@@ -103,7 +111,7 @@ impl Prepared {
 
     fn add(&mut self, object: &Object) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let (Made { mesh, operand_of, lines, .. }, tolerance) =
+        let (Made { mesh, surfaces, operand_of, lines }, tolerance) =
             object.made(self.settings.tolerance, self.settings.angle)?;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
@@ -127,6 +135,10 @@ impl Prepared {
         }));
         self.object_of.resize(self.triangles.len(), self.objects.len() as u32);
         let normals_from = self.add_normals(&mesh, &object.transform, mirrored);
+        let parameters_from = object.needs_parameters(&operand_of).then_some(self.parameters.len() as u32);
+        if parameters_from.is_some() {
+            self.parameters.extend(placing::parameters(&mesh, &surfaces, mirrored));
+        }
         let (materials, materials_from) = self.add_materials(object, &operand_of);
         self.bounds = self.bounds.union(bounds);
         self.objects.push(PreparedObject {
@@ -138,6 +150,8 @@ impl Prepared {
             bounds,
             tolerance,
             normals_from,
+            parameters_from,
+            to_own: object.transform.inverse(),
             materials_from,
         });
         Ok(())
@@ -199,6 +213,12 @@ impl Prepared {
         object.normals_from.map(|from| &self.normals[(from + triangle - object.first) as usize])
     }
 
+    /// The parameters of the corners of a triangle, where a texture needs them: 0..1 over the domain of its exact surface.
+    pub fn parameters(&self, triangle: u32) -> Option<&[DVec2; 3]> {
+        let object = self.object(triangle);
+        object.parameters_from.map(|from| &self.parameters[(from + triangle - object.first) as usize])
+    }
+
     /// The view of the scene's own camera.
     pub fn view(&self) -> View {
         View::Camera(self.camera)
@@ -210,6 +230,7 @@ impl Prepared {
             + size_of_val(&self.triangles[..])
             + size_of_val(&self.object_of[..])
             + size_of_val(&self.normals[..])
+            + size_of_val(&self.parameters[..])
             + size_of_val(&self.material_of[..])
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::color::Color;
+use crate::illumination::Paint;
 use crate::illumination::material::Classic;
 use crate::numeric::bounds::Bounds;
 use crate::solid::Primitive;
@@ -24,7 +25,7 @@ fn problem(change: impl Fn(&mut Scene)) -> String {
 #[test]
 fn problems_name_the_object_or_the_light() {
     assert!(
-        problem(|s| s.objects[0].material = Some(Classic { diffuse: Color::grey(1.5), ..Classic::default() }.into()))
+        problem(|s| s.objects[0].material = Some(Classic { diffuse: Paint::grey(1.5), ..Classic::default() }.into()))
             .starts_with("ball: diffuse reflectance")
     );
     assert!(

@@ -98,7 +98,7 @@ fn flat_normals(mesh: &Mesh) -> Vec<[DVec3; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::Color;
+    use crate::illumination::Paint;
     use crate::illumination::material::Classic;
     use crate::scene::{Composite, Operation};
     use crate::solid::Primitive;
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn materials_of_operands_become_looks_of_surfaces() {
-        let grey = || Color::grey(0.35);
+        let grey = || Paint::grey(0.35);
         let shine = Classic { mirror: grey(), diffuse: grey(), ..Classic::default() }.into();
         let mut can = object("can", Primitive::Cylinder { radius: 1.0, height: 2.0 }, 0.0);
         let mut drill = object("drill", Primitive::Cylinder { radius: 0.5, height: 4.0 }, 0.0);

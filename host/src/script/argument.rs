@@ -6,6 +6,7 @@ use super::lists::{contours, curve, indices, loops, numbers, objects, points, si
 use super::spline::ControlMeaning;
 use crate::color::{Color, shipped};
 use crate::curve::SplineCurve;
+use crate::illumination::Paint;
 use crate::solid::primitive::path;
 use crate::surface::SurfaceSide;
 use glam::DVec3;
@@ -19,7 +20,7 @@ enum Argument {
     Integer(i64),
     Vector(DVec3),
     Text(String),
-    Color(Color),
+    Paint(Paint),
     Flag(bool),
     Scalar(Dynamic),
     Contours(Vec<Vec<DVec3>>),
@@ -138,7 +139,7 @@ values! {
     number: Number -> f64,
     integer: Integer -> i64,
     vector: Vector -> DVec3,
-    color: Color -> Color,
+    paint: Paint -> Paint,
     scalar: Scalar -> Dynamic,
     flag: Flag -> bool,
     numbers: Numbers -> Vec<Vec<f64>>,
@@ -177,7 +178,9 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
             let bands = || vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Color::Bands);
             let name = value.read_lock::<rhai::ImmutableString>();
             let named = |name: &str| shipped::patch(name).ok().map(Color::Spectrum);
-            name.map_or_else(bands, |name| named(&name)).map(Argument::Color)
+            let plain = || name.map_or_else(bands, |name| named(&name)).map(Paint::Plain);
+            let paint = value.read_lock::<Paint>().map(|paint| paint.clone());
+            paint.or_else(plain).map(Argument::Paint)
         }
         Kind::Powers => vector_or_number(value).filter(|v| within(*v, 0.0, f64::MAX)).map(Argument::Vector),
         Kind::Axis => {
@@ -221,6 +224,7 @@ fn shown(value: &Dynamic) -> String {
         (value.is::<Handle>(), "an object"),
         (value.is::<SplineCurve>(), "a curve"),
         (value.is::<ControlMeaning>(), "a kind of spline"),
+        (value.is::<Paint>(), "a pattern"),
     ] {
         if is_one {
             return words.into();

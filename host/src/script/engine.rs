@@ -8,6 +8,7 @@ use super::function::Function;
 use super::spline::ControlMeaning;
 use super::{Evaluated, functions};
 use crate::curve::SplineCurve;
+use crate::illumination::Paint;
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, NativeCallContext};
 use std::cell::RefCell;
@@ -66,6 +67,7 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definitio
     engine.register_type_with_name::<Handle>("object");
     engine.register_type_with_name::<ControlMeaning>("spline");
     engine.register_type_with_name::<SplineCurve>("curve");
+    engine.register_type_with_name::<Paint>("pattern");
     for function in functions() {
         bind(&mut engine, function, &state);
         if let Some((symbol, _)) = OPERATORS.iter().find(|(_, name)| *name == function.name) {

@@ -62,7 +62,7 @@ pub enum Kind {
     Lengths,
     /// Reflected fractions 0 to 1: `[red, green, blue]`, or one number for all.
     Fractions,
-    /// What is reflected: fractions, or the name of a spectrum.
+    /// What is reflected: fractions, the name of a spectrum, or a pattern.
     Reflectance,
     /// Powers 0 and more: `[red, green, blue]`, or one number for all.
     Powers,
@@ -127,7 +127,9 @@ impl Kind {
             Kind::Factors => "a number or three [x, y, z], none of them 0".into(),
             Kind::Lengths => "a length above 0, or three [x, y, z]".into(),
             Kind::Fractions => "a number from 0 to 1, or three [red, green, blue]".into(),
-            Kind::Reflectance => "a number from 0 to 1, three [red, green, blue], or the name of a reflectance".into(),
+            Kind::Reflectance => {
+                "a number from 0 to 1, three [red, green, blue], the name of a reflectance, or a pattern".into()
+            }
             Kind::Powers => "a number not below 0, or three [red, green, blue]".into(),
             Kind::Axis => "\"x\", \"y\", \"z\" or a vector [x, y, z]".into(),
             Kind::Text => "a string".into(),

@@ -6,6 +6,7 @@ use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, Parameter, parameter};
 use super::lighting::{SPECTRUM, color_of_light};
 use crate::color::{Color, shipped};
+use crate::illumination::Paint;
 use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
 use glam::DVec2;
 
@@ -34,11 +35,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
         action: |builder, bound| {
             let Classic { diffuse, specular, exponent, mirror, transparency } = Classic::default();
             let classic = Classic {
-                diffuse: bound.color("diffuse").unwrap_or(diffuse),
-                specular: bound.color("specular").unwrap_or(specular),
+                diffuse: bound.paint("diffuse").unwrap_or(diffuse),
+                specular: bound.paint("specular").unwrap_or(specular),
                 exponent: bound.number("exponent").unwrap_or(exponent),
-                mirror: bound.color("mirror").unwrap_or(mirror),
-                transparency: bound.color("transparency").unwrap_or(transparency),
+                mirror: bound.paint("mirror").unwrap_or(mirror),
+                transparency: bound.paint("transparency").unwrap_or(transparency),
             };
             give(builder, bound, Body::Classic(classic))
         },
@@ -95,7 +96,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         ],
         example: "pot.coated([0.7, 0.1, 0.1], 0.05);",
         action: |builder, bound| {
-            let diffuse = bound.color("diffuse").unwrap_or(Color::grey(0.7));
+            let diffuse = bound.paint("diffuse").unwrap_or(Paint::grey(0.7));
             let (index, roughness) = (bound.number("index").unwrap_or(1.5), bound.number("roughness").unwrap_or(0.0));
             give(builder, bound, Body::Coated(Coated { diffuse, index, roughness }))
         },
@@ -115,7 +116,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 name: bound.text("distribution").unwrap_or_default().to_owned(),
                 roughness: bound.number("roughness").unwrap_or(0.3),
             };
-            let reflectance = bound.color("reflectance").unwrap_or(Color::BLACK);
+            let reflectance = bound.paint("reflectance").unwrap_or(Paint::grey(0.0));
             give(builder, bound, Body::Shaped(Shaped { reflectance, form }))
         },
     },
@@ -133,11 +134,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
 ];
 
-/// Gives an object a body; what it emits stays.
+/// Gives an object a body; what it emits and its relief stay.
 fn give(builder: &mut Builder, bound: &Bound, body: Body) -> Done {
     let object = builder.object(bound.object("object"))?;
-    let emission = object.material.as_ref().map_or(Color::BLACK, |material| material.emission.clone());
-    let material = Material { body, emission };
+    let Material { emission, relief, .. } = object.material.clone().unwrap_or_default();
+    let material = Material { body, emission, relief };
     material.check().map_err(|error| error.to_string())?;
     object.material = Some(material);
     Ok(value(bound.object("object")))

@@ -19,6 +19,7 @@ mod spline;
 mod subdividing;
 mod surfaces;
 mod table;
+mod texturing;
 
 #[cfg(test)]
 mod surface_tests;
@@ -41,6 +42,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         surfaces::FUNCTIONS,
         subdividing::FUNCTIONS,
         materials::FUNCTIONS,
+        texturing::FUNCTIONS,
         lighting::FUNCTIONS,
         table::FUNCTIONS,
     ]
@@ -60,7 +62,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 9] = [
+pub const EMBEDDED: [Embedded; 10] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -100,6 +102,11 @@ pub const EMBEDDED: [Embedded; 9] = [
         name: "materials",
         summary: "metals, glass that disperses, varnish, plastic, glaze and plain colors under lights that have a size",
         text: include_str!("../../scenes/materials.rhai"),
+    },
+    Embedded {
+        name: "textures",
+        summary: "wood, marble, tiles and plaster: patterns through bodies and on surfaces, and reliefs",
+        text: include_str!("../../scenes/textures.rhai"),
     },
     Embedded {
         name: "vases",

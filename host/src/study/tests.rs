@@ -3,6 +3,7 @@
 use super::*;
 use crate::color::Color;
 use crate::illumination::Light;
+use crate::illumination::Paint;
 use crate::illumination::material::Classic;
 use crate::scene::{Cage, Composite, Object, Operation, Sculpture, Settings, Shape, Sheet};
 use crate::solid::Primitive;
@@ -11,7 +12,7 @@ use glam::{DMat4, DVec3};
 /// One white object under parallel light.
 fn scene(shape: Shape) -> Scene {
     let light = Light::Directional { direction: DVec3::new(0.0, -1.0, -1.0), irradiance: Color::grey(3.0) };
-    let material = Classic { diffuse: Color::grey(1.0), ..Classic::default() }.into();
+    let material = Classic { diffuse: Paint::grey(1.0), ..Classic::default() }.into();
     let object =
         Object { name: "it".into(), shape, transform: DMat4::IDENTITY, material: Some(material), tolerance: None };
     let settings = Settings { width: 40, height: 40, ..Settings::default() };

@@ -146,6 +146,7 @@ pub fn hue_saturation(color: Bands) -> [f64; 2] {
 mod tests {
     use super::*;
     use crate::color::Color;
+    use crate::illumination::Paint;
     use crate::illumination::material::Classic;
     use crate::mesh;
 
@@ -195,11 +196,11 @@ mod tests {
 
     #[test]
     fn materials_and_lights_stay_within_the_ranges_of_the_machine() {
-        let (black, white) = (Color::BLACK, Color::grey(1.0));
+        let (black, white) = (Paint::grey(0.0), Paint::grey(1.0));
         let mirror = Classic { diffuse: black, mirror: white, exponent: 1e6, ..Classic::default() };
         let seen = attributes(&mirror.into()).front;
         assert_eq!((seen.color, seen.diffuse, seen.specular), ([0.0, 0.0, 1.0], LEAST_DIFFUSE, 10));
-        let matt = attributes(&Classic { diffuse: Color::grey(0.5), ..Classic::default() }.into()).front;
+        let matt = attributes(&Classic { diffuse: Paint::grey(0.5), ..Classic::default() }.into()).front;
         assert!((matt.color[2] - 0.5_f64.powf(1.0 / 2.2)).abs() < 1e-12 && matt.diffuse == 1.0);
         let at = DVec3::new(0.0, 1.0, 0.0);
         let lamp =

@@ -287,7 +287,7 @@ mod tests {
             name: "operand".into(),
             shape: Shape::Solid(primitive),
             transform: DMat4::IDENTITY,
-            material: Some(Classic { diffuse: Color::Bands(diffuse), ..Classic::default() }.into()),
+            material: Some(Classic { diffuse: Color::Bands(diffuse).into(), ..Classic::default() }.into()),
             tolerance: None,
         };
         let plate = operand(Primitive::Box { size: DVec3::new(4.0, 1.0, 4.0) }, DVec3::X);

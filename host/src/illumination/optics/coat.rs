@@ -1,6 +1,7 @@
 //! A transparent coat on a diffuse ground: plastic, varnish, glaze.
 
 use super::Sighting;
+use super::shade::Shade;
 use crate::color::{Channels, Curve};
 use crate::illumination::distribution::{Distribution, Microfacet};
 use crate::illumination::fresnel::Dielectric;
@@ -108,28 +109,53 @@ impl Coat {
 #[derive(Clone, Debug)]
 pub(super) struct Ground {
     coat: Arc<Coat>,
-    /// K (1 − R) / (π T̄ (1 − K R))
-    fraction: Curve,
+    /// T̄ and R.
+    mean: f64,
+    back: f64,
+    fraction: Fraction,
+}
+
+/// K (1 − R) / (π T̄ (1 − K R)), or K.
+#[derive(Clone, Debug)]
+enum Fraction {
+    Known(Curve),
+    Painted(Shade),
 }
 
 impl Ground {
-    /// - `index`: of the coat over that of what is above. `reflectance`: of the ground, of a comb.
-    pub(super) fn new(coat: Arc<Coat>, index: f64, reflectance: impl Fn(usize) -> Channels, combs: usize) -> Ground {
+    /// - `index`: of the coat over that of what is above. `reflectance`: of the ground. `combs`: how many there are.
+    pub(super) fn new(coat: Arc<Coat>, index: f64, reflectance: &Shade, combs: usize) -> Ground {
         let mean = coat.mean_through();
-        let square = index * index;
         // Where the coat is the thinner medium, nothing is reflected back but what Fresnel's term says.
-        let back = (1.0 - mean / square).max(0.0);
-        let factor = |k: f64| k * FRAC_1_PI * (1.0 - back) / (mean * (1.0 - k * back));
-        Ground { coat, fraction: Curve::each(combs, |comb| reflectance(comb).map(factor)) }
+        let back = (1.0 - mean / (index * index)).max(0.0);
+        let fraction = match reflectance {
+            Shade::Plain(curve) => {
+                Fraction::Known(Curve::each(combs, |comb| curve.of(comb).map(|k| series(k, mean, back))))
+            }
+            painted => Fraction::Painted(painted.clone()),
+        };
+        Ground { coat, mean, back, fraction }
+    }
+
+    fn fraction(&self, sighting: &Sighting) -> Channels {
+        match &self.fraction {
+            Fraction::Known(curve) => curve.of(sighting.comb),
+            Fraction::Painted(shade) => shade.of(sighting).map(|k| series(k, self.mean, self.back)),
+        }
     }
 
     /// D K / (N·V), 1/sr.
     pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
-        self.fraction.of(sighting.comb) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
+        self.fraction(sighting) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
     }
 
     /// About what it reflects.
     pub(super) fn strength(&self, sighting: &Sighting) -> f64 {
-        self.fraction.of(sighting.comb).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)
+        self.fraction(sighting).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)
     }
+}
+
+/// K (1 − R) / (π T̄ (1 − K R)).
+fn series(k: f64, mean: f64, back: f64) -> f64 {
+    k * FRAC_1_PI * (1.0 - back) / (mean * (1.0 - k * back))
 }

@@ -4,13 +4,15 @@ use super::coat::{Coat, Ground};
 use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth};
 use super::lobe::Lobe;
+use super::shade::{Painted, Shade};
 use super::{Interior, Optics, Which};
-use crate::color::{Color, LANES, Wavelengths};
+use crate::color::{LANES, Wavelengths};
 use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Facets, Microfacet, Phong};
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
 use crate::illumination::material::{
     Body, Classic, Coated, Finish, Form, Index, Material, MaterialError, Metal, Shaped, Transparent,
 };
+use crate::illumination::texture::Paint;
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -41,7 +43,9 @@ impl<'a> Library<'a> {
         let diffuse = if spreads { Which::Continued } else { Which::Ended };
         let mut optics = Optics {
             lobes: Vec::new(),
-            ambient: self.wavelengths.constant(0.0),
+            ambient: Shade::Plain(self.wavelengths.constant(0.0)),
+            patterns: Vec::new(),
+            relief: material.relief.clone(),
             emission: (!material.emission.is_black()).then(|| self.wavelengths.light(&material.emission)),
             interior: None,
             along: None,
@@ -58,7 +62,7 @@ impl<'a> Library<'a> {
                     Shape::Once(distribution) => distribution,
                     Shape::All(compensated) => compensated,
                 };
-                let fraction = self.wavelengths.reflectance(reflectance);
+                let fraction = self.shade(reflectance, &mut optics);
                 optics.ambient = fraction.clone();
                 optics.lobes.push((Which::Continued, Lobe::Shaped(fraction, distribution)));
             }
@@ -70,23 +74,19 @@ impl<'a> Library<'a> {
     }
 
     fn classic(&self, classic: &Classic, diffuse: Which, optics: &mut Optics) -> Result<(), MaterialError> {
-        let fraction = |color: &Color| {
-            let curve = self.wavelengths.reflectance(color);
-            (self.everything || curve.max() > 0.0).then_some(curve)
-        };
-        if let Some(curve) = fraction(&classic.diffuse) {
-            optics.ambient = curve.clone();
-            optics.lobes.push((diffuse, Lobe::Diffuse(curve)));
+        if let Some(shade) = self.needed(&classic.diffuse, optics) {
+            optics.ambient = shade.clone();
+            optics.lobes.push((diffuse, Lobe::Diffuse(shade)));
         }
-        if let Some(curve) = fraction(&classic.specular) {
-            optics.lobes.push((diffuse, Lobe::Phong(curve, Phong::new(classic.exponent)?)));
+        if let Some(shade) = self.needed(&classic.specular, optics) {
+            optics.lobes.push((diffuse, Lobe::Phong(shade, Phong::new(classic.exponent)?)));
         }
-        if let Some(curve) = fraction(&classic.mirror) {
-            optics.lobes.push((Which::Continued, Lobe::Mirror(curve)));
+        if let Some(shade) = self.needed(&classic.mirror, optics) {
+            optics.lobes.push((Which::Continued, Lobe::Mirror(shade)));
         }
-        if let Some(curve) = fraction(&classic.transparency) {
-            optics.passing = Some(curve.clone());
-            optics.lobes.push((Which::Continued, Lobe::Straight(curve)));
+        if let Some(shade) = self.needed(&classic.transparency, optics) {
+            optics.passing = Some(shade.clone());
+            optics.lobes.push((Which::Continued, Lobe::Straight(shade)));
         }
         Ok(())
     }
@@ -141,13 +141,32 @@ impl<'a> Library<'a> {
         };
         let coat = Arc::new(Coat::new(surface, facets));
         optics.lobes.push((Which::Continued, Lobe::Coat(coat.clone())));
-        let fraction = self.wavelengths.reflectance(&coated.diffuse);
-        if self.everything || fraction.max() > 0.0 {
-            let ground = Ground::new(coat, coated.index, |comb| fraction.of(comb), self.wavelengths.combs());
+        if let Some(shade) = self.needed(&coated.diffuse, optics) {
+            let ground = Ground::new(coat, coated.index, &shade, self.wavelengths.combs());
             optics.lobes.push((diffuse, Lobe::Ground(ground)));
-            optics.ambient = fraction;
+            optics.ambient = shade;
         }
         Ok(())
+    }
+
+    /// A fraction of light; its pattern goes to the others of the material.
+    fn shade(&self, paint: &Paint, optics: &mut Optics) -> Shade {
+        match paint {
+            Paint::Plain(color) => Shade::Plain(self.wavelengths.reflectance(color)),
+            Paint::Pattern(pattern) => {
+                optics.patterns.push(Painted::new(pattern, self.wavelengths));
+                Shade::Painted(optics.patterns.len() - 1)
+            }
+        }
+    }
+
+    /// A fraction of light; none if it is 0 and may be left out.
+    fn needed(&self, paint: &Paint, optics: &mut Optics) -> Option<Shade> {
+        match paint {
+            Paint::Plain(color) if !self.everything && self.wavelengths.reflectance(color).max() <= 0.0 => None,
+            Paint::Pattern(_) if !self.everything && paint.is_black() => None,
+            _ => Some(self.shade(paint, optics)),
+        }
     }
 
     /// A member of the family.

@@ -3,8 +3,9 @@
 use super::coat::{Coat, Ground};
 use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth};
+use super::shade::Shade;
 use super::{Onward, Sighting};
-use crate::color::{Channels, Curve};
+use crate::color::Channels;
 use crate::illumination::distribution::{Distribution, Phong};
 use crate::illumination::fresnel::Conductor;
 use crate::numeric::sampling::cosine_hemisphere;
@@ -25,15 +26,15 @@ pub struct Side {
 #[derive(Clone, Debug)]
 pub(super) enum Lobe {
     /// Equal luminance everywhere.
-    Diffuse(Curve),
+    Diffuse(Shade),
     /// Phong's highlight.
-    Phong(Curve, Phong),
+    Phong(Shade, Phong),
     /// A mirror.
-    Mirror(Curve),
+    Mirror(Shade),
     /// What goes straight through.
-    Straight(Curve),
+    Straight(Shade),
     /// A fraction, distributed by a D.
-    Shaped(Curve, Arc<dyn Distribution>),
+    Shaped(Shade, Arc<dyn Distribution>),
     /// A polished metal.
     Polished(Arc<Vec<[Conductor; crate::color::LANES]>>),
     /// A metal of facets.
@@ -68,9 +69,9 @@ impl Lobe {
             return Channels::ZERO;
         }
         match self {
-            Lobe::Diffuse(fraction) => fraction.of(sighting.comb) * FRAC_1_PI,
-            Lobe::Phong(fraction, phong) => fraction.of(sighting.comb) * (phong.density(light, view) / view.z),
-            Lobe::Shaped(fraction, form) => fraction.of(sighting.comb) * (form.density(light, view) / view.z),
+            Lobe::Diffuse(fraction) => fraction.of(sighting) * FRAC_1_PI,
+            Lobe::Phong(fraction, phong) => fraction.of(sighting) * (phong.density(light, view) / view.z),
+            Lobe::Shaped(fraction, form) => fraction.of(sighting) * (form.density(light, view) / view.z),
             Lobe::Metallic(metal) => metal.value(sighting, light),
             Lobe::Coat(coat) => coat.value(sighting, light),
             Lobe::Ground(ground) => ground.value(sighting, light),
@@ -121,11 +122,13 @@ impl Lobe {
         let reflected = DVec3::new(-view.x, -view.y, view.z);
         let onward = |light: DVec3, weight: Channels| Onward { light, weight, density: None, is_straight: false };
         match self {
-            Lobe::Mirror(fraction) => [Some(onward(reflected, fraction.of(comb))), None],
+            Lobe::Mirror(fraction) => [Some(onward(reflected, fraction.of(sighting))), None],
             Lobe::Polished(metal) => {
                 [Some(onward(reflected, reflectance(&metal[comb.min(metal.len() - 1)], view.z))), None]
             }
-            Lobe::Straight(fraction) => [Some(Onward { is_straight: true, ..onward(-view, fraction.of(comb)) }), None],
+            Lobe::Straight(fraction) => {
+                [Some(Onward { is_straight: true, ..onward(-view, fraction.of(sighting)) }), None]
+            }
             Lobe::Coat(coat) if coat.is_polished() => {
                 [Some(onward(reflected, Channels::splat(coat.reflected(view.z)))), None]
             }
@@ -136,13 +139,13 @@ impl Lobe {
 
     /// About what it reflects to the viewer of all the light; more than 0 where it reflects anything.
     pub(super) fn strength(&self, sighting: &Sighting) -> f64 {
-        let Sighting { view, comb, .. } = *sighting;
+        let view = sighting.view;
         match self {
             Lobe::Diffuse(fraction)
             | Lobe::Phong(fraction, _)
             | Lobe::Mirror(fraction)
             | Lobe::Straight(fraction)
-            | Lobe::Shaped(fraction, _) => fraction.of(comb).max(),
+            | Lobe::Shaped(fraction, _) => fraction.of(sighting).max(),
             Lobe::Polished(_) | Lobe::Metallic(_) | Lobe::Smooth(_) | Lobe::Rough(_) => 1.0,
             // Where Fresnel's term vanishes, so does what is reflected; a rough coat may still show tilted facets.
             Lobe::Coat(coat) => coat.reflected(view.z).max(if coat.is_polished() { 0.0 } else { 0.02 }),

@@ -11,18 +11,24 @@ mod facets;
 mod interface;
 mod library;
 mod lobe;
+mod shade;
 #[cfg(test)]
 mod tests;
 
 pub use library::Library;
 pub use lobe::Side;
 
+use super::texture::{Place, Relief};
 use crate::color::{Channels, Curve};
 use glam::DVec3;
 use lobe::Lobe;
+use shade::{Painted, Shade};
 
-/// Most lobes of a material.
+/// Most lobes of a material, each of which may have a pattern.
 const MOST_LOBES: usize = 4;
+
+/// What the patterns of a material give at a place.
+pub type Painting = [Channels; MOST_LOBES];
 
 /// Which of the lobes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,15 +44,17 @@ pub enum Which {
 pub struct Optics {
     lobes: Vec<(Which, Lobe)>,
     /// What the ambient term reflects.
-    ambient: Curve,
+    ambient: Shade,
+    patterns: Vec<Painted>,
+    relief: Option<Relief>,
+    /// The part of light that goes straight through; none if none does.
+    passing: Option<Shade>,
     /// Radiance that it emits; none if it does not.
     pub emission: Option<Curve>,
     /// What is inside, where it is transparent.
     pub interior: Option<Interior>,
     /// The direction along which it is brushed.
     pub along: Option<DVec3>,
-    /// The part of light that goes straight through; none if none does.
-    pub passing: Option<Curve>,
 }
 
 /// What is behind the surface of a transparent body.
@@ -62,7 +70,7 @@ pub struct Interior {
 
 /// How an element is seen, and what is on its two sides.
 #[derive(Clone, Copy, Debug)]
-pub struct Sighting {
+pub struct Sighting<'a> {
     /// Towards the viewer.
     pub view: DVec3,
     /// Which wavelengths are carried.
@@ -71,6 +79,8 @@ pub struct Sighting {
     pub side: Side,
     /// For which lane refracted directions are drawn.
     pub lane: usize,
+    /// What the patterns give at the place, as [`Optics::paint`] tells; nothing for a material that has none.
+    pub painted: &'a [Channels],
 }
 
 /// Where a ray goes on, backwards to where its light comes from.
@@ -133,8 +143,47 @@ impl Optics {
     }
 
     /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
-    pub fn ambient(&self, comb: usize) -> Channels {
-        self.ambient.of(comb)
+    pub fn ambient(&self, sighting: &Sighting) -> Channels {
+        self.ambient.of(sighting)
+    }
+
+    /// Whether it changes from place to place.
+    pub fn is_textured(&self) -> bool {
+        !self.patterns.is_empty() || self.relief.is_some()
+    }
+
+    /// What its patterns give in the mean over a place.
+    pub fn paint(&self, place: &Place, comb: usize) -> Painting {
+        let mut painting = Painting::default();
+        for (color, pattern) in painting.iter_mut().zip(&self.patterns) {
+            *color = pattern.at(place, comb);
+        }
+        painting
+    }
+
+    /// The normal of an element, tilted by the relief.
+    ///
+    /// - `normal`: of the surface, unit length, outwards.
+    pub fn tilted(&self, place: &Place, normal: DVec3) -> DVec3 {
+        self.relief.as_ref().map_or(normal, |relief| relief.normal(place, normal))
+    }
+
+    /// Whether light goes straight through.
+    pub fn is_passable(&self) -> bool {
+        self.passing.is_some()
+    }
+
+    /// The part of light that goes straight through.
+    ///
+    /// - `place`: asked for only if a pattern has to be looked up.
+    pub fn passing(&self, comb: usize, place: impl FnOnce() -> Place) -> Channels {
+        match &self.passing {
+            None => Channels::ZERO,
+            Some(Shade::Plain(curve)) => curve.of(comb),
+            Some(Shade::Painted(number)) => {
+                self.patterns.get(*number).map_or(Channels::ZERO, |pattern| pattern.at(&place(), comb))
+            }
+        }
     }
 
     /// Whether some lobe of a kind answers lights.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::color::{Color, Wavelengths, shipped};
 use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
+use crate::illumination::texture::Paint;
 use crate::numeric::cubature::unit_square;
 use crate::numeric::sampling::{Stream, sphere};
 use std::f64::consts::{PI, TAU};
@@ -11,10 +12,10 @@ fn ready(material: &Material, wavelengths: &Wavelengths) -> Optics {
     Library::new(wavelengths, false).optics(material, true).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn sighting(degrees: f64, before: f64, behind: f64) -> Sighting {
+fn sighting(degrees: f64, before: f64, behind: f64) -> Sighting<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let side = Side { before: Channels::splat(before), behind: Channels::splat(behind) };
-    Sighting { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0 }
+    Sighting { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &[] }
 }
 
 fn copper(finish: Finish) -> Material {
@@ -60,7 +61,7 @@ fn integral(optics: &Optics, sighting: &Sighting) -> f64 {
 fn a_white_coated_ground_returns_what_it_gets() {
     let wavelengths = Wavelengths::bands();
     for (index, roughness) in [(1.5, 0.0), (1.33, 0.0), (2.4, 0.0), (1.0, 0.0), (1.5, 0.1), (1.5, 0.7)] {
-        let material = Body::Coated(Coated { diffuse: Color::grey(1.0), index, roughness }).into();
+        let material = Body::Coated(Coated { diffuse: Paint::grey(1.0), index, roughness }).into();
         let optics = ready(&material, &wavelengths);
         for degrees in [0.0, 40.0, 75.0, 88.0] {
             let sighting = sighting(degrees, 1.0, 1.0);
@@ -75,7 +76,7 @@ fn a_white_coated_ground_returns_what_it_gets() {
 fn samples_and_values_tell_the_same_of_every_material() {
     let wavelengths = Wavelengths::bands();
     let classic =
-        Classic { diffuse: Color::grey(0.4), specular: Color::grey(0.3), exponent: 20.0, ..Classic::default() };
+        Classic { diffuse: Paint::grey(0.4), specular: Paint::grey(0.3), exponent: 20.0, ..Classic::default() };
     let glass = |roughness| {
         Material::from(Body::Transparent(Transparent {
             index: Index::Constant(1.5),
@@ -89,8 +90,8 @@ fn samples_and_values_tell_the_same_of_every_material() {
         (copper(rough("Beckmann", 0.3)), 1.0),
         (copper(rough("GGX, all", 0.6)), 1.0),
         (copper(rough("improved (7)", 0.4)), 1.0),
-        (Body::Shaped(Shaped { reflectance: Color::grey(0.8), form: shaped }).into(), 1.0),
-        (Body::Coated(Coated { diffuse: Color::grey(0.6), index: 1.5, roughness: 0.2 }).into(), 1.0),
+        (Body::Shaped(Shaped { reflectance: Paint::grey(0.8), form: shaped }).into(), 1.0),
+        (Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.2 }).into(), 1.0),
         (glass(0.3), 1.5),
         (glass(0.15), 1.5),
     ];
@@ -113,7 +114,7 @@ fn densities_are_those_with_which_directions_are_drawn() {
     let rough_glass = Transparent { index: Index::Constant(1.5), roughness: 0.4, absorption: Color::BLACK };
     let materials = [
         copper(rough("GGX", 0.4)),
-        Body::Coated(Coated { diffuse: Color::grey(0.6), index: 1.5, roughness: 0.3 }).into(),
+        Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.3 }).into(),
         Body::Transparent(rough_glass).into(),
     ];
     for material in materials {
@@ -205,17 +206,17 @@ fn copper_under_white_light_has_the_color_of_its_reflectance() {
 #[test]
 fn straight_light_goes_on_and_impossible_materials_are_errors() {
     let wavelengths = Wavelengths::bands();
-    let curtain = Classic { transparency: Color::grey(0.25), ..Classic::default() };
+    let curtain = Classic { transparency: Paint::grey(0.25), ..Classic::default() };
     let optics = ready(&curtain.into(), &wavelengths);
     let straight: Vec<Onward> = optics.mirrored(&sighting(30.0, 1.0, 1.0)).collect();
     assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && optics.passing.is_some());
     let mut library = Library::new(&wavelengths, false);
     let mut refused = |material: Material| library.optics(&material, true).unwrap_err().to_string();
-    let loud = Classic { diffuse: Color::grey(1.5), ..Classic::default() };
+    let loud = Classic { diffuse: Paint::grey(1.5), ..Classic::default() };
     assert!(refused(loud.into()).contains("diffuse reflectance"));
     assert!(refused(copper(rough("Beckman", 0.3))).contains("there are Lambert, Phong"));
     assert!(refused(copper(rough("Beckmann", -0.3))).contains("roughness"));
-    let hollow = Coated { diffuse: Color::grey(0.5), index: 0.0, roughness: 0.0 };
+    let hollow = Coated { diffuse: Paint::grey(0.5), index: 0.0, roughness: 0.0 };
     assert!(refused(Body::Coated(hollow).into()).contains("index"));
 }
 

@@ -12,6 +12,27 @@ pub(super) struct Sight {
     pub(super) ray: Ray,
     pub(super) t_min: f64,
     pub(super) t_max: f64,
+    /// What of the scene the ray stands for.
+    pub(super) cone: Cone,
+}
+
+/// How wide what a ray stands for is, scene units.
+///
+/// # Source
+/// Amanatides 1984, ray tracing with cones; as Akenine-Möller and others 2021 use it to filter textures.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Cone {
+    /// Where the ray begins.
+    pub(super) width: f64,
+    /// How much wider it becomes in each unit of length.
+    pub(super) growth: f64,
+}
+
+impl Cone {
+    /// At a distance.
+    pub(super) fn at(&self, distance: f64) -> f64 {
+        self.width + self.growth * distance
+    }
 }
 
 /// Makes the rays of a view.
@@ -21,6 +42,8 @@ pub(super) struct Eye {
     /// Clip coordinates a pixel to the right and a pixel down.
     step: [f64; 2],
     kind: Kind,
+    /// How much of a pixel a ray stands for, as a side of a square; 0 where no one asks for it.
+    part: f64,
 }
 
 enum Kind {
@@ -43,13 +66,32 @@ impl Eye {
             View::Projection(projection) => Kind::of_matrix(projection, bounds)?,
         };
         let step = [(x_max - x_min) / f64::from(width), (y_min - y_max) / f64::from(height)];
-        Some(Eye { corner: [x_min, y_max], step, kind })
+        Some(Eye { corner: [x_min, y_max], step, kind, part: 0.0 })
+    }
+
+    /// Gives rays cones that are a part of a pixel wide.
+    pub(super) fn with_cones(self, part: f64) -> Eye {
+        Eye { part, ..self }
     }
 
     /// The ray through a point of the picture in pixels from the left upper corner; none if nothing is seen there.
     ///
     /// - `through`: a point of the unit square, which chooses the point of the lens.
     pub(super) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
+        let sight = self.line(at, through)?;
+        if self.part == 0.0 {
+            return Some(sight);
+        }
+        let aside = self.line([at[0] + 1.0, at[1]], through).unwrap_or(sight);
+        let [one, two] = [sight.ray, aside.ray].map(|ray| Ray { direction: ray.direction.normalize(), ..ray });
+        let apart = two.origin - one.origin;
+        let width = (apart - one.direction * apart.dot(one.direction)).length() * self.part;
+        let growth = (two.direction - one.direction).length() * self.part;
+        Some(Sight { cone: Cone { width, growth }, ..sight })
+    }
+
+    /// The ray without its cone.
+    fn line(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
         let [x, y] = [0, 1].map(|i| self.corner[i] + at[i] * self.step[i]);
         match &self.kind {
             Kind::Camera { from, right, up, forward, near, far, lens } => {
@@ -63,7 +105,7 @@ impl Eye {
                         Ray { origin: *from + aside, direction: direction - aside / *focus }
                     }
                 };
-                Some(Sight { ray, t_min: *near, t_max: *far })
+                Some(Sight { ray, t_min: *near, t_max: *far, cone: Cone::default() })
             }
             Kind::Matrix { rows, base, radius, depth_clipping } => {
                 let mut sight = line(rows, x, y, *radius, *depth_clipping)?;
@@ -130,6 +172,7 @@ fn line(rows: &[DVec4; 4], x: f64, y: f64, radius: f64, depth_clipping: bool) ->
         ray: Ray { origin, direction },
         t_min: range[0],
         t_max: range[1],
+        cone: Cone::default(),
     })
 }
 
@@ -211,6 +254,25 @@ mod tests {
         let sight = Eye::new(&view, 10, 10, &bounds).expect("sees").ray([2.5, 2.5], [0.5; 2]).expect("ray");
         assert!((sight.ray.at(sight.t_min) - DVec3::new(-0.5, 0.5, 0.0)).length() < 1e-12);
         assert!(sight.t_max > 9e14);
+    }
+
+    #[test]
+    fn cones_are_as_wide_as_the_pixels_at_every_distance() {
+        let bounds = Bounds { min: DVec3::splat(-2.0), max: DVec3::splat(3.0) };
+        let parallel =
+            Camera { parallel: Some(crate::scene::Parallel { height: 6.0, oblique: glam::DVec2::ZERO }), ..camera() };
+        for camera in [camera(), parallel] {
+            let eye = Eye::new(&View::Camera(camera), 400, 300, &bounds).expect("sees").with_cones(1.0);
+            for at in [[200.0, 150.0], [30.0, 270.0]] {
+                let [one, two] = [at, [at[0] + 0.5, at[1] + 0.5]].map(|at| eye.ray(at, [0.5; 2]).expect("ray"));
+                for distance in [1.0, 10.0, 1000.0] {
+                    let point = |sight: &Sight| sight.ray.at(distance / sight.ray.direction.length());
+                    // Half a diagonal of a pixel.
+                    let apart = point(&one).distance(point(&two)) * 2.0_f64.sqrt();
+                    assert!((one.cone.at(distance) / apart - 1.0).abs() < 0.05, "{at:?} {distance}");
+                }
+            }
+        }
     }
 
     #[test]

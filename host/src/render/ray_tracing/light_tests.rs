@@ -3,6 +3,7 @@
 use super::tests::{diffuse, from_above, mirror, object, red, scene, trace};
 use super::*;
 use crate::color::{Beyond, Color, Spectrum};
+use crate::illumination::Paint;
 use crate::illumination::light::Patch;
 use crate::illumination::material::{Body, Classic, Coated, Finish, Index, Material, Metal, Transparent};
 use crate::illumination::{Bands, Light};
@@ -55,7 +56,7 @@ fn a_white_furnace_hides_what_loses_nothing() {
     let flat = |value: f64| Spectrum::regular(300.0, 600.0, vec![value; 2], Beyond::Held).expect("a spectrum");
     let perfect = |finish| Body::Metal(Metal { n: flat(0.0), k: flat(3.0), finish });
     let rough = Finish::Rough { name: "GGX, all".into(), roughness: 0.4 };
-    let coated = |roughness| Body::Coated(Coated { diffuse: Color::grey(1.0), index: 1.5, roughness });
+    let coated = |roughness| Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness });
     let materials: Vec<(Material, f64)> = vec![
         // Of a ball of triangles, some directions above the normal are below a triangle.
         (diffuse(1.0).into(), 5e-3),
@@ -97,7 +98,7 @@ fn glass_of_the_index_of_air_cannot_be_seen_and_absorbs_by_its_thickness() {
 fn rays_that_carry_spectra_show_the_colors_of_those_that_carry_bands() {
     // As many samples as there are combs of wavelengths: each has its turn once, and nothing else differs within a pixel.
     let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::Bands(Bands::new(3.0, 2.0, 1.0)) };
-    let floor = Classic { diffuse: Color::grey(0.6), ..Classic::default() };
+    let floor = Classic { diffuse: Paint::grey(0.6), ..Classic::default() };
     let mut scene = scene(vec![object(Shape::Ground { size: 9.0 }, DMat4::IDENTITY, floor)], vec![sun], 2);
     scene.settings.samples = 64;
     let [bands, spectra] = [false, true].map(|spectral| {

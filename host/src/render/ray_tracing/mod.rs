@@ -16,6 +16,8 @@ mod world;
 #[cfg(test)]
 mod light_tests;
 #[cfg(test)]
+mod texture_tests;
+#[cfg(test)]
 mod tests;
 
 pub use explain::Note;
@@ -78,7 +80,13 @@ impl<'a> RayTracer<'a> {
     }
 
     fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
-        Eye::new(view, order.width, order.height, &self.world.prepared.bounds).ok_or(RenderError::View)
+        let eye = Eye::new(view, order.width, order.height, &self.world.prepared.bounds).ok_or(RenderError::View)?;
+        if !self.plan.needs(Stage::Textures) {
+            return Ok(eye);
+        }
+        // The samples of a pixel share it. The slope of a relief is taken over something, at least.
+        let filter = self.world.prepared.settings.texture_filter.max(1e-3);
+        Ok(eye.with_cones(filter / f64::from(order.samples).sqrt()))
     }
 
     /// Adds samples to a film until each pixel has what the order asks for.

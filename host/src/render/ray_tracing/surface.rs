@@ -57,6 +57,14 @@ impl Element {
         Some(Element { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
     }
 
+    /// Gives it another normal for shading.
+    ///
+    /// - `view`: towards the viewer. `tilted`: from a normal outwards to another.
+    pub(super) fn tilt(&mut self, view: DVec3, tilted: impl FnOnce(DVec3) -> DVec3) {
+        let side = if self.outside { 1.0 } else { -1.0 };
+        self.normal = towards_viewer(tilted(self.normal * side) * side, view);
+    }
+
     /// A direction that the shading normal sends to the wrong side of the triangle, at its plane.
     ///
     /// Where it just grazes the plane, both agree.

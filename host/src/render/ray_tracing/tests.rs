@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::color::Color;
+use crate::illumination::Paint;
 use crate::illumination::material::Classic;
 use crate::illumination::{Bands, Light, Material};
 use crate::picture::{Operator, compose, difference};
@@ -17,11 +18,11 @@ pub(super) fn object(shape: Shape, transform: DMat4, material: impl Into<Materia
 }
 
 pub(super) fn diffuse(k: f64) -> Classic {
-    Classic { diffuse: Color::grey(k), ..Classic::default() }
+    Classic { diffuse: Paint::grey(k), ..Classic::default() }
 }
 
 pub(super) fn mirror(k: f64) -> Classic {
-    Classic { mirror: Color::grey(k), ..diffuse(0.0) }
+    Classic { mirror: Paint::grey(k), ..diffuse(0.0) }
 }
 
 pub(super) fn scene(objects: Vec<Object>, lights: Vec<Light>, side: u32) -> Scene {
@@ -56,7 +57,7 @@ pub(super) fn red(rendering: &Rendering, x: u32, y: u32) -> f64 {
 
 /// A busy scene: curved and flat, shiny and dull, two kinds of light, something out of view.
 fn still_life() -> Scene {
-    let shiny = Classic { specular: Color::grey(0.1), mirror: Color::grey(0.4), ..diffuse(0.3) };
+    let shiny = Classic { specular: Paint::grey(0.1), mirror: Paint::grey(0.4), ..diffuse(0.3) };
     let objects = vec![
         object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.6)),
         object(

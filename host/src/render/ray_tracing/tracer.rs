@@ -3,7 +3,7 @@
 use super::direct::Direct;
 use super::draws::{Draws, Purpose};
 use super::explain::{Log, Note};
-use super::eye::Sight;
+use super::eye::{Cone, Sight};
 use super::media::Media;
 use super::world::{Encounter, Found, Met, World};
 use crate::color::Channels;
@@ -140,7 +140,7 @@ impl<'a> Tracer<'a> {
                     }
                     seen.covered = true;
                     let counting = &mut Counting { counts, log: &mut log };
-                    seen.radiance += self.arrive(leg, *found, (comb, draws), counting, &mut waiting);
+                    seen.radiance += self.arrive(leg, &found, (comb, draws), counting, &mut waiting);
                 }
             }
         }
@@ -151,7 +151,7 @@ impl<'a> Tracer<'a> {
     fn arrive(
         &self,
         mut leg: Leg,
-        found: Found<'_>,
+        found: &Found<'_>,
         (comb, draws): (usize, &Draws),
         Counting { counts, log }: &mut Counting<'_, '_>,
         waiting: &mut Vec<Leg>,
@@ -159,9 +159,9 @@ impl<'a> Tracer<'a> {
         let optics = found.optics;
         let towards = leg.sight.ray.direction.normalize();
         leg.passed *= leg.media.absorbed(self.world, found.distance, comb);
-        log.note(|| Note::element(leg.depth, self.world.prepared, &found));
+        log.note(|| Note::element(leg.depth, self.world.prepared, found));
         let mut sum = Channels::ZERO;
-        if let Some((emission, density)) = self.world.emitted(&found, towards, comb) {
+        if let Some((emission, density)) = self.world.emitted(found, towards, comb) {
             sum += leg.passed * emission * self.part(&leg, density);
             log.note(|| Note::term(leg.depth, "emits", sum));
         }
@@ -174,10 +174,10 @@ impl<'a> Tracer<'a> {
         // Where wavelengths part, the one that is left is drawn together with the comb: all of them get their turn.
         let parting = draws.point(Purpose::Wavelengths)[1];
         let lane = leg.lane.unwrap_or(((parting * lanes as f64) as usize).min(lanes - 1));
-        let side = leg.media.side(self.world, &found, comb);
-        let sighting = Sighting { view: frame.local(-towards), comb, side, lane };
+        let side = leg.media.side(self.world, found, comb);
+        let sighting = Sighting { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
         if let Some(ambient) = &self.world.ambient {
-            let radiance = leg.passed * optics.ambient(comb) * ambient.of(comb);
+            let radiance = leg.passed * optics.ambient(&sighting) * ambient.of(comb);
             sum += radiance;
             log.note(|| Note::term(leg.depth, "ambient light", radiance));
         }
@@ -248,7 +248,13 @@ impl<'a> Tracer<'a> {
         }
         let origin = if through { element.through } else { element.leave };
         Some(Leg {
-            sight: Sight { ray: Ray { origin, direction }, t_min: 0.0, t_max: f64::INFINITY },
+            sight: Sight {
+                ray: Ray { origin, direction },
+                t_min: 0.0,
+                t_max: f64::INFINITY,
+                // A curved mirror widens it more; its many samples make up for that.
+                cone: Cone { width: leg.sight.cone.at(found.distance), ..leg.sight.cone },
+            },
             passed,
             depth: leg.depth + 1,
             number,

@@ -7,12 +7,12 @@ use super::tracer::counted;
 use crate::color::{Channels, Curve, Wavelengths};
 use crate::illumination::distribution::Frame;
 use crate::illumination::light::{Glow, Source};
-use crate::illumination::optics::{Library, Optics, Sighting};
-use crate::numeric::ray::Ray;
+use crate::illumination::optics::{Library, Optics, Painting, Sighting};
+use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, OctreeError, Settings as OctreeSettings};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::Prepared;
+use crate::scene::{Prepared, footprint};
 use glam::DVec3;
 
 /// A scene as rays meet it.
@@ -52,9 +52,9 @@ pub(super) enum Met<'a> {
 
 /// An element that a ray met, with the frame in which its optics has directions.
 pub(super) struct Encounter<'a> {
-    pub(super) found: Found<'a>,
+    pub(super) found: &'a Found<'a>,
     pub(super) frame: Frame,
-    pub(super) sighting: Sighting,
+    pub(super) sighting: Sighting<'a>,
     /// The choices of the sample.
     pub(super) draws: Draws,
     /// The number of the leg that met it.
@@ -73,6 +73,15 @@ pub(super) struct Found<'a> {
     pub(super) material: u32,
     /// From where the ray began.
     pub(super) distance: f64,
+    /// What the patterns of the material give; none for a material that has none.
+    painting: Option<Painting>,
+}
+
+impl Found<'_> {
+    /// What the patterns of the material give.
+    pub(super) fn painted(&self) -> &[Channels] {
+        self.painting.as_ref().map_or(&[], |painting| painting.as_slice())
+    }
 }
 
 impl<'a> World<'a> {
@@ -102,7 +111,7 @@ impl<'a> World<'a> {
             world.sources.push((number, Source::new(light, &world.wavelengths)));
         }
         world.add_emitters(plan);
-        world.passing = world.optics.iter().any(|optics| optics.passing.is_some());
+        world.passing = world.optics.iter().any(Optics::is_passable);
         Ok(world)
     }
 
@@ -157,20 +166,22 @@ impl<'a> World<'a> {
         }
         let Some(hit) = hit else { return Met::Nothing };
         let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
-        let Some(element) = Element::new(self.prepared, triangle, &sight.ray, &hit, self.curved) else {
+        let Some(mut element) = Element::new(self.prepared, triangle, &sight.ray, &hit, self.curved) else {
             return Met::Nothing;
         };
         let object = self.prepared.object_of[triangle as usize];
         let material = self.prepared.material_number(triangle);
-        let optics = &self.optics[self.optics_of[object as usize][material as usize] as usize];
-        Met::Element(Box::new(Found {
-            element,
-            optics,
-            triangle,
-            object,
-            material,
-            distance: hit.t * sight.ray.direction.length(),
-        }))
+        let optics = self.optics(object, material);
+        let length = sight.ray.direction.length();
+        let distance = hit.t * length;
+        let painting = optics.is_textured().then(|| {
+            let towards = sight.ray.direction / length;
+            let sides = footprint(element.face, towards, sight.cone.at(distance));
+            let place = self.prepared.place(triangle, weights(&hit), sides);
+            element.tilt(-towards, |normal| optics.tilted(&place, normal));
+            optics.paint(&place, comb)
+        });
+        Met::Element(Box::new(Found { element, optics, triangle, object, material, distance, painting }))
     }
 
     /// The nearest surface that emits and is no object.
@@ -225,10 +236,9 @@ impl<'a> World<'a> {
         while let Some(hit) = octree.closest(ray, from, t_max) {
             let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
             let object = self.prepared.object_of[triangle as usize];
-            match &self.optics(object, self.prepared.material_number(triangle)).passing {
-                Some(passing) => part *= passing.of(comb),
-                None => return Channels::ZERO,
-            }
+            let optics = self.optics(object, self.prepared.material_number(triangle));
+            let place = || self.prepared.place(triangle, weights(&hit), Default::default());
+            part *= optics.passing(comb, place);
             if part.max() == 0.0 {
                 return Channels::ZERO;
             }
@@ -236,6 +246,11 @@ impl<'a> World<'a> {
         }
         part
     }
+}
+
+/// How much of each corner is in a hit.
+fn weights(hit: &Hit) -> [f64; 3] {
+    [1.0 - hit.u - hit.v, hit.u, hit.v]
 }
 
 /// The octree over the objects that a plan keeps, and which triangles of the scene it holds, if not all.

@@ -1,0 +1,68 @@
+//! Paints made ready for rendering: tabulated at the wavelengths that rays carry.
+
+use super::Sighting;
+use crate::color::{Channels, Curve, Wavelengths};
+use crate::illumination::texture::{Paint, Pattern, Place};
+
+/// A fraction of light, ready.
+#[derive(Clone, Debug)]
+pub(super) enum Shade {
+    /// The same everywhere.
+    Plain(Curve),
+    /// What the pattern of a number gives at the place that is looked at.
+    Painted(usize),
+}
+
+/// A pattern, ready.
+#[derive(Clone, Debug)]
+pub(super) struct Painted {
+    pattern: Pattern,
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Debug)]
+enum Part {
+    Plain(Curve),
+    Painted(Painted),
+}
+
+impl Painted {
+    /// A pattern at some wavelengths.
+    pub(super) fn new(pattern: &Pattern, wavelengths: &Wavelengths) -> Painted {
+        let part = |paint: &Paint| match paint {
+            Paint::Plain(color) => Part::Plain(wavelengths.reflectance(color)),
+            Paint::Pattern(pattern) => Part::Painted(Painted::new(pattern, wavelengths)),
+        };
+        let parts = if pattern.is_image() {
+            wavelengths.primaries().map(Part::Plain).into()
+        } else {
+            pattern.paints.iter().map(part).collect()
+        };
+        // The paints are in the parts.
+        Painted { pattern: Pattern { paints: Vec::new(), ..pattern.clone() }, parts }
+    }
+
+    /// The mean over a place.
+    pub(super) fn at(&self, place: &Place, comb: usize) -> Channels {
+        let amounts = self.pattern.parts(place);
+        let parts = self.parts.iter().zip(amounts).filter(|(_, amount)| *amount != 0.0);
+        parts.fold(Channels::ZERO, |sum, (part, amount)| {
+            let color = match part {
+                Part::Plain(curve) => curve.of(comb),
+                Part::Painted(painted) => painted.at(place, comb),
+            };
+            sum + color * amount
+        })
+    }
+}
+
+impl Shade {
+    /// The fraction at the place and the wavelengths that are looked at.
+    #[inline]
+    pub(super) fn of(&self, sighting: &Sighting<'_>) -> Channels {
+        match self {
+            Shade::Plain(curve) => curve.of(sighting.comb),
+            Shade::Painted(number) => sighting.painted.get(*number).copied().unwrap_or_default(),
+        }
+    }
+}
