@@ -4,6 +4,7 @@ use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
 use super::Mesh;
+use super::contour::{Contour, contour, is_smooth};
 use super::measure::{angle_between, unit_normal};
 
 /// Normals of one plane differ by less.
@@ -73,7 +74,9 @@ pub struct Selection {
     pub seams: bool,
     /// Edges that are none of the above.
     pub interior: Interior,
-    /// Edges between a triangle that faces this eye and one that does not.
+    /// The outline that this eye sees. Where the mesh has normals that are the same on both sides of its edges, it is made of
+    /// lines through triangles, along which these normals turn away; else of edges between a triangle that faces the eye and
+    /// one that does not.
     pub outline: Option<Eye>,
 }
 
@@ -139,9 +142,16 @@ impl EdgeTable {
     }
 
     /// The edges of `mesh` that `selection` asks for; `mesh` must be the one that this table was made of.
+    ///
+    /// Outlines within smooth parts are no edges and do not come.
     pub fn select<'a>(&'a self, mesh: &'a Mesh, selection: &'a Selection) -> impl Iterator<Item = &'a Edge> + 'a {
         let facing = selection.outline.map(|eye| facing(mesh, eye));
         self.edges.iter().filter(move |edge| self.is_wanted(mesh, selection, facing.as_deref(), edge))
+    }
+
+    /// Outlines within smooth parts.
+    pub(super) fn contour(&self, mesh: &Mesh, selection: &Selection) -> Contour {
+        selection.outline.map_or_else(Contour::default, |eye| contour(self, mesh, eye))
     }
 
     pub(super) fn is_collapsed(&self, mesh: &Mesh, triangle: usize) -> bool {
@@ -156,6 +166,7 @@ impl EdgeTable {
             _ => return selection.crease_degrees.is_some() || selection.boundary,
         };
         if let Some(facing) = facing
+            && !is_smooth(mesh, a, b)
             && facing[a.triangle as usize] != (facing[b.triangle as usize] ^ (a.forward == b.forward))
         {
             return true;
@@ -199,10 +210,12 @@ impl EdgeTable {
     }
 }
 
-/// The selected edges of `mesh` as vectors, each once.
+/// The selected lines of `mesh` as vectors, each once.
 pub fn wire(mesh: &Mesh, selection: &Selection) -> Vec<[DVec3; 2]> {
     let table = EdgeTable::of(mesh);
-    table.select(mesh, selection).map(|edge| edge.ends.map(|vertex| mesh.vertices[vertex as usize])).collect()
+    let edges = table.select(mesh, selection).map(|edge| edge.ends.map(|vertex| mesh.vertices[vertex as usize]));
+    let Contour { points, lines } = table.contour(mesh, selection);
+    edges.chain(lines.iter().map(|(ends, _)| ends.map(|point| points[point as usize]))).collect()
 }
 
 /// For each triangle whether `eye` sees its outside; edge-on counts as not. Exact for an eye at a point.

@@ -6,6 +6,7 @@
 
 mod check;
 mod compact;
+mod contour;
 pub mod edges;
 mod error;
 mod file;

@@ -34,7 +34,7 @@ impl Polylines {
     }
 }
 
-/// The selected edges of `mesh`, each once, in as few runs as can be.
+/// The selected lines of `mesh`, each once, in as few runs as can be.
 ///
 /// A connected set of edges with 2k > 0 odd vertices (where an odd number of edges meets) cannot be drawn in fewer
 /// than k runs, and one without in fewer than 1: this is what comes out. At each vertex a run goes straight ahead if
@@ -57,12 +57,18 @@ pub fn polylines_of_groups(mesh: &Mesh, selection: &Selection, group_of: &[u32],
         let last = table.uses(edge).iter().map(group).max().unwrap_or(0);
         edges[last].push(edge.ends);
     }
-    edges.into_iter().map(|edges| Trails::new(mesh, edges).into_polylines()).collect()
+    let contour = table.contour(mesh, selection);
+    let points: Vec<DVec3> = mesh.vertices.iter().copied().chain(contour.points).collect();
+    for (ends, triangle) in contour.lines {
+        let group = group_of.get(triangle as usize).map_or(0, |group| *group as usize);
+        edges[group].push(ends.map(|point| point + mesh.vertices.len() as u32));
+    }
+    edges.into_iter().map(|edges| Trails::new(&points, edges).into_polylines()).collect()
 }
 
 /// A graph on its way into trails.
 struct Trails<'a> {
-    mesh: &'a Mesh,
+    points: &'a [DVec3],
     /// The drawn edges, then one for each pair of odd vertices.
     edges: Vec<[u32; 2]>,
     drawn: usize,
@@ -74,12 +80,12 @@ struct Trails<'a> {
 }
 
 impl<'a> Trails<'a> {
-    fn new(mesh: &'a Mesh, mut edges: Vec<[u32; 2]>) -> Trails<'a> {
+    fn new(points: &'a [DVec3], mut edges: Vec<[u32; 2]>) -> Trails<'a> {
         let drawn = edges.len();
-        pair_odd_vertices(mesh.vertices.len(), &mut edges);
-        let mut first = vec![0; mesh.vertices.len() + 1];
+        pair_odd_vertices(points.len(), &mut edges);
+        let mut first = vec![0; points.len() + 1];
         edges.iter().flatten().for_each(|&end| first[end as usize + 1] += 1);
-        for vertex in 0..mesh.vertices.len() {
+        for vertex in 0..points.len() {
             first[vertex + 1] += first[vertex];
         }
         let mut next = first.clone();
@@ -91,7 +97,7 @@ impl<'a> Trails<'a> {
             }
         }
         next.copy_from_slice(&first);
-        Trails { mesh, used: vec![false; edges.len()], edges, drawn, first, next, incident }
+        Trails { points, used: vec![false; edges.len()], edges, drawn, first, next, incident }
     }
 
     fn into_polylines(mut self) -> Polylines {
@@ -132,7 +138,7 @@ impl<'a> Trails<'a> {
             self.next[v] += 1;
         }
         let open = &self.incident[self.next[v]..self.first[v + 1]];
-        let position = |vertex: u32| self.mesh.vertices[vertex as usize];
+        let position = |vertex: u32| self.points[vertex as usize];
         let heading = before.map_or(DVec3::ZERO, |before| position(vertex) - position(before)).normalize_or_zero();
         let mut best: Option<(f64, u32)> = None;
         for &edge in open.iter().take(STRAIGHTEST_OF).filter(|&&edge| !self.used[edge as usize]) {
@@ -163,11 +169,11 @@ impl<'a> Trails<'a> {
             }
             if !in_run {
                 polylines.starts.push(polylines.points.len());
-                polylines.points.push(self.mesh.vertices[vertex as usize]);
+                polylines.points.push(self.points[vertex as usize]);
                 in_run = true;
             }
             let (onward, _) = trail[(i + 1) % count];
-            polylines.points.push(self.mesh.vertices[onward as usize]);
+            polylines.points.push(self.points[onward as usize]);
         }
     }
 }
