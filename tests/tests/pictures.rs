@@ -80,3 +80,23 @@ fn a_rendering_ends_at_an_error_or_a_time() {
     let brief = json(&["render", "a.rhai", "--samples", "65536", "--seconds", "0.5", "--json"], folder);
     assert!(counts(&brief)[0] < 65536 && brief["complete"] == true);
 }
+
+#[test]
+fn a_rendering_that_goes_on_from_a_file_is_as_if_it_had_never_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("a.rhai"), SCENE).unwrap();
+    for (samples, output, state) in
+        [("3", "few.exr", "a.state"), ("8", "more.exr", "a.state"), ("8", "once.exr", "b.state")]
+    {
+        let ended = peris(&["render", "a.rhai", "--samples", samples, "-o", output, "--resume", state], folder);
+        assert_eq!(ended.code, Some(0), "{}", ended.errors);
+    }
+    assert_eq!(fs::read(folder.join("more.exr")).unwrap(), fs::read(folder.join("once.exr")).unwrap());
+    assert_eq!(fs::read(folder.join("a.state")).unwrap(), fs::read(folder.join("b.state")).unwrap());
+    let other = peris(&["render", "a.rhai", "--samples", "8", "--seed", "7", "--resume", "a.state"], folder);
+    assert!(other.code == Some(2) && other.errors.contains("another rendering"), "{}", other.errors);
+    fs::write(folder.join("a.state"), "something else").unwrap();
+    let none = peris(&["render", "a.rhai", "--resume", "a.state"], folder);
+    assert!(none.code == Some(1) && none.errors.contains("a.state"), "{}", none.errors);
+}

@@ -3,7 +3,7 @@
 use crate::mesh::MeshError;
 use crate::picture::PictureError;
 use crate::production::ProductionError;
-use crate::render::RenderError;
+use crate::render::{RenderError, StateError};
 use crate::scene::SceneError;
 use crate::script::ScriptError;
 use crate::study::{PlotError, StudyError};
@@ -107,6 +107,13 @@ impl From<MeshError> for Failure {
 impl From<PictureError> for Failure {
     fn from(error: PictureError) -> Failure {
         let exit = if let PictureError::Format { .. } = error { Exit::Usage } else { Exit::Failed };
+        Failure::new(exit, error)
+    }
+}
+
+impl From<StateError> for Failure {
+    fn from(error: StateError) -> Failure {
+        let exit = if let StateError::Other { .. } = error { Exit::Usage } else { Exit::Failed };
         Failure::new(exit, error)
     }
 }

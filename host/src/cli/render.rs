@@ -5,7 +5,7 @@ use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, load, watch_
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::ray_tracing::{Explanation, RayTracer};
-use crate::render::{Order, Renderer, Rendering, Watch};
+use crate::render::{Film, Fingerprint, Order, Rendering, Watch};
 use crate::scene::{Prepared, View};
 use clap::{Args, FromArgMatches};
 use glam::DVec3;
@@ -56,6 +56,10 @@ struct Arguments {
     /// Begins no sample after so many seconds; --samples is then the most of them
     #[arg(long, value_name = "SECONDS", value_parser = super::length)]
     seconds: Option<f64>,
+    /// Goes on with what is in this file, and writes there what is known in the end, also when interrupted; more samples can
+    /// be added at any time
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
     /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too
     #[arg(long)]
     layers: bool,
@@ -109,9 +113,17 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let progress = Progress::new("rendering", arguments.json);
     let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
-    let rendering = tracer.render(&view, &order, &watch);
+    let fingerprint = arguments.resume.as_ref().map(|_| Fingerprint::of(&scene, &prepared, &order));
+    let film = match (&arguments.resume, fingerprint) {
+        (Some(path), Some(fingerprint)) if path.exists() => Film::read_state(path, &order, fingerprint)?,
+        _ => Film::new(order.width, order.height)?,
+    };
+    let rendering = tracer.go_on(film, &view, &order, &watch);
     progress.finish();
     let rendering = rendering?;
+    if let (Some(path), Some(fingerprint)) = (&arguments.resume, fingerprint) {
+        rendering.film.write_state(path, fingerprint)?;
+    }
     outputs.iter().try_for_each(|path| match arguments.layers && Picture::is_exr(path) {
         true => rendering.film.write_layers(path, &prepared),
         false => rendering.picture.write(path),

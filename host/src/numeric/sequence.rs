@@ -27,10 +27,10 @@ impl Sequence {
     pub fn point(self, index: u32, purpose: u64) -> [f64; 2] {
         let seed = fold(mix(mix(purpose).wrapping_add(u64::from(self.seed))));
         // Each bit by those above it: the first 2^k points stay together.
-        let index = reversed_scramble(index, seed);
-        let [x, y] = [index.reverse_bits(), sobol(index)];
-        [reversed_scramble(x, seed ^ 0x9e37_79b9), reversed_scramble(y, seed ^ 0x7f4a_7c15)]
-            .map(|x| f64::from(x) * UNIT)
+        let index = scrambled(index.reverse_bits(), seed).reverse_bits();
+        // Both coordinates are made from their last bit to the first, as scrambling needs them.
+        [scrambled(index, seed ^ 0x9e37_79b9), scrambled(sobol(index), seed ^ 0x7f4a_7c15)]
+            .map(|x| f64::from(x.reverse_bits()) * UNIT)
     }
 
     /// Number `index` for a purpose, in 0..1.
@@ -40,24 +40,14 @@ impl Sequence {
     }
 }
 
-/// The second dimension of Sobol's sequence, as a fraction of 2^32: Pascal's triangle modulo 2.
+/// The second dimension of Sobol's sequence, bits in reverse: Pascal's triangle modulo 2.
+///
+/// Bit j is the sum of all bits i of the index for which i over j is odd, which by Lucas' theorem are those whose number has
+/// all the bits of j: a sum over supersets, one bit of the numbers at a time.
 #[inline]
-fn sobol(mut index: u32) -> u32 {
-    let (mut direction, mut sum) = (1_u32 << 31, 0);
-    while index != 0 {
-        if index & 1 != 0 {
-            sum ^= direction;
-        }
-        index >>= 1;
-        direction ^= direction >> 1;
-    }
-    sum
-}
-
-/// Scrambles bits, each by those above it only.
-#[inline]
-fn reversed_scramble(fraction: u32, seed: u32) -> u32 {
-    scrambled(fraction.reverse_bits(), seed).reverse_bits()
+fn sobol(index: u32) -> u32 {
+    let steps = [(1, 0x5555_5555), (2, 0x3333_3333), (4, 0x0f0f_0f0f), (8, 0x00ff_00ff), (16, 0x0000_ffff_u32)];
+    steps.into_iter().fold(index, |sum, (shift, without)| sum ^ (sum >> shift & without))
 }
 
 /// Scrambles bits, each by those below it only.
@@ -88,6 +78,15 @@ fn fold(x: u64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_second_dimension_has_the_direction_numbers_of_its_polynomial() {
+        // The polynomial x + 1: each direction is the one before, added to itself a bit further on.
+        let directions = std::iter::successors(Some(1_u32 << 31), |before| Some(before ^ (before >> 1)));
+        for (bit, direction) in directions.take(32).enumerate() {
+            assert_eq!(sobol(1 << bit).reverse_bits(), direction, "{bit}");
+        }
+    }
 
     #[test]
     fn every_elementary_box_holds_one_of_the_first_points() {

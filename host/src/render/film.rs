@@ -2,6 +2,7 @@
 
 use crate::picture::{Picture, PictureError, Pixel};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Weights of red, green and blue in luminance (ITU-R BT.709).
 pub const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
@@ -18,7 +19,7 @@ pub struct Film {
 }
 
 /// What is known of a pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// Sum of radiance, linear sRGB.
     pub sum: DVec3,
@@ -96,6 +97,12 @@ impl Film {
     pub fn new(width: u32, height: u32) -> Result<Film, PictureError> {
         let count = Picture::pixels_of(width, height)?;
         Ok(Film { width, height, tallies: vec![Tally::default(); count] })
+    }
+
+    /// A film of pixels that are known; none if there are not as many as that.
+    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>) -> Option<Film> {
+        let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
+        possible.then_some(Film { width, height, tallies })
     }
 
     /// Columns.

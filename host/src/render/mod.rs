@@ -3,8 +3,10 @@
 mod film;
 mod layers;
 pub mod ray_tracing;
+mod state;
 
 pub use film::{Film, LUMINANCE, Sample, Tally};
+pub use state::{Fingerprint, StateError};
 
 use crate::illumination::material::MaterialError;
 use crate::octree::OctreeError;

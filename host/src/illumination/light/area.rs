@@ -10,6 +10,8 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SphericalRectangle {
     axes: [DVec3; 3],
+    /// Unit of length of what follows: no square of it is lost.
+    scale: f64,
     /// Least and greatest coordinate along the first axis, and along the second.
     x: [f64; 2],
     y: [f64; 2],
@@ -33,19 +35,19 @@ impl SphericalRectangle {
         if z == 0.0 {
             return None;
         }
-        let x = [corner.dot(first), corner.dot(first) + across.length()];
-        let y = [corner.dot(second), corner.dot(second) + up.length()];
-        let point = |i: usize, j: usize| DVec3::new(x[i], y[j], z);
-        let corners = [point(0, 0), point(1, 0), point(1, 1), point(0, 1)];
-        let mut normals = [DVec3::ZERO; 4];
-        for (side, normal) in normals.iter_mut().enumerate() {
-            *normal = corners[side].cross(corners[(side + 1) % 4]).try_normalize()?;
-        }
-        let angle = |i: usize| (-normals[i].dot(normals[(i + 1) % 4])).clamp(-1.0, 1.0).acos();
+        let (left, low) = (corner.dot(first), corner.dot(second));
+        let [x, y] = [[left, left + across.length()], [low, low + up.length()]];
+        let scale = x.into_iter().chain(y).fold(-z, |most, at| most.max(at.abs()));
+        let ([x, y], z) = ([x, y].map(|at| at.map(|at| at / scale)), z / scale);
+        // Of the normals of the planes through the point and a side two coordinates are not 0, of neighbours the last only.
+        let normal = |at: f64| at / (z * z + at * at).sqrt();
+        let normals = [normal(-y[0]), normal(x[1]), normal(y[1]), normal(-x[0])];
+        let angle = |i: usize| (-normals[i] * normals[(i + 1) % 4]).clamp(-1.0, 1.0).acos();
         let k = TAU - angle(2) - angle(3);
         let solid_angle = angle(0) + angle(1) - k;
-        let b = [normals[0].z, normals[2].z];
-        Some(SphericalRectangle { axes: [first, second, third], x, y, z, b, k, solid_angle })
+        let b = [normals[0], normals[2]];
+        let possible = scale.is_finite() && z != 0.0;
+        possible.then_some(SphericalRectangle { axes: [first, second, third], scale, x, y, z, b, k, solid_angle })
     }
 
     /// Its solid angle, sr.
@@ -56,16 +58,22 @@ impl SphericalRectangle {
     /// A point of the rectangle, from the lit point.
     pub(super) fn draw(&self, [u, v]: [f64; 2]) -> DVec3 {
         let angle = u * self.solid_angle + self.k;
-        let slope = (angle.cos() * self.b[0] - self.b[1]) / angle.sin();
-        let cosine = (slope.signum() / slope.hypot(self.b[0])).clamp(-1.0, 1.0);
+        let (sin, cos) = angle.sin_cos();
+        let slope = (cos * self.b[0] - self.b[1]) / sin;
+        let cosine = (slope.signum() / length(slope, self.b[0])).clamp(-1.0, 1.0);
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let x = if sine > 0.0 { -(cosine * self.z) / sine } else { self.x[0] }.clamp(self.x[0], self.x[1]);
-        let distance = x.hypot(self.z);
-        let [low, high] = self.y.map(|y| y / distance.hypot(y));
+        let distance = length(x, self.z);
+        let [low, high] = self.y.map(|y| y / length(distance, y));
         let height = low + v * (high - low);
         let square = height * height;
         let y = if square < 1.0 { height * distance / (1.0 - square).sqrt() } else { self.y[1] };
         let y = y.clamp(self.y[0], self.y[1]);
-        self.axes[0] * x + self.axes[1] * y + self.axes[2] * self.z
+        (self.axes[0] * x + self.axes[1] * y + self.axes[2] * self.z) * self.scale
     }
+}
+
+/// Of a vector of two coordinates that are neither huge nor tiny.
+fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
 }

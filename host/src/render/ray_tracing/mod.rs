@@ -34,7 +34,7 @@ use eye::Eye;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use tracer::{First, Tracer};
+use tracer::{First, Tracer, Work};
 use world::World;
 
 /// Samples of the first pass, where errors or the clock decide about more.
@@ -121,21 +121,15 @@ impl<'a> RayTracer<'a> {
                     if stopped() {
                         return None;
                     }
-                    let mut counts = RayCounts::default();
+                    let mut work = Work::default();
                     for (x, tally) in row.iter_mut().enumerate() {
                         if wanted.as_ref().is_none_or(|wanted| wanted[y * width + x]) {
-                            self.add_samples(
-                                (&tracer, &eye, order),
-                                [x as u32, y as u32],
-                                *samples,
-                                tally,
-                                &mut counts,
-                            );
+                            self.add_samples((&tracer, &eye, order), [x as u32, y as u32], *samples, tally, &mut work);
                         }
                     }
                     let all = passes.len() as u64 * u64::from(order.height);
                     (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-                    Some(counts)
+                    Some(work.counts)
                 })
                 .collect()
             });
@@ -150,6 +144,21 @@ impl<'a> RayTracer<'a> {
         Ok(Exposed { rays, complete, seconds: start.elapsed().as_secs_f64(), threads: pool.current_num_threads() })
     }
 
+    /// Makes a picture of a film to which samples are added, as [`RayTracer::expose`] does it.
+    ///
+    /// # Errors
+    /// [`RenderError`].
+    pub fn go_on(
+        &self,
+        mut film: Film,
+        view: &View,
+        order: &Order,
+        watch: &Watch<'_>,
+    ) -> Result<Rendering, RenderError> {
+        let Exposed { rays, complete, seconds, threads } = self.expose(&mut film, view, order, watch)?;
+        Ok(Rendering { picture: film.picture()?, film, complete, rays, seconds, threads })
+    }
+
     /// Adds samples to a pixel until it has `samples`.
     fn add_samples(
         &self,
@@ -157,11 +166,11 @@ impl<'a> RayTracer<'a> {
         pixel: [u32; 2],
         samples: u32,
         tally: &mut Tally,
-        counts: &mut RayCounts,
+        work: &mut Work,
     ) {
         while tally.count < samples {
             let index = tally.count;
-            let (sample, _) = self.sample((tracer, eye, order), pixel, index, counts, Log::SILENT);
+            let (sample, _) = self.sample((tracer, eye, order), pixel, index, work, Log::SILENT);
             tally.add(&sample);
         }
     }
@@ -172,7 +181,7 @@ impl<'a> RayTracer<'a> {
         (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
         [x, y]: [u32; 2],
         index: u32,
-        counts: &mut RayCounts,
+        work: &mut Work,
         log: Log<'_>,
     ) -> (Sample, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
@@ -186,7 +195,7 @@ impl<'a> RayTracer<'a> {
             let radiance = if order.matte { glam::DVec3::ZERO } else { radiance };
             return (Sample { radiance, covered: false, first: None }, comb);
         };
-        let seen = tracer.radiance(&sight, comb, &draws, counts, log);
+        let seen = tracer.radiance(&sight, comb, &draws, work, log);
         let first =
             seen.first.map(|First { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !seen.covered;
@@ -209,8 +218,8 @@ impl<'a> RayTracer<'a> {
     ) -> Result<Vec<Explanation>, RenderError> {
         let (eye, tracer) = (self.eye(view, order)?, self.tracer());
         let told = |index: u32| {
-            let (mut notes, mut counts) = (Vec::new(), RayCounts::default());
-            let (sample, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut counts, Log::to(&mut notes));
+            let (mut notes, mut work) = (Vec::new(), Work::default());
+            let (sample, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
             let wavelengths = &self.world.wavelengths;
             let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(comb).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }
@@ -247,8 +256,6 @@ impl Renderer for RayTracer<'_> {
     }
 
     fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
-        let mut film = Film::new(order.width, order.height)?;
-        let Exposed { rays, complete, seconds, threads } = self.expose(&mut film, view, order, watch)?;
-        Ok(Rendering { picture: film.picture()?, film, complete, rays, seconds, threads })
+        self.go_on(Film::new(order.width, order.height)?, view, order, watch)
     }
 }

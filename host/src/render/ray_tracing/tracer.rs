@@ -62,6 +62,15 @@ pub(super) struct First {
     pub(super) material: u32,
 }
 
+/// What one thread needs for its samples, one after the other.
+#[derive(Default)]
+pub(super) struct Work {
+    /// How many rays were traced.
+    pub(super) counts: RayCounts,
+    /// Legs that wait to be followed; none between samples.
+    waiting: Vec<Leg>,
+}
+
 /// Who counts rays, and who listens.
 struct Counting<'a, 'b> {
     counts: &'a mut RayCounts,
@@ -92,7 +101,7 @@ impl<'a> Tracer<'a> {
         sight: &Sight,
         comb: usize,
         draws: &Draws,
-        counts: &mut RayCounts,
+        work: &mut Work,
         mut log: Log<'_>,
     ) -> Seen {
         let mut seen = Seen::default();
@@ -108,7 +117,8 @@ impl<'a> Tracer<'a> {
             for_lights: false,
             after_spread: false,
         };
-        let mut waiting = vec![first];
+        let Work { counts, waiting } = work;
+        waiting.push(first);
         while let Some(leg) = waiting.pop() {
             match leg.depth {
                 0 => counts.primary += 1,
@@ -135,12 +145,12 @@ impl<'a> Tracer<'a> {
                 }
                 Met::Element(found) => {
                     if leg.depth == 0 {
-                        let Found { distance, object, material, .. } = *found;
+                        let Found { distance, object, material, .. } = found;
                         seen.first = Some(First { distance, normal: found.element.normal, object, material });
                     }
                     seen.covered = true;
                     let counting = &mut Counting { counts, log: &mut log };
-                    seen.radiance += self.arrive(leg, &found, (comb, draws), counting, &mut waiting);
+                    seen.radiance += self.arrive(leg, &found, (comb, draws), counting, waiting);
                 }
             }
         }

@@ -41,9 +41,10 @@ pub(super) struct World<'a> {
 }
 
 /// What a ray meets first.
+#[expect(clippy::large_enum_variant, reason = "it is looked at once, at once; putting it aside takes longer")]
 pub(super) enum Met<'a> {
     /// An element of an object.
-    Element(Box<Found<'a>>),
+    Element(Found<'a>),
     /// A surface that emits, and which of the lights it is.
     Glow(usize, Glow),
     /// Nothing.
@@ -74,7 +75,7 @@ pub(super) struct Found<'a> {
     /// From where the ray began.
     pub(super) distance: f64,
     /// What the patterns of the material give; none for a material that has none.
-    painting: Option<Painting>,
+    painting: Option<Box<Painting>>,
 }
 
 impl Found<'_> {
@@ -179,9 +180,9 @@ impl<'a> World<'a> {
             let sides = footprint(element.face, towards, sight.cone.at(distance));
             let place = self.prepared.place(triangle, weights(&hit), sides);
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
-            optics.paint(&place, comb)
+            Box::new(optics.paint(&place, comb))
         });
-        Met::Element(Box::new(Found { element, optics, triangle, object, material, distance, painting }))
+        Met::Element(Found { element, optics, triangle, object, material, distance, painting })
     }
 
     /// The nearest surface that emits and is no object.
