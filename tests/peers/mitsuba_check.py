@@ -70,7 +70,11 @@ def box(everything):
     }
 
 
-def spheres(bsdf):
+def spheres(bsdf, grey=False):
+    def rgb(*color):
+        # Where spectra are carried, all light is D65: other colors become spectra in many ways.
+        return {"type": "rgb", "value": [color[1]] * 3 if grey else list(color)}
+
     def panel(size, place, *color):
         return dict(cube(size, place, diffuse(0, 0, 0)), emitter={"type": "area", "radiance": rgb(*color)})
     return {
@@ -85,13 +89,33 @@ def spheres(bsdf):
     }
 
 
+def planes():
+    up, back = mi.ScalarTransform4f().rotate([1, 0, 0], -90).scale(2), mi.ScalarTransform4f().translate([0, 1, -2]).scale(2)
+    lamp = mi.ScalarTransform4f().translate([0, 3, 0]).rotate([1, 0, 0], 90).scale([0.5, 0.5, 1])
+    tiles = {"type": "checkerboard", "color0": rgb(0.8, 0.75, 0.6), "color1": rgb(0.1, 0.15, 0.3),
+             "to_uv": mi.ScalarTransform4f().scale([4, 4, 1])}
+    picture = {"type": "bitmap", "filename": os.path.join(HERE, "planes.png"),
+               "to_uv": mi.ScalarTransform4f().scale([2, -2, 1])}
+    return {
+        "type": "scene", "integrator": {"type": "path", "max_depth": 2},
+        "sensor": sensor([0, 1.5, 6], 36, 64, 64),
+        "floor": {"type": "rectangle", "to_world": up, "bsdf": {"type": "diffuse", "reflectance": tiles}},
+        "wall": {"type": "rectangle", "to_world": back, "bsdf": {"type": "diffuse", "reflectance": picture}},
+        "lamp": {"type": "rectangle", "to_world": lamp, "bsdf": diffuse(0, 0, 0),
+                 "emitter": {"type": "area", "radiance": rgb(15, 15, 15)}},
+    }
+
+
 # Name, script, what it is told, variant of Mitsuba, and its scene.
 CASES = [
     ("direct light in a box", "box.rhai", {}, "scalar_rgb", lambda: box(False)),
     ("all light in a box", "box.rhai", {"all": "true"}, "scalar_rgb", lambda: box(True)),
     ("glass sphere", "spheres.rhai", {}, "scalar_rgb", lambda: spheres({"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0})),
     ("copper sphere, spectral", "spheres.rhai", {"which": "copper"}, "scalar_spectral",
-     lambda: spheres(dict(copper(), type="conductor"))),
+     lambda: spheres(dict(copper(), type="conductor"), True)),
+    ("rough copper sphere, spectral", "spheres.rhai", {"which": "rough copper"}, "scalar_spectral",
+     lambda: spheres(dict(copper(), type="roughconductor", distribution="beckmann", alpha=0.3), True)),
+    ("textured planes", "planes.rhai", {}, "scalar_rgb", planes),
 ]
 
 
@@ -115,10 +139,11 @@ def main():
     parser.add_argument("--peris", default=os.path.join(HERE, "../../target/release/peris"))
     parser.add_argument("--samples", type=int, default=256)
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--only", default="", help="cases whose names have this in them")
     arguments = parser.parse_args()
     failed, kept = False, {}
     # Mitsuba numbers the parts of a picture from its seed on: seeds far apart have none in common.
-    for name, script, told, variant, scene in CASES:
+    for name, script, told, variant, scene in (case for case in CASES if arguments.only in case[0]):
         mi.set_variant(variant)
         loaded = mi.load_dict(scene())
         theirs, their_error = statistics(

@@ -10,12 +10,16 @@ use glam::{DVec2, DVec3};
 /// G₂ = 1 / (1 + Λ_L + Λ_V). D integrates to 1 but for what strikes a second facet: that is lost here, and kept in
 /// [`super::Compensated`]. It never exceeds 1, and is reciprocal. Different roughness along x and y is anisotropic.
 ///
+/// Where heights are taken not to be correlated, as many programs do it, G₂ = 1 / ((1 + Λ_L) (1 + Λ_V)): more is lost.
+///
 /// # Source
-/// Walter et al. 2007, equation 20; Heitz 2014, equation 99.
+/// Walter et al. 2007, equations 20 and 23; Heitz 2014, equations 98 and 99.
 #[derive(Clone, Copy, Debug)]
 pub struct Microfacet {
     facets: Facets,
     roughness: DVec2,
+    /// Whether heights of light and viewer are correlated.
+    correlated: bool,
 }
 
 impl Microfacet {
@@ -25,22 +29,29 @@ impl Microfacet {
     /// [`DistributionError::Roughness`].
     pub fn new(facets: Facets, roughness: DVec2) -> Result<Microfacet, DistributionError> {
         let roughness = DVec2::new(checked_roughness(roughness.x)?, checked_roughness(roughness.y)?);
-        Ok(Microfacet { facets, roughness })
+        Ok(Microfacet { facets, roughness, correlated: true })
+    }
+
+    /// The same with heights of light and viewer that are not correlated.
+    pub fn separable(self) -> Microfacet {
+        Microfacet { correlated: false, ..self }
     }
 
     /// The part of what a drawn facet reflects to a viewer that no other facet masks: the density over that of the
     /// sample, 0..=1.
     pub(in crate::illumination) fn weight(&self, light: DVec3, view: DVec3) -> f64 {
         let [l, v] = [light, view].map(|towards| self.facets.projected(towards, self.roughness));
-        view.z * l / (view.z * l + light.z * (v - view.z))
+        if self.correlated { view.z * l / (view.z * l + light.z * (v - view.z)) } else { view.z / v }
     }
 }
 
 impl Distribution for Microfacet {
     fn name(&self) -> &str {
-        match self.facets {
-            Facets::Beckmann => "Beckmann",
-            Facets::Ggx => "GGX",
+        match (self.facets, self.correlated) {
+            (Facets::Beckmann, true) => "Beckmann",
+            (Facets::Ggx, true) => "GGX",
+            (Facets::Beckmann, false) => "Beckmann, separable",
+            (Facets::Ggx, false) => "GGX, separable",
         }
     }
 

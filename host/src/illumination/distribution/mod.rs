@@ -104,6 +104,16 @@ pub const FAMILY: &[DistributionRow] = &[
         make: |m| Ok(Box::new(Microfacet::new(Facets::Ggx, DVec2::splat(m))?)),
     },
     DistributionRow {
+        name: "Beckmann, separable",
+        summary: "Beckmann with masking of light and viewer apart; one reflection",
+        make: |m| Ok(Box::new(Microfacet::new(Facets::Beckmann, DVec2::splat(m))?.separable())),
+    },
+    DistributionRow {
+        name: "GGX, separable",
+        summary: "GGX with masking of light and viewer apart; one reflection",
+        make: |m| Ok(Box::new(Microfacet::new(Facets::Ggx, DVec2::splat(m))?.separable())),
+    },
+    DistributionRow {
         name: "anisotropic",
         summary: "Beckmann, four times smoother along y",
         make: |m| {

@@ -269,7 +269,8 @@ mod tests {
                     let point = |sight: &Sight| sight.ray.at(distance / sight.ray.direction.length());
                     // Half a diagonal of a pixel.
                     let apart = point(&one).distance(point(&two)) * 2.0_f64.sqrt();
-                    assert!((one.cone.at(distance) / apart - 1.0).abs() < 0.05, "{at:?} {distance}");
+                    let part = one.cone.at(distance) / apart;
+                    assert!((part - 1.0).abs() < 0.15, "{at:?} {distance}: {part}");
                 }
             }
         }
