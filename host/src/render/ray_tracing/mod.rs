@@ -7,9 +7,7 @@
 mod direct;
 mod draws;
 mod explain;
-mod eye;
 mod media;
-mod surface;
 mod tracer;
 mod world;
 
@@ -21,6 +19,7 @@ mod tests;
 pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
 
+use super::eye::Eye;
 use super::film::{Film, Sample, Tally};
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, Watch};
 use crate::octree::Octree;
@@ -28,7 +27,6 @@ use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use draws::{Draws, Purpose};
 use explain::Log;
-use eye::Eye;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -72,13 +70,13 @@ impl<'a> RayTracer<'a> {
     }
 
     fn tracer(&self) -> Tracer<'_> {
-        let depth = self.world.prepared.settings.reflection_depth;
+        let depth = self.world.appearance.prepared.settings.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
         Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows))
     }
 
     fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
-        Eye::new(view, order.width, order.height, &self.world.prepared.bounds).ok_or(RenderError::View)
+        Eye::new(view, order.width, order.height, &self.world.appearance.prepared.bounds).ok_or(RenderError::View)
     }
 
     /// Adds samples to a film until each pixel has what the order asks for.
@@ -170,7 +168,7 @@ impl<'a> RayTracer<'a> {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let draws = Draws::new(order.seed, pixel, index, order.samples);
         let [dx, dy] = draws.position();
-        let wavelengths = &self.world.wavelengths;
+        let wavelengths = &self.world.appearance.wavelengths;
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
@@ -203,7 +201,7 @@ impl<'a> RayTracer<'a> {
         let told = |index: u32| {
             let (mut notes, mut counts) = (Vec::new(), RayCounts::default());
             let (sample, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut counts, Log::to(&mut notes));
-            let wavelengths = &self.world.wavelengths;
+            let wavelengths = &self.world.appearance.wavelengths;
             let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(comb).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }
         };
