@@ -1,7 +1,10 @@
 //! Renderers: from a prepared scene and a view to a picture.
 
+mod element;
+mod eye;
 mod film;
 mod layers;
+mod ready;
 pub mod ray_tracing;
 mod state;
 

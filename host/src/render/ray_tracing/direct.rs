@@ -24,7 +24,7 @@ pub(super) struct Direct<'a> {
 
 impl<'a> Direct<'a> {
     pub(super) fn new(world: &'a World<'a>, shadows: bool, samples: u32) -> Direct<'a> {
-        let spread = world.sources.iter().any(|(_, source)| !source.is_sharp());
+        let spread = world.appearance.sources.iter().any(|(_, source)| !source.is_sharp());
         Direct { world, shadows, samples, spread }
     }
 
@@ -35,7 +35,7 @@ impl<'a> Direct<'a> {
 
     /// Whether something surrounds everything.
     pub(super) fn has_sky(&self) -> bool {
-        self.world.sources.iter().any(|(_, source)| source.is_sky())
+        self.world.appearance.sources.iter().any(|(_, source)| source.is_sky())
     }
 
     /// Radiance towards the viewer by the light of all lights.
@@ -49,7 +49,7 @@ impl<'a> Direct<'a> {
     ) -> Channels {
         let Encounter { found, sighting, draws, leg, .. } = encounter;
         let mut sum = Channels::ZERO;
-        for (index, (number, source)) in self.world.sources.iter().enumerate() {
+        for (index, (number, source)) in self.world.appearance.sources.iter().enumerate() {
             let samples = if source.is_sharp() { 1 } else { self.samples };
             let mut part = Channels::ZERO;
             for sample in 0..samples {
@@ -99,7 +99,7 @@ impl<'a> Direct<'a> {
         if !beam.distance.is_finite() {
             return self.world.passed(&Ray { origin, direction: beam.towards }, f64::INFINITY, index, comb);
         }
-        let source = &self.world.sources[index].1;
+        let source = &self.world.appearance.sources[index].1;
         let at = element.position + beam.towards * beam.distance;
         let t_max = if source.is_sharp() || source.is_surface() { 1.0 } else { SHORT };
         self.world.passed(&Ray { origin, direction: at - origin }, t_max, index, comb)

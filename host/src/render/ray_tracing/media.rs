@@ -21,7 +21,8 @@ impl Media {
 
     /// The part of light that comes through a length of what is here.
     pub(super) fn absorbed(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
-        let interior = self.innermost().and_then(|(object, material)| world.optics(object, material).interior.as_ref());
+        let interior =
+            self.innermost().and_then(|(object, material)| world.appearance.optics(object, material).interior.as_ref());
         match interior {
             Some(interior) if interior.absorption.max() > 0.0 => {
                 interior.absorption.of(comb).map(|absorption| (-absorption * length).exp())
@@ -33,7 +34,8 @@ impl Media {
     /// The refractive indices before and behind an element; 1 where there is no body.
     pub(super) fn side(&self, world: &World<'_>, found: &Found<'_>, comb: usize) -> Side {
         let index = |body: Option<(u32, u32)>| {
-            let interior = body.and_then(|(object, material)| world.optics(object, material).interior.as_ref());
+            let interior =
+                body.and_then(|(object, material)| world.appearance.optics(object, material).interior.as_ref());
             interior.map_or(Channels::ONE, |interior| interior.index.of(comb))
         };
         let own = Some((found.object, found.material));

@@ -7,9 +7,7 @@
 mod direct;
 mod draws;
 mod explain;
-mod eye;
 mod media;
-mod surface;
 mod tracer;
 mod world;
 
@@ -23,6 +21,7 @@ mod tests;
 pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
 
+use super::eye::Eye;
 use super::film::{Film, Sample, Tally};
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, Watch};
 use crate::octree::Octree;
@@ -30,7 +29,6 @@ use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use draws::{Draws, Purpose};
 use explain::Log;
-use eye::Eye;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -74,18 +72,19 @@ impl<'a> RayTracer<'a> {
     }
 
     fn tracer(&self) -> Tracer<'_> {
-        let depth = self.world.prepared.settings.reflection_depth;
+        let depth = self.world.appearance.prepared.settings.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
         Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows))
     }
 
     fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
-        let eye = Eye::new(view, order.width, order.height, &self.world.prepared.bounds).ok_or(RenderError::View)?;
+        let prepared = self.world.appearance.prepared;
+        let eye = Eye::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
         if !self.plan.needs(Stage::Textures) {
             return Ok(eye);
         }
         // The samples of a pixel share it. The slope of a relief is taken over something, at least.
-        let filter = self.world.prepared.settings.texture_filter.max(1e-3);
+        let filter = prepared.settings.texture_filter.max(1e-3);
         Ok(eye.with_cones(filter / f64::from(order.samples).sqrt()))
     }
 
@@ -187,7 +186,7 @@ impl<'a> RayTracer<'a> {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let draws = Draws::new(order.seed, pixel, index, order.samples);
         let [dx, dy] = draws.position();
-        let wavelengths = &self.world.wavelengths;
+        let wavelengths = &self.world.appearance.wavelengths;
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
@@ -220,7 +219,7 @@ impl<'a> RayTracer<'a> {
         let told = |index: u32| {
             let (mut notes, mut work) = (Vec::new(), Work::default());
             let (sample, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
-            let wavelengths = &self.world.wavelengths;
+            let wavelengths = &self.world.appearance.wavelengths;
             let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(comb).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }
         };

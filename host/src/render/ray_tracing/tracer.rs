@@ -3,7 +3,6 @@
 use super::direct::Direct;
 use super::draws::{Draws, Purpose};
 use super::explain::{Log, Note};
-use super::eye::{Cone, Sight};
 use super::media::Media;
 use super::world::{Encounter, Found, Met, World};
 use crate::color::Channels;
@@ -11,6 +10,7 @@ use crate::illumination::distribution::Frame;
 use crate::illumination::optics::{Onward, Sighting};
 use crate::numeric::ray::Ray;
 use crate::render::RayCounts;
+use crate::render::eye::{Cone, Sight};
 use glam::DVec3;
 
 /// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.
@@ -90,8 +90,8 @@ pub(super) struct Tracer<'a> {
 impl<'a> Tracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
     pub(super) fn new(world: &'a World<'a>, depth: u32, shadows: bool) -> Tracer<'a> {
-        let samples = world.prepared.settings.light_samples.max(1);
-        let caustics = world.prepared.settings.caustics;
+        let samples = world.appearance.prepared.settings.light_samples.max(1);
+        let caustics = world.appearance.prepared.settings.caustics;
         Tracer { world, direct: Direct::new(world, shadows, samples), depth, caustics }
     }
 
@@ -141,7 +141,7 @@ impl<'a> Tracer<'a> {
                     let radiance = absorbed * glow.radiance * part;
                     seen.radiance += leg.passed * radiance;
                     seen.covered = true;
-                    log.note(|| Note::light(leg.depth, self.world.sources[index].0, leg.passed * radiance));
+                    log.note(|| Note::light(leg.depth, self.world.appearance.sources[index].0, leg.passed * radiance));
                 }
                 Met::Element(found) => {
                     if leg.depth == 0 {
@@ -169,7 +169,7 @@ impl<'a> Tracer<'a> {
         let optics = found.optics;
         let towards = leg.sight.ray.direction.normalize();
         leg.passed *= leg.media.absorbed(self.world, found.distance, comb);
-        log.note(|| Note::element(leg.depth, self.world.prepared, found));
+        log.note(|| Note::element(leg.depth, self.world.appearance.prepared, found));
         let mut sum = Channels::ZERO;
         if let Some((emission, density)) = self.world.emitted(found, towards, comb) {
             sum += leg.passed * emission * self.part(&leg, density);
@@ -180,13 +180,13 @@ impl<'a> Tracer<'a> {
         }
         let normal = found.element.normal;
         let frame = optics.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
-        let lanes = self.world.wavelengths.lanes();
+        let lanes = self.world.appearance.wavelengths.lanes();
         // Where wavelengths part, the one that is left is drawn together with the comb: all of them get their turn.
         let parting = draws.point(Purpose::Wavelengths)[1];
         let lane = leg.lane.unwrap_or(((parting * lanes as f64) as usize).min(lanes - 1));
         let side = leg.media.side(self.world, found, comb);
         let sighting = Sighting { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
-        if let Some(ambient) = &self.world.ambient {
+        if let Some(ambient) = &self.world.appearance.ambient {
             let radiance = leg.passed * optics.ambient(&sighting) * ambient.of(comb);
             sum += radiance;
             log.note(|| Note::term(leg.depth, "ambient light", radiance));
@@ -234,7 +234,7 @@ impl<'a> Tracer<'a> {
         }
         let mut passed = leg.passed * onward.weight;
         if parts_wavelengths {
-            passed = passed.only(sighting.lane, self.world.wavelengths.lanes());
+            passed = passed.only(sighting.lane, self.world.appearance.wavelengths.lanes());
         }
         let number = leg.number.wrapping_mul(3).wrapping_add(branch);
         let most = passed.max();

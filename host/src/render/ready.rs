@@ -1,0 +1,142 @@
+//! Materials and lights of a scene made ready for rendering, as the plan keeps them.
+
+use super::RenderError;
+use crate::color::{Channels, Curve, Wavelengths};
+use crate::illumination::light::{Glow, Source};
+use crate::illumination::optics::{Library, Optics};
+use crate::numeric::ray::Ray;
+use crate::plan::{Plan, Stage};
+use crate::scene::Prepared;
+use glam::DVec3;
+
+/// A prepared scene with its materials and lights made ready.
+pub(super) struct Appearance<'a> {
+    pub(super) prepared: &'a Prepared,
+    pub(super) wavelengths: Wavelengths,
+    /// All materials, each once.
+    optics: Vec<Optics>,
+    /// For each object, which of them its materials are.
+    optics_of: Vec<Vec<u32>>,
+    /// All lights, objects that emit among them, with their numbers: those of the scene come first.
+    pub(super) sources: Vec<(usize, Source)>,
+    /// For each object and material of it that emits, which of the lights it is.
+    emitters: Vec<((u32, u32), usize)>,
+    /// Radiance where there is nothing and no sky.
+    background: Curve,
+    /// Ambient radiance.
+    pub(super) ambient: Option<Curve>,
+    /// Whether normals are interpolated.
+    pub(super) curved: bool,
+    /// Whether something lets light straight through.
+    pub(super) passing: bool,
+}
+
+impl<'a> Appearance<'a> {
+    /// Makes the materials and lights ready that the plan keeps.
+    ///
+    /// # Errors
+    /// [`RenderError::Material`].
+    pub(super) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<Appearance<'a>, RenderError> {
+        let wavelengths = if plan.needs(Stage::Spectra) { Wavelengths::spectral() } else { Wavelengths::bands() };
+        let mut appearance = Appearance {
+            prepared,
+            optics: Vec::new(),
+            optics_of: Vec::new(),
+            sources: Vec::new(),
+            emitters: Vec::new(),
+            background: wavelengths.light(&prepared.background.into()),
+            ambient: plan.needs(Stage::Ambient).then(|| wavelengths.light(&prepared.ambient.into())),
+            curved: plan.needs(Stage::Normals),
+            passing: false,
+            wavelengths,
+        };
+        appearance.add_materials(plan)?;
+        for (number, light) in prepared.lights.iter().enumerate().filter(|(number, _)| plan.keeps_light(*number)) {
+            appearance.sources.push((number, Source::new(light, &appearance.wavelengths)));
+        }
+        appearance.add_emitters(plan);
+        appearance.passing = appearance.optics.iter().any(Optics::is_passable);
+        Ok(appearance)
+    }
+
+    fn add_materials(&mut self, plan: &Plan) -> Result<(), RenderError> {
+        let wavelengths = self.wavelengths.clone();
+        let mut library = Library::new(&wavelengths, plan.forced);
+        let mut known = Vec::new();
+        for object in &self.prepared.objects {
+            let mut numbers = Vec::with_capacity(object.materials.len());
+            for material in &object.materials {
+                let found = known.iter().position(|other| *other == material);
+                let number = match found {
+                    Some(number) => number,
+                    None => {
+                        let failed = |source| RenderError::Material { object: object.name.clone(), source };
+                        let spreads = self.prepared.settings.interreflection;
+                        self.optics.push(library.optics(material, spreads).map_err(failed)?);
+                        known.push(material);
+                        known.len() - 1
+                    }
+                };
+                numbers.push(number as u32);
+            }
+            self.optics_of.push(numbers);
+        }
+        Ok(())
+    }
+
+    /// Objects that emit are lights, too.
+    fn add_emitters(&mut self, plan: &Plan) {
+        let prepared = self.prepared;
+        for (index, object) in prepared.objects.iter().enumerate().filter(|(index, _)| plan.keeps_object(*index)) {
+            for (number, optics) in self.optics_of[index].iter().enumerate() {
+                let Some(emission) = &self.optics[*optics as usize].emission else { continue };
+                let of = |triangle: &u32| prepared.material_number(*triangle) == number as u32;
+                let triangles = (object.first..object.first + object.count).filter(of);
+                let corners = triangles.map(|triangle| prepared.corners(triangle)).collect();
+                if let Some(source) = Source::of_triangles(corners, emission.clone()) {
+                    self.emitters.push(((index as u32, number as u32), self.sources.len()));
+                    self.sources.push((prepared.lights.len() + self.emitters.len() - 1, source));
+                }
+            }
+        }
+    }
+
+    /// The material of a number of an object.
+    pub(super) fn optics(&self, object: u32, material: u32) -> &Optics {
+        &self.optics[self.optics_of[object as usize][material as usize] as usize]
+    }
+
+    /// Radiance where there is nothing: of the skies, or the background without any.
+    ///
+    /// - `normal`: of the element from which it is seen, if there is one.
+    /// - `part`: how much a sky counts that would have drawn the direction with a density.
+    pub(super) fn beyond(
+        &self,
+        direction: DVec3,
+        normal: Option<DVec3>,
+        comb: usize,
+        part: impl Fn(f64) -> f64,
+    ) -> Channels {
+        let skies = self.sources.iter().filter_map(|(_, source)| source.sky(direction, normal, comb));
+        let sum = skies.map(|glow| glow.radiance * part(glow.density)).reduce(|a, b| a + b);
+        sum.unwrap_or_else(|| self.background.of(comb))
+    }
+
+    /// The nearest surface that emits and is no object, and which of the lights it is.
+    pub(super) fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, Glow)> {
+        let mut nearest: Option<(usize, Glow)> = None;
+        for (index, (_, source)) in self.sources.iter().enumerate().filter(|(_, (_, source))| source.is_surface()) {
+            let limit = nearest.map_or(t_max, |(_, glow)| glow.t);
+            nearest = source.glow(ray, t_min, limit, comb).map(|glow| (index, glow)).or(nearest);
+        }
+        nearest
+    }
+
+    /// The light that a material emits; which of the lights it is, if any.
+    pub(super) fn emission(&self, object: u32, material: u32, comb: usize) -> Option<(Channels, Option<usize>)> {
+        let emission = self.optics(object, material).emission.as_ref()?.of(comb);
+        let key = (object, material);
+        let index = self.emitters.iter().find(|(emitter, _)| *emitter == key).map(|(_, index)| *index);
+        Some((emission, index))
+    }
+}
