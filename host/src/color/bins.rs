@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn more_bins_come_nearer_to_the_colour_of_a_spectrum() {
-        let light = shipped::D65.times(&shipped::patch("red").expect("a patch")).expect("a product");
+        let light = shipped::D65.times(&shipped::reflectance("red").expect("a patch")).expect("a product");
         let exact = tristimulus(&light);
         let error = |count| {
             let bins = Bins::visible(count).expect("bins");
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn one_bin_holds_the_plain_or_weighted_mean() {
         let one = Bins::between(vec![380.0, 780.0]).expect("a bin");
-        let red = shipped::patch("red").expect("a patch");
+        let red = shipped::reflectance("red").expect("a patch");
         let (plain, weighted) = (one.means(&red)[0], one.means_under(&red, &shipped::light("A").expect("a light"))[0]);
         assert!(plain > 0.2 && weighted > plain, "lamp light is red: {plain} {weighted}");
         assert!(Bins::visible(0).is_err() && Bins::between(vec![500.0, 400.0]).is_err());

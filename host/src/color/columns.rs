@@ -1,4 +1,14 @@
 //! Tables of spectra as text: a head of comments, names of the columns, and one line for each wavelength.
+//!
+//! ```text
+//! # What it is.
+//! #
+//! # Source: who measured it, where it was published.
+//! # Terms: under which it may be passed on.
+//! nm walnut oak
+//! 400 0.031 0.082
+//! 410 0.033 0.091
+//! ```
 
 use super::{Beyond, ColorError, Spectrum};
 
@@ -45,6 +55,40 @@ pub(super) fn named_rows(text: &str) -> Result<Vec<Row<'_>>, ColorError> {
     rows(text).map(|(_, rows)| rows)
 }
 
+/// Where figures come from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Origin {
+    /// What they are.
+    pub what: String,
+    /// Who measured them, where they were published.
+    pub source: String,
+    /// Under which terms they may be passed on.
+    pub terms: String,
+}
+
+/// What the head of a table says of its origin; nothing, where it says nothing.
+pub fn origin(text: &str) -> Origin {
+    let mut origin = Origin::default();
+    let (mut unused, mut place) = (String::new(), 0);
+    for line in text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim) {
+        let keys = ["Source:", "Terms:", "Samples:"];
+        let key = keys.iter().position(|key| line.starts_with(key));
+        place = key.map_or(place, |key| key + 1);
+        let line = key.map_or(line, |key| line[keys[key].len()..].trim());
+        let part = match place {
+            0 => &mut origin.what,
+            1 => &mut origin.source,
+            2 => &mut origin.terms,
+            _ => &mut unused,
+        };
+        if !line.is_empty() {
+            part.push_str(if part.is_empty() { "" } else { " " });
+            part.push_str(line);
+        }
+    }
+    origin
+}
+
 /// The names of the spectra of a table.
 pub(super) fn names(text: &str) -> Vec<&str> {
     rows(text).map(|(names, _)| names).unwrap_or_default()
@@ -54,7 +98,7 @@ pub(super) fn names(text: &str) -> Vec<&str> {
 ///
 /// # Errors
 /// [`ColorError::Line`] with the place, or another [`ColorError`] if the numbers are no spectra.
-pub(super) fn spectra(text: &str, beyond: Beyond) -> Result<Vec<(&str, Spectrum)>, ColorError> {
+pub fn spectra(text: &str, beyond: Beyond) -> Result<Vec<(&str, Spectrum)>, ColorError> {
     let (names, rows) = rows(text)?;
     let mut wavelengths = Vec::new();
     for row in &rows {
@@ -66,6 +110,9 @@ pub(super) fn spectra(text: &str, beyond: Beyond) -> Result<Vec<(&str, Spectrum)
     }
     let step = wavelengths.get(1).zip(wavelengths.first()).map_or(0.0, |(second, first)| second - first);
     let is_regular = wavelengths.windows(2).all(|pair| pair[1] - pair[0] == step);
+    if let Some(twice) = names.iter().enumerate().find(|(index, name)| names[..*index].contains(name)) {
+        return Err(ColorError::Line { line: 0, problem: format!("two columns are called \"{}\"", twice.1) });
+    }
     let column = |(index, name)| {
         let values: Vec<f64> = rows.iter().map(|row| row.numbers[index]).collect();
         let spectrum = if is_regular && wavelengths.len() > 1 {
@@ -77,6 +124,34 @@ pub(super) fn spectra(text: &str, beyond: Beyond) -> Result<Vec<(&str, Spectrum)
         Ok((name, spectrum))
     };
     names.into_iter().enumerate().map(column).collect()
+}
+
+/// A table as text, which [`spectra`] reads to the last bit; none if the spectra are not over the same wavelengths.
+///
+/// - `spectra`: each with its name; what is white space in a name becomes an underscore.
+pub fn print(origin: &Origin, spectra: &[(&str, &Spectrum)]) -> Option<String> {
+    let wavelengths: Vec<f64> = spectra.first()?.1.samples().map(|(wavelength, _)| wavelength).collect();
+    let is_same = |spectrum: &Spectrum| spectrum.samples().map(|(w, _)| w).eq(wavelengths.iter().copied());
+    if !spectra.iter().all(|(_, spectrum)| is_same(spectrum)) {
+        return None;
+    }
+    let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut text = String::new();
+    for (key, value) in [("", &origin.what), ("Source: ", &origin.source), ("Terms: ", &origin.terms)] {
+        if !value.trim().is_empty() {
+            text.push_str(&format!("# {key}{}\n", one_line(value)));
+        }
+    }
+    text.push_str("nm");
+    for (name, _) in spectra {
+        text.push_str(&format!(" {}", name.split_whitespace().collect::<Vec<_>>().join("_")));
+    }
+    let columns: Vec<Vec<f64>> = spectra.iter().map(|(_, s)| s.samples().map(|(_, value)| value).collect()).collect();
+    for (row, wavelength) in wavelengths.iter().enumerate() {
+        text.push_str(&format!("\n{wavelength}"));
+        columns.iter().for_each(|column| text.push_str(&format!(" {}", column[row])));
+    }
+    Some(text + "\n")
 }
 
 #[cfg(test)]
@@ -99,5 +174,31 @@ mod tests {
         assert_eq!(line("nm a\n400 1 2\n"), 2);
         assert_eq!(line("# only\nnm a\nlong 1\n"), 3);
         assert_eq!(line(""), 0);
+    }
+
+    #[test]
+    fn the_head_tells_where_the_figures_come_from() {
+        let text =
+            "# What it\n# is.\n#\n# Source: who,\n# where.\n# Terms: free.\n# Samples: a: b.\nnm a\n400 1\n410 2\n";
+        let origin = origin(text);
+        assert_eq!([&*origin.what, &*origin.source, &*origin.terms], ["What it is.", "who, where.", "free."]);
+        assert_eq!(super::origin("nm a\n# Source: none\n"), Origin::default());
+    }
+
+    #[test]
+    fn a_printed_table_is_read_to_the_last_bit() {
+        let wave = |f: f64| (0..40).map(|i| (f * f64::from(i)).sin() / 3.0).collect::<Vec<f64>>();
+        let one = Spectrum::regular(380.0, 10.0, wave(0.1), Beyond::Held).expect("a spectrum");
+        let two = Spectrum::regular(380.0, 10.0, wave(0.7), Beyond::Held).expect("a spectrum");
+        let origin = Origin { what: "waves".into(), source: "a\nsine".into(), terms: "free".into() };
+        let text = print(&origin, &[("one", &one), ("number two", &two)]).expect("the same wavelengths");
+        assert_eq!(spectra(&text, Beyond::Held).expect("a table"), [("one", one.clone()), ("number_two", two)]);
+        assert_eq!(super::origin(&text), Origin { source: "a sine".into(), ..origin.clone() });
+        assert_eq!(print(&origin, &[("one", &one), ("d65", &super::super::shipped::D65)]), None);
+    }
+
+    #[test]
+    fn two_columns_of_a_name_are_refused() {
+        assert!(spectra("nm a a\n400 1 2\n410 3 4\n", Beyond::Held).is_err());
     }
 }

@@ -8,7 +8,7 @@ pub mod blackbody;
 mod channels;
 #[expect(clippy::module_inception, reason = "the noun of the field")]
 mod color;
-mod columns;
+pub mod columns;
 pub mod daylight;
 mod error;
 pub mod glass;
@@ -22,6 +22,7 @@ mod wavelengths;
 pub use bins::Bins;
 pub use channels::{Channels, LANES};
 pub use color::{Color, WHITE};
+pub use columns::Origin;
 pub use error::ColorError;
 pub use glass::Glass;
 pub use reflectance::SmoothReflectance;

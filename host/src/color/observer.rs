@@ -124,7 +124,7 @@ mod tests {
         ];
         let light = daylight::spectrum(5000.0 * 1.4388 / 1.4380).expect("D50");
         for ((name, published), computed) in shipped::patches().iter().zip(published).zip(computed) {
-            let seen = seen(&shipped::patch(name).expect("a patch"), &light).expect("light");
+            let seen = seen(&shipped::reflectance(name).expect("a patch"), &light).expect("light");
             let found = chromaticity(seen).expect("not black").extend(seen.y);
             assert!((found - DVec3::from_array(published)).abs().max_element() < 0.015, "{name}: {found}");
             assert!((found - DVec3::from_array(computed)).abs().max_element() < 2e-4, "{name}: {found}");

@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn colours_of_the_checker_get_reflectances_like_theirs() {
         for name in ["dark_skin", "foliage", "blue_sky", "neutral_5"] {
-            let patch = shipped::patch(name).expect("a patch");
+            let patch = shipped::reflectance(name).expect("a patch");
             let fit = SmoothReflectance::from_xyz(seen(&patch, &shipped::D65).expect("light")).expect("a fit");
             let squares = (420..=680).map(|w| (fit.reflectance.at(f64::from(w)) - patch.at(f64::from(w))).powi(2));
             assert!((squares.sum::<f64>() / 261.0).sqrt() < 0.06, "{name}");

@@ -1,8 +1,9 @@
-//! What ships with the program: lamps, daylight, the observer, metals, glasses, painted patches.
+//! What ships with the program: lamps, daylight, the observer, metals, glasses, and what surfaces reflect.
 //!
 //! The files lie in `data/color`; each states its source and its terms in its head.
 
-use super::{Beyond, ColorError, Glass, Spectrum, columns};
+use super::{Beyond, ColorError, Glass, Origin, Spectrum, columns};
+use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// Light of lamps and standard illuminants, relative to any unit.
@@ -17,10 +18,25 @@ const METALS: &[(&str, &str)] = &[
     ("iron", include_str!("../../data/color/iron.txt")),
 ];
 const GLASSES: &str = include_str!("../../data/color/glasses.txt");
+/// What surfaces reflect; the patches of the colour checker first.
+const REFLECTANCES: &[&str] = &[
+    CHECKER,
+    include_str!("../../data/color/paints.txt"),
+    include_str!("../../data/color/stones.txt"),
+    include_str!("../../data/color/woods.txt"),
+    include_str!("../../data/color/fabrics.txt"),
+    include_str!("../../data/color/oak.txt"),
+    include_str!("../../data/color/test_colors.txt"),
+];
 const CHECKER: &str = include_str!("../../data/color/checker.txt");
+/// Functions that belong together: the observer, and daylight.
+const FUNCTIONS: &[(&str, &str)] = &[
+    ("observer", include_str!("../../data/color/observer.txt")),
+    ("daylight", include_str!("../../data/color/daylight.txt")),
+];
 
 /// A metal: its complex index of refraction n + ik over the wavelength.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Metal {
     /// Refractive index n, 0 and more.
     pub n: Spectrum,
@@ -87,14 +103,47 @@ pub fn patches() -> Vec<&'static str> {
     columns::names(CHECKER)
 }
 
-/// The reflectance of a patch of the colour checker, as [`patches`] names it.
+/// The names of all reflectances; the patches of the colour checker first.
+pub fn reflectances() -> Vec<&'static str> {
+    REFLECTANCES.iter().flat_map(|text| columns::names(text)).collect()
+}
+
+/// What a surface reflects, 0..=1, as [`reflectances`] names it.
 ///
 /// # Errors
 /// [`ColorError::Unknown`].
-pub fn patch(name: &str) -> Result<Spectrum, ColorError> {
-    let mut all = columns::spectra(CHECKER, Beyond::Held)?.into_iter();
-    let found = all.find(|(known, _)| *known == name).map(|(_, spectrum)| spectrum);
-    found.ok_or_else(|| unknown("patch", name, &patches()))
+pub fn reflectance(name: &str) -> Result<Spectrum, ColorError> {
+    for text in REFLECTANCES.iter().filter(|text| columns::names(text).contains(&name)) {
+        let mut all = columns::spectra(text, Beyond::Held)?.into_iter();
+        if let Some((_, spectrum)) = all.find(|(known, _)| *known == name) {
+            return Ok(spectrum);
+        }
+    }
+    Err(unknown("reflectance", name, &reflectances()))
+}
+
+/// The names of functions that belong together.
+pub fn functions() -> Vec<&'static str> {
+    FUNCTIONS.iter().map(|row| row.0).collect()
+}
+
+/// Functions over the wavelength that belong together, each with its name: those of the observer, or of daylight.
+///
+/// # Errors
+/// [`ColorError::Unknown`].
+pub fn function(name: &str) -> Result<Vec<(&'static str, Spectrum)>, ColorError> {
+    match FUNCTIONS.iter().find(|row| row.0 == name) {
+        Some((_, text)) => columns::spectra(text, Beyond::Zero),
+        None => Err(unknown("function", name, &functions())),
+    }
+}
+
+/// Where the figures of a name come from, whatever it names.
+pub fn origin(name: &str) -> Option<Origin> {
+    let named = METALS.iter().chain(FUNCTIONS).find(|row| row.0 == name).map(|row| row.1);
+    let glass = || glasses().contains(&name).then_some(GLASSES);
+    let column = || LIGHTS.iter().chain(REFLECTANCES).find(|text| columns::names(text).contains(&name)).copied();
+    named.or_else(glass).or_else(column).map(columns::origin)
 }
 
 fn unknown(kind: &'static str, name: &str, known: &[&str]) -> ColorError {
@@ -109,19 +158,19 @@ fn three(text: &str, beyond: Beyond) -> [Spectrum; 3] {
 }
 
 /// The functions x, y and z of the CIE 1931 observer, 360 to 830 nm.
-pub(super) static OBSERVER: LazyLock<[Spectrum; 3]> =
-    LazyLock::new(|| three(include_str!("../../data/color/observer.txt"), Beyond::Zero));
+pub(super) static OBSERVER: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[0].1, Beyond::Zero));
 
 /// Mean daylight and its two characteristic vectors, 300 to 830 nm.
-pub(super) static DAYLIGHT: LazyLock<[Spectrum; 3]> =
-    LazyLock::new(|| three(include_str!("../../data/color/daylight.txt"), Beyond::Zero));
+pub(super) static DAYLIGHT: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[1].1, Beyond::Zero));
 
 /// The standard illuminant D65.
 pub static D65: LazyLock<Spectrum> = LazyLock::new(|| light("D65").expect("the embedded table has D65"));
 
 #[cfg(test)]
 mod tests {
+    use super::super::observer;
     use super::*;
+    use glam::DVec3;
 
     #[test]
     fn everything_that_is_named_can_be_had() {
@@ -129,16 +178,92 @@ mod tests {
         assert!(lights().iter().all(|name| light(name).is_ok_and(|s| s.samples().all(|(_, v)| v >= 0.0))));
         assert_eq!(metals().iter().filter(|name| metal(name).is_ok()).count(), 5);
         assert_eq!(glasses().iter().filter(|name| glass(name).is_ok()).count(), 4);
-        assert_eq!(patches().len(), 24);
-        for name in patches() {
-            assert!(patch(name).is_ok_and(|s| s.samples().all(|(_, v)| (0.0..=1.0).contains(&v))), "{name}");
+        assert_eq!((patches().len(), reflectances().len()), (24, 70));
+        for name in reflectances() {
+            assert!(reflectance(name).is_ok_and(|s| s.samples().all(|(_, v)| (0.0..=1.0).contains(&v))), "{name}");
         }
+        assert!(functions().iter().all(|name| function(name).is_ok_and(|all| all.len() == 3)));
+    }
+
+    #[test]
+    fn every_name_is_given_once_and_has_source_and_terms() {
+        let mut names = [lights(), metals(), glasses(), reflectances(), functions()].concat();
+        for name in &names {
+            let Origin { what, source, terms } = origin(name).expect("an origin");
+            assert!(what.ends_with('.') && source.ends_with('.') && terms.ends_with('.'), "{name}: {source} {terms}");
+        }
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]));
+        assert_eq!(origin("unobtainium"), None);
+    }
+
+    /// Chroma and hue, degrees, of CIE L*a*b* under D65.
+    fn chroma_and_hue(name: &str) -> (f64, f64) {
+        let white = observer::tristimulus(&D65);
+        let seen = observer::seen(&reflectance(name).expect("a reflectance"), &D65).expect("D65 is seen");
+        // X, Y and Z over those of white, as their cube roots; all here are above the linear part of L*a*b* but black.
+        let root = |seen: f64, white: f64| (seen / (white / white_y(&D65))).cbrt();
+        let (x, y, z) = (root(seen.x, white.x), root(seen.y, white.y), root(seen.z, white.z));
+        let (a, b) = (500.0 * (x - y), 200.0 * (y - z));
+        (a.hypot(b), b.atan2(a).to_degrees().rem_euclid(360.0))
+    }
+
+    fn white_y(light: &Spectrum) -> f64 {
+        observer::tristimulus(light).y
+    }
+
+    #[test]
+    fn test_colors_have_the_lightness_of_their_munsell_notation() {
+        // Munsell values 8 and 4 are Y = 0.576 and 0.117 under C, of a perfect reflector (Newhall and others 1943: of
+        // magnesium oxide 0.591 and 0.120).
+        for (name, published) in [("skin", 0.576), ("green_leaf", 0.117)] {
+            let y = observer::seen(&reflectance(name).expect("a reflectance"), &D65).expect("seen").y;
+            assert!((y / published - 1.0).abs() < 0.04, "{name} {y}");
+        }
+    }
+
+    #[test]
+    fn colors_have_the_hues_of_their_names() {
+        for (from, to, names) in [
+            (15.0, 55.0, "cadmium_red vermilion alizarin_crimson red_brick dark_red_brick red_nylon"),
+            (50.0, 75.0, "cadmium_orange skin cedar pine cardboard raw_umber"),
+            (70.0, 100.0, "cadmium_yellow hansa_yellow yellow_ochre yellow_plastic"),
+            (100.0, 190.0, "chromium_green viridian cobalt_green green_nylon green_leaf oak_leaf olive_webbing"),
+            (220.0, 310.0, "cobalt_blue cerulean_blue phthalo_blue blue_nylon"),
+            (300.0, 360.0, "cobalt_violet"),
+        ] {
+            for name in names.split(' ') {
+                let (chroma, hue) = chroma_and_hue(name);
+                assert!((from..to).contains(&hue) && chroma > 5.0, "{name}: chroma {chroma}, hue {hue}");
+            }
+        }
+        for name in
+            ["grey_brick", "concrete", "cinder_block", "asphalt", "roof_tar", "calcite", "zinc_white", "grey_paint"]
+        {
+            assert!(chroma_and_hue(name).0 < 12.0, "{name}: chroma {}", chroma_and_hue(name).0);
+        }
+    }
+
+    #[test]
+    fn white_things_are_brighter_than_grey_ones_and_those_than_black_ones() {
+        let y = |name| observer::seen(&reflectance(name).expect("a reflectance"), &D65).map_or(DVec3::ZERO, |s| s).y;
+        let known = [
+            "calcite",
+            "zinc_white",
+            "white_cotton",
+            "pale_concrete",
+            "cinder_block",
+            "concrete",
+            "asphalt",
+            "roof_tar",
+        ];
+        assert!(known.windows(2).all(|pair| y(pair[0]) > y(pair[1])), "{:?}", known.map(y));
     }
 
     #[test]
     fn a_name_that_is_not_known_is_answered_by_those_that_are() {
         let message = metal("unobtainium").expect_err("unknown").to_string();
         assert_eq!(message, "no metal is called \"unobtainium\"; there are copper, gold, silver, aluminium, iron");
-        assert!(light("").is_err() && glass("gl\u{e4}ss").is_err() && patch("DARK").is_err());
+        assert!(light("").is_err() && glass("gl\u{e4}ss").is_err() && reflectance("DARK").is_err());
     }
 }

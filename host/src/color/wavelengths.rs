@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_spectrum_is_seen_as_its_integrals_tell() {
         let wavelengths = Wavelengths::spectral();
-        let red = Color::Spectrum(shipped::patch("red").expect("a patch"));
+        let red = Color::Spectrum(shipped::reflectance("red").expect("a patch"));
         let light = wavelengths.light(&Color::grey(1.0));
         let found = seen(&wavelengths, &light, &wavelengths.reflectance(&red));
         assert!((found - red.bands_of_reflectance()).length() < 1e-5);

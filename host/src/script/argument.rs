@@ -177,7 +177,7 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
         Kind::Reflectance => {
             let bands = || vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Color::Bands);
             let name = value.read_lock::<rhai::ImmutableString>();
-            let named = |name: &str| shipped::patch(name).ok().map(Color::Spectrum);
+            let named = |name: &str| shipped::reflectance(name).ok().map(Color::Spectrum);
             let plain = || name.map_or_else(bands, |name| named(&name)).map(Paint::Plain);
             let paint = value.read_lock::<Paint>().map(|paint| paint.clone());
             paint.or_else(plain).map(Argument::Paint)
