@@ -53,18 +53,24 @@ pub struct Sample {
 impl Tally {
     /// Adds a sample; one that is not a number is taken for black.
     pub fn add(&mut self, sample: &Sample) {
+        self.add_alike(sample, 1);
+    }
+
+    /// Adds several samples that are the same.
+    pub fn add_alike(&mut self, sample: &Sample, count: u32) {
         let radiance = if sample.radiance.is_finite() { sample.radiance } else { DVec3::ZERO };
-        self.sum += radiance;
-        self.squares += radiance.dot(LUMINANCE).powi(2);
-        self.count += 1;
-        self.covered += u32::from(sample.covered);
+        let times = f64::from(count);
+        self.sum += radiance * times;
+        self.squares += radiance.dot(LUMINANCE).powi(2) * times;
+        self.count += count;
+        self.covered += if sample.covered { count } else { 0 };
         if let Some((distance, normal, seen)) = sample.first {
             if self.elements == 0 {
                 self.seen = seen;
             }
-            self.distances += distance;
-            self.normals += normal;
-            self.elements += 1;
+            self.distances += distance * times;
+            self.normals += normal * times;
+            self.elements += count;
         }
     }
 
