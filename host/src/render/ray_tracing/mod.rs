@@ -66,6 +66,11 @@ impl<'a> RayTracer<'a> {
         Ok(RayTracer { plan, world: World::new(prepared, plan)? })
     }
 
+    /// The scene.
+    pub fn prepared(&self) -> &Prepared {
+        self.world.appearance.prepared
+    }
+
     /// The octree, if the plan needs one.
     pub fn octree(&self) -> Option<&Octree> {
         self.world.octree.as_ref()

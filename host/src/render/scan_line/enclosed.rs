@@ -5,8 +5,8 @@
 //! across that axis, whose results cancel out between neighbours whatever the rounding, so that the sum is always a whole and
 //! consistent number.
 
-use super::casters::{Casters, Silhouette};
 use super::Light;
+use super::casters::{Casters, Silhouette};
 use glam::{DVec2, DVec3};
 
 /// Cells along each side of the grid in which what may be met is sorted, at the most.
@@ -50,7 +50,10 @@ impl<'a> Enclosed<'a> {
         groups: usize,
     ) -> Enclosed<'a> {
         let offset = match light {
-            Light::Point(at) => (at - casters.prepared.bounds.center()) / casters.prepared.bounds.size().max(DVec3::splat(f64::MIN_POSITIVE)),
+            Light::Point(at) => {
+                (at - casters.prepared.bounds.center())
+                    / casters.prepared.bounds.size().max(DVec3::splat(f64::MIN_POSITIVE))
+            }
             Light::Direction(towards) => towards,
         };
         // Across the light, so that volumes are wide in the plane.
@@ -125,8 +128,7 @@ impl<'a> Enclosed<'a> {
         if winds == 0 {
             return 0;
         }
-        let above = is_above((q - p).cross(away_p), p, point)
-            .unwrap_or_else(|| 0.5 * (away_p.z + away_q.z) > 0.0);
+        let above = is_above((q - p).cross(away_p), p, point).unwrap_or_else(|| 0.5 * (away_p.z + away_q.z) > 0.0);
         if above { winds * silhouette.weight } else { 0 }
     }
 
@@ -181,11 +183,12 @@ impl<'a> Enclosed<'a> {
             self.squares(grid, silhouette).into_iter().map(move |cell| (cell, number))
         });
         let silhouettes = Sorted::new(silhouettes.collect(), cells * cells);
-        let triangles = self.casters.triangles.iter().filter(|t| self.facing[**t as usize] != 0).flat_map(|&triangle| {
-            let [a, b, c] = self.casters.prepared.triangles[triangle as usize].map(|i| self.vertex(i).truncate());
-            let (low, high) = (grid.place(a.min(b).min(c)), grid.place(a.max(b).max(c)));
-            (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| (y * cells + x, triangle)))
-        });
+        let triangles =
+            self.casters.triangles.iter().filter(|t| self.facing[**t as usize] != 0).flat_map(|&triangle| {
+                let [a, b, c] = self.casters.prepared.triangles[triangle as usize].map(|i| self.vertex(i).truncate());
+                let (low, high) = (grid.place(a.min(b).min(c)), grid.place(a.max(b).max(c)));
+                (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| (y * cells + x, triangle)))
+            });
         let triangles = Sorted::new(triangles.collect(), cells * cells);
         (grid.silhouettes, grid.triangles) = (silhouettes, triangles);
         grid
@@ -197,11 +200,7 @@ impl<'a> Enclosed<'a> {
         let [away_p, away_q] = [self.away(p), self.away(q)];
         let far = 4.0 * (grid.most - grid.least).length().max(f64::MIN_POSITIVE);
         let end = |from: DVec3, away: DVec3| from.truncate() + away.truncate().normalize_or_zero() * far;
-        let lines = [
-            [p.truncate(), q.truncate()],
-            [p.truncate(), end(p, away_p)],
-            [q.truncate(), end(q, away_q)],
-        ];
+        let lines = [[p.truncate(), q.truncate()], [p.truncate(), end(p, away_p)], [q.truncate(), end(q, away_q)]];
         // Where it opens to the left or right, lines of the grid have no end.
         let wide = away_p.y * away_q.y <= 0.0;
         let low = lines.iter().flatten().fold(f64::INFINITY, |least, point| least.min(point.y));
@@ -218,7 +217,9 @@ impl<'a> Enclosed<'a> {
                 if from.y > top || to.y < bottom {
                     continue;
                 }
-                let at = |y: f64| if to.y > from.y { from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y) } else { from.x };
+                let at = |y: f64| {
+                    if to.y > from.y { from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y) } else { from.x }
+                };
                 let ends = if to.y > from.y { [at(bottom.max(from.y)), at(top.min(to.y))] } else { [from.x, to.x] };
                 (left, right) = (left.min(ends[0]).min(ends[1]), right.max(ends[0]).max(ends[1]));
             }
@@ -256,7 +257,8 @@ fn ray_crosses(from: DVec3, away: DVec3, point: DVec3) -> i32 {
 impl Grid {
     /// Column and row of a point, or of what is nearest to it in the grid.
     fn place(&self, point: DVec2) -> [usize; 2] {
-        let at = (point - self.least) / (self.most - self.least).max(DVec2::splat(f64::MIN_POSITIVE)) * self.cells as f64;
+        let at =
+            (point - self.least) / (self.most - self.least).max(DVec2::splat(f64::MIN_POSITIVE)) * self.cells as f64;
         [at.x, at.y].map(|x| (x.max(0.0) as usize).min(self.cells - 1))
     }
 

@@ -197,6 +197,8 @@ impl<'a> ScanLine<'a> {
             eye: &eye,
             offsets: &offsets,
             matte: order.matte,
+            has_surfaces: self.appearance.sources.iter().any(|(_, source)| source.is_surface()),
+            has_sky: self.appearance.sources.iter().any(|(_, source)| source.is_sky()),
         };
         let work = Work {
             shader,
@@ -308,12 +310,13 @@ impl Renderer for ScanLine<'_> {
     /// Takes all samples at once: a target of the error is not looked at.
     fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
         let start = Instant::now();
-        let mut film = Film::new(order.width, order.height)?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
         let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
         let stopped = || watch.is_cancelled() || late();
+        let mut film = pool.install(|| Film::new(order.width, order.height))?;
         let (spans, complete) = pool.install(|| self.draw(&mut film, (view, order), &stopped, watch))?;
+        let picture = pool.install(|| film.picture())?;
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
-        Ok(Rendering { picture: film.picture()?, film, complete, rays: RayCounts::default(), spans, seconds, threads })
+        Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, seconds, threads })
     }
 }

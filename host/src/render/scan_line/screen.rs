@@ -108,9 +108,8 @@ impl Screen {
                     > f64::EPSILON * rows[3].dot(bounds.center().extend(1.0)).abs();
                 eye = if is_perspective { Some(meet(rows[0], rows[1], rows[3])?) } else { None };
                 let base = eye.unwrap_or(bounds.center()).extend(1.0);
-                let relative = |row: DVec4, at_base: Option<f64>| {
-                    row.truncate().extend(at_base.unwrap_or_else(|| row.dot(base)))
-                };
+                let relative =
+                    |row: DVec4, at_base: Option<f64>| row.truncate().extend(at_base.unwrap_or_else(|| row.dot(base)));
                 let at_eye = eye.map(|_| 0.0);
                 (x, y, w) = (relative(rows[0], at_eye), relative(rows[1], at_eye), relative(rows[3], at_eye));
                 let z = relative(rows[2], None);
@@ -169,7 +168,9 @@ impl Screen {
 
     /// Beside which planes a corner lies: one bit for each.
     pub(super) fn outside(&self, corner: &Corner) -> u8 {
-        (0..PLANES).filter(|&plane| self.height(plane, corner, f64::MIN_POSITIVE) < 0.0).fold(0, |bits, p| bits | 1 << p)
+        (0..PLANES)
+            .filter(|&plane| self.height(plane, corner, f64::MIN_POSITIVE) < 0.0)
+            .fold(0, |bits, p| bits | 1 << p)
     }
 
     /// Where a corner is in the picture, if no plane cuts it off.

@@ -1,9 +1,9 @@
 //! Light that comes from what samples see, once for each pixel and surface.
 
+use super::Lamp;
 use super::casters::Casters;
 use super::enclosed::Enclosed;
 use super::visibility::{NONE, Strip};
-use super::Lamp;
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
 use crate::illumination::optics::{Optics, Painting, Side, Sighting, Which};
@@ -14,6 +14,7 @@ use crate::render::film::{Sample, Tally};
 use crate::render::ready::Appearance;
 use crate::scene::footprint;
 use glam::DVec3;
+use std::ops::Range;
 
 /// Triangles of one curved object that share a pixel are lit as one if their normals differ by less (cosine).
 const SMOOTH: f64 = 0.94;
@@ -27,21 +28,27 @@ const BESIDE: f64 = 0.01;
 struct Part {
     surface: usize,
     fragment: usize,
+    triangle: u32,
+    /// Which of the pixel's samples.
+    sample: usize,
 }
 
 /// A surface in a pixel.
 struct Surface<'a> {
+    /// The triangle that was seen first, and how near.
     triangle: u32,
     near: f64,
     face: DVec3,
     curved: bool,
-    /// The places of the samples that see it, in pixels, and whether all of them see the same triangle.
-    places: Vec<([f64; 2], u32)>,
+    /// How many samples see it, the sum of their places in pixels, and whether all see the same triangle.
+    count: u32,
+    sum: [f64; 2],
+    alone: bool,
     found: Option<Found<'a>>,
     /// What it sends to the eye without lights.
     own: Channels,
-    /// What each lamp adds where nothing stands before it, and how.
-    lit: Vec<Lit>,
+    /// Which of the lights that were found are its own.
+    lit: Range<usize>,
 }
 
 /// What a lamp adds.
@@ -81,6 +88,9 @@ pub(super) struct Shader<'a> {
     pub(super) eye: &'a Eye,
     pub(super) offsets: &'a [f64],
     pub(super) matte: bool,
+    /// Whether some light is a surface that is seen and no object, and whether one is a sky.
+    pub(super) has_surfaces: bool,
+    pub(super) has_sky: bool,
 }
 
 /// What a thread keeps from pixel to pixel.
@@ -88,7 +98,10 @@ pub(super) struct Shader<'a> {
 pub(super) struct Desk<'a> {
     surfaces: Vec<Surface<'a>>,
     parts: Vec<Part>,
-    radiance: Vec<DVec3>,
+    /// What lamps add, surface by surface.
+    lit: Vec<Lit>,
+    /// For each sample of the pixel, where its parts begin, and the light that comes to it.
+    samples: Vec<(usize, DVec3)>,
 }
 
 /// A pixel of a strip.
@@ -99,80 +112,116 @@ pub(super) struct Pixel {
     pub(super) first: usize,
     pub(super) stride: usize,
     /// Its samples, by line of the pixel.
-    pub(super) lines: std::ops::Range<usize>,
+    pub(super) lines: Range<usize>,
 }
 
 impl<'a> Shader<'a> {
     /// Adds the samples of a pixel to what is known of it.
     ///
     /// - `counts`: for each lamp, as [`super::shadow::Shadow::count`] gives them; empty without shadows.
-    pub(super) fn shade(&self, pixel: &Pixel, strip: &Strip, counts: &[Vec<i32>], desk: &mut Desk<'a>, tally: &mut Tally) {
-        let Desk { surfaces, parts, radiance } = desk;
-        surfaces.clear();
-        parts.clear();
-        let samples = strip.near.len();
-        for (i, line) in pixel.lines.clone().enumerate() {
-            let sample = pixel.first + i * pixel.stride;
-            let at = [
-                pixel.at[0] as f64 + self.offsets[line],
-                pixel.at[1] as f64 + (line as f64 + 0.5) / self.offsets.len() as f64,
-            ];
-            for index in strip.layers_of(sample) {
-                let layer = strip.layers[index];
-                let surface = self.surface(surfaces, layer.triangle, layer.near, at);
-                parts.push(Part { surface, fragment: samples + index });
-            }
-            if strip.seen[sample] != NONE {
-                let surface = self.surface(surfaces, strip.seen[sample], strip.near[sample], at);
-                parts.push(Part { surface, fragment: sample });
-            }
-        }
-        for surface in surfaces.iter_mut() {
-            surface.found = self.find(surface);
+    pub(super) fn shade(
+        &self,
+        pixel: &Pixel,
+        strip: &Strip,
+        counts: &[Vec<i32>],
+        desk: &mut Desk<'a>,
+        tally: &mut Tally,
+    ) {
+        self.gather(pixel, strip, desk);
+        let Desk { surfaces, parts, lit, samples } = desk;
+        for (index, surface) in surfaces.iter_mut().enumerate() {
+            surface.found = self.find(surface, parts.iter().filter(|part| part.surface == index), pixel);
         }
         let combs = self.appearance.wavelengths.combs();
-        radiance.clear();
-        radiance.resize(pixel.lines.len(), DVec3::ZERO);
         for comb in 0..combs {
-            surfaces.iter_mut().for_each(|surface| self.light(surface, comb));
-            let mut next = 0;
-            for (i, radiance) in radiance.iter_mut().enumerate() {
-                let sample = pixel.first + i * pixel.stride;
-                let own = strip.layers_of(sample).len() + usize::from(strip.seen[sample] != NONE);
-                let sum = self.sample(surfaces, &parts[next..next + own], (strip, counts), (pixel, i), comb);
-                *radiance += self.appearance.wavelengths.seen(comb, sum);
-                next += own;
+            lit.clear();
+            surfaces.iter_mut().for_each(|surface| self.light(surface, lit, comb));
+            let mut before: Option<(usize, DVec3)> = None;
+            for i in 0..pixel.lines.len() {
+                let own = seen_by(samples, parts, i);
+                let seen = match before {
+                    Some((j, seen)) if self.is_alike((surfaces, lit), [seen_by(samples, parts, j), own], counts) => {
+                        seen
+                    }
+                    _ => {
+                        let sum = self.sample((surfaces, lit), own, (strip, counts), (pixel, i), comb);
+                        self.appearance.wavelengths.seen(comb, sum)
+                    }
+                };
+                before = Some((i, seen));
+                samples[i].1 += seen;
             }
         }
-        let mut next = 0;
+        let scale = (combs as f64).recip();
         let mut last: Option<(Sample, u32)> = None;
-        for (i, radiance) in radiance.iter().enumerate() {
-            let sample = pixel.first + i * pixel.stride;
-            let own = strip.layers_of(sample).len() + usize::from(strip.seen[sample] != NONE);
-            let first = parts[next..next + own].first().and_then(|part| surfaces[part.surface].found.as_ref());
-            next += own;
+        for i in 0..pixel.lines.len() {
+            let first = seen_by(samples, parts, i).first().and_then(|part| surfaces[part.surface].found.as_ref());
             let first = first.map(|found| (found.distance, found.element.normal, [found.object, found.material]));
             let covered = first.is_some() || self.glows(pixel, i, None).is_some();
-            let radiance = if self.matte && !covered { DVec3::ZERO } else { *radiance / combs as f64 };
+            let radiance = if self.matte && !covered { DVec3::ZERO } else { samples[i].1 * scale };
             let sample = Sample { radiance, covered, first };
-            last = match last {
-                Some((before, count)) if before == sample => Some((before, count + 1)),
-                Some((before, count)) => {
-                    tally.add_alike(&before, count);
-                    Some((sample, 1))
+            match &mut last {
+                Some((before, count)) if *before == sample => *count += 1,
+                _ => {
+                    if let Some((before, count)) = last.replace((sample, 1)) {
+                        tally.add_alike(&before, count);
+                    }
                 }
-                None => Some((sample, 1)),
-            };
+            }
         }
         if let Some((sample, count)) = last {
             tally.add_alike(&sample, count);
         }
     }
 
+    /// Finds the surfaces of a pixel, and which samples see them.
+    fn gather(&self, pixel: &Pixel, strip: &Strip, desk: &mut Desk<'a>) {
+        let Desk { surfaces, parts, samples, .. } = desk;
+        surfaces.clear();
+        parts.clear();
+        samples.clear();
+        let opaque = strip.near.len();
+        for i in 0..pixel.lines.len() {
+            samples.push((parts.len(), DVec3::ZERO));
+            let sample = pixel.first + i * pixel.stride;
+            let mut add = |triangle: u32, near: f64, fragment: usize| {
+                let surface = self.surface(surfaces, triangle, near, self.place(pixel, i));
+                parts.push(Part { surface, fragment, triangle, sample: i });
+            };
+            for index in strip.layers_of(sample) {
+                let layer = strip.layers[index];
+                add(layer.triangle, layer.near, opaque + index);
+            }
+            if strip.seen[sample] != NONE {
+                add(strip.seen[sample], strip.near[sample], sample);
+            }
+        }
+    }
+
+    /// Whether two samples of a pixel surely get the same light.
+    fn is_alike(&self, (surfaces, lit): (&[Surface<'_>], &[Lit]), parts: [&[Part]; 2], counts: &[Vec<i32>]) -> bool {
+        if self.has_surfaces || self.passing.len() > 1 {
+            return false;
+        }
+        match parts {
+            [[], []] => !self.has_sky,
+            [[a], [b]] => {
+                a.surface == b.surface
+                    && lit[surfaces[a.surface].lit.clone()].iter().all(|lit| {
+                        lit.known.is_some()
+                            || counts.get(lit.lamp).is_none_or(|counts| {
+                                (counts[a.fragment] + lit.turned > 0) == (counts[b.fragment] + lit.turned > 0)
+                            })
+                    })
+            }
+            _ => false,
+        }
+    }
+
     /// The light that comes to one sample.
     fn sample(
         &self,
-        surfaces: &[Surface<'a>],
+        (surfaces, lit): (&[Surface<'a>], &[Lit]),
         parts: &[Part],
         (strip, counts): (&Strip, &[Vec<i32>]),
         (pixel, i): (&Pixel, usize),
@@ -189,8 +238,9 @@ impl<'a> Shader<'a> {
                 return glow;
             }
             let mut radiance = surface.own;
-            for lit in &surface.lit {
-                radiance += lit.adds * self.arrived(lit, counts.get(lit.lamp), (part.fragment, strip), found.triangle, comb);
+            for lit in &lit[surface.lit.clone()] {
+                radiance +=
+                    lit.adds * self.arrived(lit, counts.get(lit.lamp), (part.fragment, strip), found.triangle, comb);
             }
             sum += passed * radiance;
             if part.fragment < strip.near.len() {
@@ -218,9 +268,7 @@ impl<'a> Shader<'a> {
         let Some(counts) = counts.filter(|counts| !counts.is_empty()) else { return Channels::ONE };
         let fragments = strip.fragments();
         let own = usize::from(self.casters.group(triangle));
-        let count = |group: usize| {
-            counts[group * fragments + fragment] + if group == own { lit.turned } else { 0 }
-        };
+        let count = |group: usize| counts[group * fragments + fragment] + if group == own { lit.turned } else { 0 };
         if lit.known.unwrap_or_else(|| count(0) > 0) {
             return Channels::ZERO;
         }
@@ -241,7 +289,7 @@ impl<'a> Shader<'a> {
 
     /// The light of a surface that emits and is no object, if a sample sees one before something.
     fn glows(&self, pixel: &Pixel, i: usize, before: Option<(f64, usize)>) -> Option<Channels> {
-        if !self.appearance.sources.iter().any(|(_, source)| source.is_surface()) {
+        if !self.has_surfaces {
             return None;
         }
         let (distance, comb) = before.unwrap_or((f64::INFINITY, 0));
@@ -252,9 +300,14 @@ impl<'a> Shader<'a> {
 
     /// The surface of a pixel to which a sample belongs.
     fn surface(&self, surfaces: &mut Vec<Surface<'a>>, triangle: u32, near: f64, at: [f64; 2]) -> usize {
+        let add = |index: usize, surface: &mut Surface<'_>| {
+            surface.count += 1;
+            surface.sum = [surface.sum[0] + at[0], surface.sum[1] + at[1]];
+            surface.alone &= surface.triangle == triangle;
+            index
+        };
         if let Some(index) = surfaces.iter().position(|surface| surface.triangle == triangle) {
-            surfaces[index].places.push((at, triangle));
-            return index;
+            return add(index, &mut surfaces[index]);
         }
         let prepared = self.appearance.prepared;
         let [a, b, c] = prepared.corners(triangle);
@@ -270,23 +323,30 @@ impl<'a> Shader<'a> {
                 && prepared.material_number(surface.triangle) == prepared.material_number(triangle)
         };
         if let Some(index) = surfaces.iter().position(same) {
-            surfaces[index].places.push((at, triangle));
-            return index;
+            return add(index, &mut surfaces[index]);
         }
-        let places = vec![(at, triangle)];
-        surfaces.push(Surface { triangle, near, face, curved, places, found: None, own: Channels::ZERO, lit: Vec::new() });
+        let (own, lit) = (Channels::ZERO, 0..0);
+        surfaces.push(Surface { triangle, near, face, curved, count: 1, sum: at, alone: true, found: None, own, lit });
         surfaces.len() - 1
     }
 
     /// The element in the middle of what samples see of a surface.
-    fn find(&self, surface: &Surface<'_>) -> Option<Found<'a>> {
-        let part = (surface.places.len() as f64).recip();
-        let sum = surface.places.iter().fold([0.0; 2], |[x, y], (at, _)| [x + at[0], y + at[1]]);
-        let middle = [sum[0] * part, sum[1] * part];
-        let away = |at: &[f64; 2]| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
-        let one = surface.places.iter().all(|(_, triangle)| *triangle == surface.triangle);
-        let nearest = surface.places.iter().min_by(|(a, _), (b, _)| away(a).total_cmp(&away(b)))?;
-        let (at, triangle) = if one { (middle, surface.triangle) } else { *nearest };
+    fn find<'p>(
+        &self,
+        surface: &Surface<'_>,
+        parts: impl Iterator<Item = &'p Part>,
+        pixel: &Pixel,
+    ) -> Option<Found<'a>> {
+        let part = f64::from(surface.count).recip();
+        let middle = surface.sum.map(|sum| sum * part);
+        let (at, triangle) = if surface.alone {
+            (middle, surface.triangle)
+        } else {
+            // The mean of samples in several triangles may lie in none of them.
+            let away = |at: [f64; 2]| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
+            let places = parts.map(|part| (self.place(pixel, part.sample), part.triangle));
+            places.min_by(|(a, _), (b, _)| away(*a).total_cmp(&away(*b)))?
+        };
         let sight = self.eye.ray(at, [0.5; 2])?;
         let prepared = self.appearance.prepared;
         let hit = met(&sight.ray, prepared.corners(triangle), triangle)?;
@@ -296,9 +356,20 @@ impl<'a> Shader<'a> {
         let length = sight.ray.direction.length();
         let (distance, towards) = (hit.t * length, sight.ray.direction / length);
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let sides = footprint(element.face, towards, sight.cone.at(distance));
-        let mut found = Found { element, optics, distance, object, material, towards, triangle, weights, sides };
+        let mut found = Found {
+            element,
+            optics,
+            distance,
+            object,
+            material,
+            towards,
+            triangle,
+            weights,
+            sides: Default::default(),
+        };
         if optics.is_textured() {
+            let sides = footprint(element.face, towards, sight.cone.at(distance));
+            found.sides = sides;
             let place = prepared.place(triangle, weights, sides);
             found.element.tilt(-towards, |normal| optics.tilted(&place, normal));
         }
@@ -311,19 +382,17 @@ impl<'a> Shader<'a> {
     }
 
     /// What a surface sends to the eye.
-    fn light(&self, surface: &mut Surface<'a>, comb: usize) {
+    fn light(&self, surface: &mut Surface<'a>, lit: &mut Vec<Lit>, comb: usize) {
         surface.own = Channels::ZERO;
-        surface.lit.clear();
+        surface.lit = lit.len()..lit.len();
         let Some(found) = &surface.found else { return };
         let Found { element, optics, towards, .. } = found;
         if let Some((emission, _)) = self.appearance.emission(found.object, found.material, comb) {
             surface.own += emission;
         }
-        let painting: Painting = if optics.is_textured() {
-            optics.paint(&self.appearance.prepared.place(found.triangle, found.weights, found.sides), comb)
-        } else {
-            Painting::default()
-        };
+        let place = || self.appearance.prepared.place(found.triangle, found.weights, found.sides);
+        let painting: Option<Painting> = optics.is_textured().then(|| optics.paint(&place(), comb));
+        let painted = painting.as_ref().map_or(&[][..], |painting| painting.as_slice());
         let normal = element.normal;
         let frame = optics.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
         let index = optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
@@ -331,7 +400,7 @@ impl<'a> Shader<'a> {
             true => Side { before: Channels::ONE, behind: index },
             false => Side { before: index, behind: Channels::ONE },
         };
-        let sighting = Sighting { view: frame.local(-*towards), comb, side, lane: 0, painted: &painting };
+        let sighting = Sighting { view: frame.local(-*towards), comb, side, lane: 0, painted };
         if let Some(ambient) = &self.appearance.ambient {
             surface.own += optics.ambient(&sighting) * ambient.of(comb);
         }
@@ -342,7 +411,10 @@ impl<'a> Shader<'a> {
             let source = &self.appearance.sources[lamp.source].1;
             let Some(beam) = source.beam_from(&lamp.point, element.position, comb) else { continue };
             let light = frame.local(beam.towards);
-            let adds = (optics.value(Which::Continued, &sighting, light) + optics.value(Which::Ended, &sighting, light)) * beam.irradiance * (light.z.abs() * lamp.part);
+            let adds = (optics.value(Which::Continued, &sighting, light)
+                + optics.value(Which::Ended, &sighting, light))
+                * beam.irradiance
+                * (light.z.abs() * lamp.part);
             if adds == Channels::ZERO || !adds.is_finite() {
                 continue;
             }
@@ -356,9 +428,15 @@ impl<'a> Shader<'a> {
                 let enclosed = self.enclosed.get(number).and_then(Option::as_ref);
                 known = enclosed.map(|enclosed| enclosed.counts(element.leave_curved)[0] > 0);
             }
-            surface.lit.push(Lit { lamp: number, adds, turned, known });
+            lit.push(Lit { lamp: number, adds, turned, known });
         }
+        surface.lit.end = lit.len();
     }
+}
+
+/// The parts of a sample of a pixel, from the nearest.
+fn seen_by<'p>(samples: &[(usize, DVec3)], parts: &'p [Part], i: usize) -> &'p [Part] {
+    &parts[samples[i].0..samples.get(i + 1).map_or(parts.len(), |next| next.0)]
 }
 
 /// Where a line of sight meets the plane of a triangle, within the triangle.

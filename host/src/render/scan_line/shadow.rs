@@ -8,12 +8,12 @@
 //! # Source
 //! Crow 1977, shadow algorithms for computer graphics; the multiplicity of edges after Bergeron 1986.
 
+use super::Light;
 use super::casters::{Casters, Silhouette};
 use super::enclosed::Enclosed;
 use super::screen::{Corner, MOST_CORNERS, Outline, Point, Screen};
 use super::spans::{Lines, Nearness};
 use super::visibility::{Bands, Facets, Strip, lines_of};
-use super::Light;
 use glam::DVec3;
 
 /// A shadow polygon.
