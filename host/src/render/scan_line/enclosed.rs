@@ -10,7 +10,7 @@ use super::casters::{Casters, Silhouette};
 use glam::{DVec2, DVec3};
 
 /// Cells along each side of the grid in which what may be met is sorted, at the most.
-const MOST_CELLS: f64 = 96.0;
+const MOST_CELLS: f64 = 192.0;
 
 /// The shadow volumes of one light.
 pub(super) struct Enclosed<'a> {
@@ -165,8 +165,11 @@ impl<'a> Enclosed<'a> {
             }
             None => {
                 self.silhouettes.iter().for_each(|silhouette| add(silhouette.group, self.beside(silhouette, point)));
-                let triangles = &self.casters.triangles;
-                triangles.iter().for_each(|&t| add(self.casters.group(t), self.through(t, point)));
+                // Beside the scene, no triangle is above.
+                if self.grid.is_none() {
+                    let triangles = &self.casters.triangles;
+                    triangles.iter().for_each(|&t| add(self.casters.group(t), self.through(t, point)));
+                }
             }
         }
         counts
@@ -174,7 +177,9 @@ impl<'a> Enclosed<'a> {
 
     fn sort(&self) -> Grid {
         let bounds = self.casters.prepared.bounds;
-        let (least, most) = (self.turned(bounds.min).truncate(), self.turned(bounds.max).truncate());
+        // Curved surfaces may bulge beyond their triangles.
+        let margin = DVec3::splat(0.01 * bounds.diagonal());
+        let (least, most) = (self.turned(bounds.min - margin).truncate(), self.turned(bounds.max + margin).truncate());
         let size = self.casters.triangles.len() + self.silhouettes.len();
         let cells = ((size as f64).sqrt() / 2.0).clamp(1.0, MOST_CELLS) as usize;
         let mut grid = Grid { least, most, cells, silhouettes: Sorted::empty(), triangles: Sorted::empty() };

@@ -34,7 +34,7 @@ use casters::Casters;
 use enclosed::Enclosed;
 use glam::DVec3;
 use rayon::prelude::*;
-use screen::Screen;
+use screen::{Screen, Viewpoint};
 use shade::{Desk, Pixel, Shader};
 use shadow::Shadow;
 use spans::{Lines, MOST_LINES, rooks};
@@ -188,6 +188,15 @@ impl<'a> ScanLine<'a> {
                 self.appearance.curved.then(new)
             })
             .collect();
+        let (has_surfaces, has_sky) =
+            self.appearance.sources.iter().fold((false, false), |(surface, sky), (_, source)| {
+                (surface || source.is_surface(), sky || source.is_sky())
+            });
+        let background = || {
+            let (wavelengths, nowhere) = (&self.appearance.wavelengths, DVec3::NEG_Z);
+            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(nowhere, None, comb, |_| 1.0));
+            (0..wavelengths.combs()).map(seen).sum::<DVec3>() / wavelengths.combs() as f64
+        };
         let shader = Shader {
             appearance: &self.appearance,
             casters: &self.casters,
@@ -197,8 +206,10 @@ impl<'a> ScanLine<'a> {
             eye: &eye,
             offsets: &offsets,
             matte: order.matte,
-            has_surfaces: self.appearance.sources.iter().any(|(_, source)| source.is_surface()),
-            has_sky: self.appearance.sources.iter().any(|(_, source)| source.is_sky()),
+            has_surfaces,
+            has_sky,
+            is_parallel: matches!(screen.viewpoint, Viewpoint::Towards(_)),
+            background: (!has_surfaces && !has_sky).then(background),
         };
         let work = Work {
             shader,
@@ -237,6 +248,7 @@ impl<'a> Work<'a> {
         let last = first + tallies.len() / self.width * samples;
         let mut drawn = SpanCounts::default();
         let Tools { strip, counts, desk } = tools;
+        desk.clear();
         counts.resize_with(self.shadows.len(), Vec::new);
         for begin in (first..last).step_by(MOST_LINES) {
             let range = begin..(begin + MOST_LINES).min(last);

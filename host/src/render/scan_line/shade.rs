@@ -29,6 +29,7 @@ struct Part {
     surface: usize,
     fragment: usize,
     triangle: u32,
+    near: f64,
     /// Which of the pixel's samples.
     sample: usize,
 }
@@ -38,12 +39,13 @@ struct Surface<'a> {
     /// The triangle that was seen first, and how near.
     triangle: u32,
     near: f64,
-    face: DVec3,
     curved: bool,
     /// How many samples see it, the sum of their places in pixels, and whether all see the same triangle.
     count: u32,
     sum: [f64; 2],
     alone: bool,
+    /// Sums of their nearness and depth.
+    nearness: [f64; 2],
     found: Option<Found<'a>>,
     /// What it sends to the eye without lights.
     own: Channels,
@@ -63,8 +65,11 @@ struct Lit {
 }
 
 /// An element in a pixel.
+#[derive(Clone, Copy)]
 struct Found<'a> {
     element: Element,
+    /// Of the sample from which it was found.
+    near: f64,
     optics: &'a Optics,
     distance: f64,
     object: u32,
@@ -91,6 +96,10 @@ pub(super) struct Shader<'a> {
     /// Whether some light is a surface that is seen and no object, and whether one is a sky.
     pub(super) has_surfaces: bool,
     pub(super) has_sky: bool,
+    /// Whether lines of sight are parallel.
+    pub(super) is_parallel: bool,
+    /// What is seen where there is nothing, if it is the same everywhere.
+    pub(super) background: Option<DVec3>,
 }
 
 /// What a thread keeps from pixel to pixel.
@@ -102,6 +111,15 @@ pub(super) struct Desk<'a> {
     lit: Vec<Lit>,
     /// For each sample of the pixel, where its parts begin, and the light that comes to it.
     samples: Vec<(usize, DVec3)>,
+    /// The last element of a flat triangle without texture: neighbours differ in their place only.
+    flat: Option<Found<'a>>,
+}
+
+impl Desk<'_> {
+    /// Forgets the last pixel, so that no picture depends on which thread made which part of it.
+    pub(super) fn clear(&mut self) {
+        self.flat = None;
+    }
 }
 
 /// A pixel of a strip.
@@ -128,14 +146,24 @@ impl<'a> Shader<'a> {
         tally: &mut Tally,
     ) {
         self.gather(pixel, strip, desk);
-        let Desk { surfaces, parts, lit, samples } = desk;
+        if let (true, Some(radiance)) = (desk.parts.is_empty(), self.background) {
+            let radiance = if self.matte { DVec3::ZERO } else { radiance };
+            tally.add_alike(&Sample { radiance, covered: false, first: None }, pixel.lines.len() as u32);
+            return;
+        }
+        let Desk { surfaces, parts, lit, samples, flat } = desk;
         for (index, surface) in surfaces.iter_mut().enumerate() {
-            surface.found = self.find(surface, parts.iter().filter(|part| part.surface == index), pixel);
+            surface.found = self.find(surface, parts.iter().filter(|part| part.surface == index), pixel, flat);
         }
         let combs = self.appearance.wavelengths.combs();
         for comb in 0..combs {
             lit.clear();
             surfaces.iter_mut().for_each(|surface| self.light(surface, lit, comb));
+            if combs == 1
+                && let Some(sample) = self.all_alike((surfaces, parts, lit), (strip, counts), pixel)
+            {
+                return tally.add_alike(&sample, pixel.lines.len() as u32);
+            }
             let mut before: Option<(usize, DVec3)> = None;
             for i in 0..pixel.lines.len() {
                 let own = seen_by(samples, parts, i);
@@ -155,9 +183,11 @@ impl<'a> Shader<'a> {
         let scale = (combs as f64).recip();
         let mut last: Option<(Sample, u32)> = None;
         for i in 0..pixel.lines.len() {
-            let first = seen_by(samples, parts, i).first().and_then(|part| surfaces[part.surface].found.as_ref());
-            let first = first.map(|found| (found.distance, found.element.normal, [found.object, found.material]));
-            let covered = first.is_some() || self.glows(pixel, i, None).is_some();
+            let first = seen_by(samples, parts, i).first().map(|part| &surfaces[part.surface]);
+            let first = first.and_then(|seen| seen.found.as_ref().map(|found| self.first(seen, found)));
+            let glows = self.glows(pixel, i, first.map(|(distance, ..)| (distance, 0))).is_some();
+            let first = first.filter(|_| !glows);
+            let covered = first.is_some() || glows;
             let radiance = if self.matte && !covered { DVec3::ZERO } else { samples[i].1 * scale };
             let sample = Sample { radiance, covered, first };
             match &mut last {
@@ -174,6 +204,26 @@ impl<'a> Shader<'a> {
         }
     }
 
+    /// What all samples of a pixel get, if they see one surface by the light of the same lamps, as most do.
+    fn all_alike(
+        &self,
+        (surfaces, parts, lit): (&[Surface<'a>], &[Part], &[Lit]),
+        (strip, counts): (&Strip, &[Vec<i32>]),
+        pixel: &Pixel,
+    ) -> Option<Sample> {
+        let [one, rest @ ..] = parts else { return None };
+        let is_alike = |part: &Part| self.is_alike((surfaces, lit), [&[*one], &[*part]], counts);
+        let is_single = parts.len() == pixel.lines.len() && strip.layers.is_empty() && !self.has_surfaces;
+        if !is_single || !rest.iter().all(is_alike) {
+            return None;
+        }
+        let seen = &surfaces[one.surface];
+        let found = seen.found.as_ref()?;
+        let sum = self.sample((surfaces, lit), &parts[..1], (strip, counts), (pixel, 0), 0);
+        let radiance = self.appearance.wavelengths.seen(0, sum);
+        Some(Sample { radiance, covered: true, first: Some(self.first(seen, found)) })
+    }
+
     /// Finds the surfaces of a pixel, and which samples see them.
     fn gather(&self, pixel: &Pixel, strip: &Strip, desk: &mut Desk<'a>) {
         let Desk { surfaces, parts, samples, .. } = desk;
@@ -186,7 +236,7 @@ impl<'a> Shader<'a> {
             let sample = pixel.first + i * pixel.stride;
             let mut add = |triangle: u32, near: f64, fragment: usize| {
                 let surface = self.surface(surfaces, triangle, near, self.place(pixel, i));
-                parts.push(Part { surface, fragment, triangle, sample: i });
+                parts.push(Part { surface, fragment, triangle, near, sample: i });
             };
             for index in strip.layers_of(sample) {
                 let layer = strip.layers[index];
@@ -300,34 +350,54 @@ impl<'a> Shader<'a> {
 
     /// The surface of a pixel to which a sample belongs.
     fn surface(&self, surfaces: &mut Vec<Surface<'a>>, triangle: u32, near: f64, at: [f64; 2]) -> usize {
-        let add = |index: usize, surface: &mut Surface<'_>| {
+        let add = |index: usize, surface: &mut Surface<'_>| -> usize {
             surface.count += 1;
             surface.sum = [surface.sum[0] + at[0], surface.sum[1] + at[1]];
             surface.alone &= surface.triangle == triangle;
+            surface.nearness = [surface.nearness[0] + near, surface.nearness[1] + self.depth(near)];
             index
         };
         if let Some(index) = surfaces.iter().position(|surface| surface.triangle == triangle) {
             return add(index, &mut surfaces[index]);
         }
         let prepared = self.appearance.prepared;
-        let [a, b, c] = prepared.corners(triangle);
-        let face = (b - a).cross(c - a).normalize_or_zero();
         let curved = self.appearance.curved && prepared.corner_normals(triangle).is_some();
         let object = prepared.object_of[triangle as usize];
+        let face = |triangle: u32| {
+            let [a, b, c] = prepared.corners(triangle);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
         let least = if curved { SMOOTH } else { FLAT };
         let same = |surface: &Surface<'_>| {
             surface.curved == curved
                 && prepared.object_of[surface.triangle as usize] == object
-                && surface.face.dot(face) > least
                 && (surface.near - near).abs() <= BESIDE * near.abs()
                 && prepared.material_number(surface.triangle) == prepared.material_number(triangle)
+                && face(surface.triangle).dot(face(triangle)) > least
         };
         if let Some(index) = surfaces.iter().position(same) {
             return add(index, &mut surfaces[index]);
         }
         let (own, lit) = (Channels::ZERO, 0..0);
-        surfaces.push(Surface { triangle, near, face, curved, count: 1, sum: at, alone: true, found: None, own, lit });
+        let nearness = [near, self.depth(near)];
+        let surface =
+            Surface { triangle, near, curved, count: 1, sum: at, alone: true, nearness, found: None, own, lit };
+        surfaces.push(surface);
         surfaces.len() - 1
+    }
+
+    /// The depth of a nearness.
+    fn depth(&self, near: f64) -> f64 {
+        if self.is_parallel { -near } else { near.recip() }
+    }
+
+    /// The mean distance of what samples see of a surface, its normal, object and material.
+    fn first(&self, surface: &Surface<'_>, found: &Found<'_>) -> (f64, DVec3, [u32; 2]) {
+        let [near, depth] = surface.nearness.map(|sum| sum / f64::from(surface.count));
+        // Nearness is linear over the picture, depth is not: far away, the mean is not that of the middle.
+        let middle = self.depth(if surface.alone { near } else { found.near });
+        let apart = if self.is_parallel { [1.0, depth - middle] } else { [depth / middle, 0.0] };
+        (found.distance * apart[0] + apart[1], found.element.normal, [found.object, found.material])
     }
 
     /// The element in the middle of what samples see of a surface.
@@ -336,27 +406,38 @@ impl<'a> Shader<'a> {
         surface: &Surface<'_>,
         parts: impl Iterator<Item = &'p Part>,
         pixel: &Pixel,
+        flat: &mut Option<Found<'a>>,
     ) -> Option<Found<'a>> {
         let part = f64::from(surface.count).recip();
         let middle = surface.sum.map(|sum| sum * part);
-        let (at, triangle) = if surface.alone {
-            (middle, surface.triangle)
+        let (at, triangle, near) = if surface.alone {
+            (middle, surface.triangle, surface.near)
         } else {
             // The mean of samples in several triangles may lie in none of them.
             let away = |at: [f64; 2]| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
-            let places = parts.map(|part| (self.place(pixel, part.sample), part.triangle));
-            places.min_by(|(a, _), (b, _)| away(*a).total_cmp(&away(*b)))?
+            let places = parts.map(|part| (self.place(pixel, part.sample), part.triangle, part.near));
+            places.min_by(|(a, ..), (b, ..)| away(*a).total_cmp(&away(*b)))?
         };
         let sight = self.eye.ray(at, [0.5; 2])?;
+        let length = sight.ray.direction.length();
+        let towards = sight.ray.direction / length;
+        if let Some(found) = flat.filter(|found| found.triangle == triangle) {
+            let face = found.element.face;
+            let t = (found.element.position - sight.ray.origin).dot(face) / sight.ray.direction.dot(face);
+            if t.is_finite() {
+                let element = Element { position: sight.ray.at(t), ..found.element };
+                return Some(Found { element, near, distance: t * length, towards, ..found });
+            }
+        }
         let prepared = self.appearance.prepared;
         let hit = met(&sight.ray, prepared.corners(triangle), triangle)?;
         let element = Element::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
         let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let optics = self.appearance.optics(object, material);
-        let length = sight.ray.direction.length();
-        let (distance, towards) = (hit.t * length, sight.ray.direction / length);
+        let distance = hit.t * length;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let mut found = Found {
+            near,
             element,
             optics,
             distance,
@@ -372,6 +453,8 @@ impl<'a> Shader<'a> {
             found.sides = sides;
             let place = prepared.place(triangle, weights, sides);
             found.element.tilt(-towards, |normal| optics.tilted(&place, normal));
+        } else if !surface.curved {
+            *flat = Some(found);
         }
         Some(found)
     }

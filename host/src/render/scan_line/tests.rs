@@ -91,33 +91,35 @@ fn scan(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
     scan.render(&view, &order(scene, threads), &Watch::NOBODY).expect("a picture")
 }
 
-/// Compares a scene with many rays: the mean difference, and the share of pixels that differ by more than a tenth.
-fn compared(scene: &Scene, view: Option<View>) -> [f64; 2] {
+/// Compares a scene with many rays: the mean difference, and the shares of pixels that differ by more than a tenth, and in
+/// what is known beside the light.
+fn compared(scene: &Scene, view: Option<View>) -> [f64; 3] {
     let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let view = view.unwrap_or(prepared.view());
     let plan = Plan::new(&prepared, &view);
     let order = Order { samples: 64, ..order(scene, 2) };
     let traced = RayTracer::new(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY);
     let (traced, drawn) = (traced.expect("a picture"), scan(scene, Some(view), 2));
-    let mut sums = [0.0; 2];
+    let mut sums = [0.0; 3];
     for (index, (a, b)) in drawn.film.tallies().iter().zip(traced.film.tallies()).enumerate() {
         let off = (a.mean() - b.mean()).abs().max_element();
         sums[0] += off;
         sums[1] += f64::from(off > 0.1);
         let [covered_a, covered_b] = [a, b].map(|tally| f64::from(tally.covered) / f64::from(tally.count));
         assert!((covered_a - covered_b).abs() < 0.2, "pixel {index} is covered by {covered_a}, not {covered_b}");
-        // Within a surface, everything that is known of it agrees.
-        if a.elements == a.count && b.elements == b.count && a.seen == b.seen && off < 0.01 {
+        if a.elements == a.count && b.elements == b.count {
             let [near, far] = [a, b].map(|tally| tally.distances / f64::from(tally.elements));
-            assert!((near / far - 1.0).abs() < 0.05, "pixel {index} is at {near}, not at {far}");
+            let [one, two] = [a, b].map(|tally| tally.normals / f64::from(tally.elements));
+            sums[2] += f64::from((near / far - 1.0).abs() > 0.05 || (one - two).length() > 0.2);
         }
     }
     sums.map(|sum| sum / drawn.film.tallies().len() as f64)
 }
 
 fn agrees(name: &str, scene: &Scene, view: Option<View>) {
-    let [mean, many] = compared(scene, view);
+    let [mean, many, unlike] = compared(scene, view);
     assert!(mean < 2e-3 && many < 4e-3, "{name}: off by {mean} in the mean, and much in {many} of the pixels");
+    assert!(unlike < 0.03, "{name}: other distances or normals in {unlike} of the pixels");
 }
 
 #[test]
@@ -154,7 +156,8 @@ fn an_eye_within_shadow_volumes_sees_the_right_shadows() {
 fn sheets_without_an_inside_throw_shadows_from_both_sides() {
     let turned = DMat4::from_translation(DVec3::new(0.0, 1.5, 0.0)) * DMat4::from_rotation_z(0.5);
     let sheet = object(Shape::Ground { size: 2.0 }, turned, diffuse(0.5));
-    let lights = vec![lamp(DVec3::new(3.0, 5.0, 4.0)), lamp(DVec3::new(-1.0, 0.5, 2.0))];
+    let below = crate::illumination::Light::Point { at: DVec3::new(-1.0, 0.8, 2.0), intensity: Color::grey(4.0) };
+    let lights = vec![lamp(DVec3::new(3.0, 5.0, 4.0)), below];
     agrees("open", &scene(vec![ground(20.0), sheet], lights, usual()), None);
 }
 
@@ -210,7 +213,7 @@ fn a_light_with_a_size_gives_its_light_from_its_points() {
     let light = crate::illumination::Light::Area { patch, radiance: Color::grey(20.0) };
     let mut scene = scene(boxes(), vec![light], usual());
     scene.settings.light_samples = 64;
-    let [mean, _] = compared(&scene, None);
+    let [mean, ..] = compared(&scene, None);
     assert!(mean < 8e-3, "off by {mean}");
 }
 
@@ -240,7 +243,7 @@ fn a_diffuse_floor_under_a_lamp_follows_its_closed_form() {
 fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
     let bunny = object(Shape::Bunny, DMat4::from_translation(DVec3::Y), diffuse(0.7));
     let mut objects = boxes();
-    objects.push(bunny);
+    (objects[0], objects[2]) = (ground(4.0), bunny);
     let scene = scene(objects, vec![], usual());
     let prepared = Prepared::new(&scene).expect("a scene");
     let octree = Octree::build(&prepared.vertices, &prepared.triangles, &OctreeSettings::default()).expect("octree");
@@ -260,7 +263,7 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
         let enclosed = Enclosed::new(&casters, light, &facing, &silhouettes, 1).sorted();
         for _ in 0..points {
             let mut within = |low: f64, high: f64| random.random_range(low..high);
-            let point = DVec3::new(within(-3.0, 3.0), within(-1.0, 3.0), within(-3.0, 3.0));
+            let point = DVec3::new(within(-2.0, 2.0), within(-0.2, 2.0), within(-2.0, 2.0));
             let t_max = if matches!(light, Light::Point(_)) { 1.0 } else { f64::INFINITY };
             let stopped = octree.occluded(&Ray { origin: point, direction: light.from(point) }, 0.0, t_max);
             let count = enclosed.counts(point)[0];
@@ -271,7 +274,7 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
             in_shadow += usize::from(stopped);
         }
     }
-    assert!(in_shadow > points / 2, "{in_shadow}");
+    assert!(in_shadow > points / 4, "{in_shadow}");
 }
 
 #[test]
@@ -299,7 +302,7 @@ fn an_empty_scene_is_its_background_and_degenerate_triangles_are_nothing() {
     let drawn = scan(&empty, None, 2);
     let is_background = |p: &crate::picture::Pixel| p.coverage == 0.0 && (p.radiance[2] - 0.5).abs() < 1e-6;
     assert!(drawn.picture.pixels().iter().all(is_background));
-    let line = object(Shape::Ground { size: 2.0 }, DMat4::from_scale(DVec3::new(1.0, 1.0, 0.0)), diffuse(0.5));
+    let line = object(Shape::Ground { size: 2.0 }, DMat4::from_scale(DVec3::new(1.0, 1.0, 1e-20)), diffuse(0.5));
     let mut objects = boxes();
     objects.push(line);
     agrees("a line", &scene(objects, vec![lamp(DVec3::new(3.0, 5.0, 4.0))], usual()), None);
