@@ -178,7 +178,8 @@ mod tests {
 
     #[test]
     fn the_head_tells_where_the_figures_come_from() {
-        let text = "# What it\n# is.\n#\n# Source: who,\n# where.\n# Terms: free.\n# Samples: a: b.\nnm a\n400 1\n410 2\n";
+        let text =
+            "# What it\n# is.\n#\n# Source: who,\n# where.\n# Terms: free.\n# Samples: a: b.\nnm a\n400 1\n410 2\n";
         let origin = origin(text);
         assert_eq!([&*origin.what, &*origin.source, &*origin.terms], ["What it is.", "who, where.", "free."]);
         assert_eq!(super::origin("nm a\n# Source: none\n"), Origin::default());

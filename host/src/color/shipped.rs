@@ -158,12 +158,10 @@ fn three(text: &str, beyond: Beyond) -> [Spectrum; 3] {
 }
 
 /// The functions x, y and z of the CIE 1931 observer, 360 to 830 nm.
-pub(super) static OBSERVER: LazyLock<[Spectrum; 3]> =
-    LazyLock::new(|| three(FUNCTIONS[0].1, Beyond::Zero));
+pub(super) static OBSERVER: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[0].1, Beyond::Zero));
 
 /// Mean daylight and its two characteristic vectors, 300 to 830 nm.
-pub(super) static DAYLIGHT: LazyLock<[Spectrum; 3]> =
-    LazyLock::new(|| three(FUNCTIONS[1].1, Beyond::Zero));
+pub(super) static DAYLIGHT: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[1].1, Beyond::Zero));
 
 /// The standard illuminant D65.
 pub static D65: LazyLock<Spectrum> = LazyLock::new(|| light("D65").expect("the embedded table has D65"));
@@ -239,7 +237,9 @@ mod tests {
                 assert!((from..to).contains(&hue) && chroma > 5.0, "{name}: chroma {chroma}, hue {hue}");
             }
         }
-        for name in ["grey_brick", "concrete", "cinder_block", "asphalt", "roof_tar", "calcite", "zinc_white", "grey_paint"] {
+        for name in
+            ["grey_brick", "concrete", "cinder_block", "asphalt", "roof_tar", "calcite", "zinc_white", "grey_paint"]
+        {
             assert!(chroma_and_hue(name).0 < 12.0, "{name}: chroma {}", chroma_and_hue(name).0);
         }
     }
@@ -247,7 +247,16 @@ mod tests {
     #[test]
     fn white_things_are_brighter_than_grey_ones_and_those_than_black_ones() {
         let y = |name| observer::seen(&reflectance(name).expect("a reflectance"), &D65).map_or(DVec3::ZERO, |s| s).y;
-        let known = ["calcite", "zinc_white", "white_cotton", "pale_concrete", "cinder_block", "concrete", "asphalt", "roof_tar"];
+        let known = [
+            "calcite",
+            "zinc_white",
+            "white_cotton",
+            "pale_concrete",
+            "cinder_block",
+            "concrete",
+            "asphalt",
+            "roof_tar",
+        ];
         assert!(known.windows(2).all(|pair| y(pair[0]) > y(pair[1])), "{:?}", known.map(y));
     }
 
