@@ -16,6 +16,7 @@ mod sculpting;
 mod shaping;
 mod solids;
 mod spline;
+mod stored;
 mod subdividing;
 mod surfaces;
 mod table;
@@ -42,6 +43,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         subdividing::FUNCTIONS,
         materials::FUNCTIONS,
         lighting::FUNCTIONS,
+        stored::FUNCTIONS,
         table::FUNCTIONS,
     ]
     .into_iter()
