@@ -16,6 +16,7 @@ mod sculpting;
 mod shaping;
 mod solids;
 mod spline;
+mod stored;
 mod subdividing;
 mod surfaces;
 mod table;
@@ -44,6 +45,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
         lighting::FUNCTIONS,
+        stored::FUNCTIONS,
         table::FUNCTIONS,
     ]
     .into_iter()
