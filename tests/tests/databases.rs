@@ -33,7 +33,7 @@ fn write(folder: &Path, name: &str, text: &str) {
 }
 
 const WALNUT: &str = "{\"name\": \"walnut\", \"source\": \"ours\", \"terms\": \"free\", \"material\":
-    {\"body\": {\"coated\": {\"diffuse\": {\"bands\": [0.2, 0.1, 0.05]}, \"index\": 1.5, \"roughness\": 0.1}},
+    {\"body\": {\"coated\": {\"diffuse\": {\"plain\": {\"bands\": [0.2, 0.1, 0.05]}}, \"index\": 1.5, \"roughness\": 0.1}},
     \"emission\": {\"bands\": [0, 0, 0]}}}";
 
 /// A child that is killed when the test fails.
