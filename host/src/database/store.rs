@@ -49,7 +49,7 @@ impl Store {
         let path = path.as_ref();
         match Store::open_read_only(path) {
             Err(DatabaseError::Disorder { .. }) => {
-                drop(Store::open_as(path, false, true).map_err(|error| match error {
+                drop(Store::open_existing(path).map_err(|error| match error {
                     DatabaseError::File { .. } => DatabaseError::Disorder { path: path.into() },
                     other => other,
                 })?);
@@ -73,21 +73,24 @@ impl Store {
     /// # Errors
     /// [`DatabaseError::Busy`] if the other one does not end, else as [`Store::open`].
     pub fn open_to_write(path: impl AsRef<Path>) -> Result<Store, DatabaseError> {
-        Store::open_as(path.as_ref(), true, true)
+        Store::open_as(path.as_ref(), true)
     }
 
     /// Opens a database that exists for writing.
-    pub(super) fn open_existing(path: &Path) -> Result<Store, DatabaseError> {
-        Store::open_as(path, false, true)
+    ///
+    /// # Errors
+    /// As [`Store::open_to_write`]; [`DatabaseError::File`] if there is no file.
+    pub fn open_existing(path: impl AsRef<Path>) -> Result<Store, DatabaseError> {
+        Store::open_as(path.as_ref(), false)
     }
 
-    fn open_as(path: &Path, create: bool, check: bool) -> Result<Store, DatabaseError> {
+    fn open_as(path: &Path, create: bool) -> Result<Store, DatabaseError> {
         let is_new = !path.exists();
         let since = Instant::now();
         loop {
             let opened = guarded(path, || {
                 let mut builder = builder();
-                builder.set_check_integrity_on_open(check);
+                builder.set_check_integrity_on_open(true);
                 let database = if create { builder.create(path) } else { builder.open(path) };
                 let database = database.map_err(|error| opening(path, error))?;
                 let store = Store { path: path.into(), handle: Handle::Write(database) };

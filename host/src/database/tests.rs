@@ -6,6 +6,7 @@ use crate::color::{Beyond, Color, Origin, Spectrum, shipped as colors};
 use crate::illumination::distribution::Tabulated;
 use crate::illumination::light::{Goniometry, Light, Patch, SkyMap};
 use crate::illumination::material::{Body, Classic, Coated, Form, Index, Material, Shaped, Transparent};
+use crate::illumination::texture::{Laying, Motif, Paint, Pattern};
 use crate::mesh::{self, Grouped, Look, Mesh};
 use crate::picture::Picture;
 use glam::{DVec2, DVec3};
@@ -143,6 +144,23 @@ fn a_record_is_replaced_or_removed_only_when_that_is_asked_for() {
 }
 
 #[test]
+fn patterns_without_end_are_refused_when_they_are_read() {
+    let plain = Paint::Plain(Color::grey(0.5));
+    let nested = |depth: usize| {
+        (0..depth).fold(plain.clone(), |paint, _| {
+            let paints = vec![paint, plain.clone()];
+            Paint::Pattern(Box::new(Pattern { motif: Motif::Checker, laying: Laying::default(), paints }))
+        })
+    };
+    let read = |depth: usize| {
+        let bytes = bincode::serde::encode_to_vec(nested(depth), bincode::config::standard()).expect("bytes");
+        bincode::serde::decode_from_slice::<Paint, _>(&bytes, bincode::config::standard()).map(|(paint, _)| paint)
+    };
+    assert_eq!(read(10).expect("a pattern"), nested(10));
+    assert!(read(1000).is_err_and(|error| error.to_string().contains("nested")));
+}
+
+#[test]
 fn names_are_checked() {
     let folder = folder();
     let store = Store::open_to_write(folder.path().join("a.redb")).expect("a new database");
@@ -207,7 +225,8 @@ fn stored_forms_have_not_changed_without_a_new_version() {
 }
 
 const SUMS: [u32; 10] = [
-    1872215458, 1801010235, 3075038860, 634917729, 2474976611, 2318298726, 752272160, 4171007468, 183571543, 1195059199,
+    1872215458, 1801010235, 2680844193, 634917729, 2474976611, 2318298726, 4158595621, 3341079355, 183571543,
+    1195059199,
 ];
 
 #[test]

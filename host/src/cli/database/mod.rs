@@ -150,7 +150,7 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
         Commands::Add(addition) => add(&addition),
         Commands::Remove { database, name, kind } => {
             let kind = kind_of(&Place { database: database.clone(), name: name.clone(), kind })?;
-            Store::open_to_write(&database)?.remove(&[(kind, &name)])?;
+            Store::open_existing(&database)?.remove(&[(kind, &name)])?;
             say!("{}: removed {kind} \"{name}\"", database.display());
             Ok(())
         }

@@ -92,19 +92,16 @@ fn curve(record: &Record, curves: &Curves) -> Plot {
     }
 }
 
-/// A picture of an object about two units high: on a grey ground before a dark wall, under a window of daylight and a lamp.
+/// A picture of an object about two units high: on a grey ground under a pale sky, a window of daylight and a lamp.
 fn render(object: Object, path: &Path) -> Result<PathBuf, Failure> {
-    let plain =
-        |grey: f64| Some(Body::Classic(Classic { diffuse: Color::grey(grey).into(), ..Classic::default() }).into());
-    let level = |name: &str, transform: DMat4, grey: f64| Object {
-        name: name.into(),
-        shape: Shape::Ground { size: 24.0 },
-        transform,
-        material: plain(grey),
+    let grey = Body::Classic(Classic { diffuse: Color::grey(0.4).into(), ..Classic::default() });
+    let ground = Object {
+        name: "ground".into(),
+        shape: Shape::Ground { size: 60.0 },
+        transform: DMat4::IDENTITY,
+        material: Some(grey.into()),
         tolerance: None,
     };
-    let wall =
-        DMat4::from_translation(DVec3::new(0.0, 0.0, -5.0)) * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2);
     let window = Patch::Rectangle {
         corner: DVec3::new(-5.0, 1.5, 2.0),
         across: DVec3::new(1.0, 4.5, 0.0),
@@ -112,24 +109,20 @@ fn render(object: Object, path: &Path) -> Result<PathBuf, Failure> {
     };
     let lamp = Patch::Sphere { center: DVec3::new(3.5, 4.0, 4.0), radius: 0.4 };
     let light = |patch, strength| Light::Area { patch, radiance: Color::grey(strength) };
-    let mut scene = Scene {
-        objects: vec![object, level("ground", DMat4::IDENTITY, 0.45), level("wall", wall, 0.25)],
-        lights: vec![light(window, 2.2), light(lamp, 22.0)],
-        background: DVec3::splat(0.05),
-        camera: Some(Camera {
-            from: DVec3::new(0.0, 2.4, 7.0),
-            at: DVec3::new(0.0, 0.95, 0.0),
-            up: DVec3::Y,
-            field_of_view: 26.0,
-            near: 0.0,
-            far: None,
-            lens: None,
-            parallel: None,
-        }),
-        ..Scene::default()
+    let sky = Light::Sky { map: None, radiance: Color::grey(0.35), turned: 0.0 };
+    let camera = Camera {
+        from: DVec3::new(0.0, 2.4, 7.0),
+        at: DVec3::new(0.0, 0.95, 0.0),
+        up: DVec3::Y,
+        field_of_view: 26.0,
+        near: 0.0,
+        far: None,
+        lens: None,
+        parallel: None,
     };
-    (scene.settings.width, scene.settings.height, scene.settings.samples) = (480, 480, 64);
-    scene.settings.interreflection = true;
+    let lights = vec![light(window, 2.5), light(lamp, 20.0), sky];
+    let mut scene = Scene { objects: vec![object, ground], lights, camera: Some(camera), ..Scene::default() };
+    (scene.settings.width, scene.settings.height, scene.settings.samples) = (360, 360, 48);
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
