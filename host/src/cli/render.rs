@@ -5,9 +5,10 @@ use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, load, watch_
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::ray_tracing::{Explanation, RayTracer};
-use crate::render::{Film, Fingerprint, Order, Rendering, Watch};
-use crate::scene::{Prepared, View};
-use clap::{Args, FromArgMatches};
+use crate::render::scan_line::ScanLine;
+use crate::render::{Film, Fingerprint, Order, Renderer, Rendering, Watch};
+use crate::scene::{Prepared, Scene, View};
+use clap::{Args, FromArgMatches, ValueEnum};
 use glam::DVec3;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -18,10 +19,20 @@ const EXPLAINED: usize = 4;
 
 pub(super) const ROW: Row = Row {
     name: "render",
-    summary: "Renders a scene by ray tracing into a PNG or EXR file.",
+    summary: "Renders a scene by ray tracing or scan line into a PNG or EXR file.",
     arguments: Arguments::augment_args,
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
+
+/// Who makes the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// All light: mirrors, glass, rough surfaces, soft shadows
+    RayTracing,
+    /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors and
+    /// glass show highlights only
+    ScanLine,
+}
 
 #[derive(Args, Debug)]
 struct Arguments {
@@ -32,6 +43,9 @@ struct Arguments {
     /// Picture file, .png (sRGB) or .exr (linear, coverage as alpha); may be given more than once [default: NAME.png]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
+    /// Who makes the picture
+    #[arg(long, value_name = "RENDERER", value_enum, default_value_t = Kind::RayTracing)]
+    renderer: Kind,
     /// Columns, instead of those of the scene; alone, the rows follow
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
     width: Option<u32>,
@@ -82,7 +96,8 @@ struct Arguments {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let cancelled = watch_interrupts();
+    watch_interrupts();
+    arguments.check()?;
     let mut outputs = arguments.output.clone();
     if outputs.is_empty() {
         outputs.push(PathBuf::from(format!("{}.png", stem(&arguments.script))));
@@ -99,8 +114,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
     let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
-    let tracer = RayTracer::new(&prepared, &plan)?;
-    let build_seconds = start.elapsed().as_secs_f64();
     let order = Order {
         threads: arguments.threads,
         target: arguments.error,
@@ -108,22 +121,27 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         matte: arguments.matte,
         ..Order::of(&prepared.settings)
     };
-    if let Some(pixel) = arguments.pixel {
-        return explain(arguments, &tracer, &view, &order, pixel);
-    }
     let progress = Progress::new("rendering", arguments.json);
-    let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
-    let fingerprint = arguments.resume.as_ref().map(|_| Fingerprint::of(&scene, &prepared, &order));
-    let film = match (&arguments.resume, fingerprint) {
-        (Some(path), Some(fingerprint)) if path.exists() => Film::read_state(path, &order, fingerprint)?,
-        _ => Film::new(order.width, order.height)?,
+    let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
+    let (rendering, build_seconds) = match arguments.renderer {
+        Kind::ScanLine => {
+            let scan_line = ScanLine::new(&prepared, &plan)?;
+            scan_line.left_out(&view).iter().for_each(|what| eprintln!("warning: by scan line, {what}"));
+            let build_seconds = start.elapsed().as_secs_f64();
+            (scan_line.render(&view, &order, &watch).map_err(Failure::from), build_seconds)
+        }
+        Kind::RayTracing => {
+            let tracer = RayTracer::new(&prepared, &plan)?;
+            let build_seconds = start.elapsed().as_secs_f64();
+            if let Some(pixel) = arguments.pixel {
+                progress.finish();
+                return explain(arguments, &tracer, &view, &order, pixel);
+            }
+            (trace(arguments, &scene, &tracer, (&view, &order), &watch), build_seconds)
+        }
     };
-    let rendering = tracer.go_on(film, &view, &order, &watch);
     progress.finish();
     let rendering = rendering?;
-    if let (Some(path), Some(fingerprint)) = (&arguments.resume, fingerprint) {
-        rendering.film.write_state(path, fingerprint)?;
-    }
     outputs.iter().try_for_each(|path| match arguments.layers && Picture::is_exr(path) {
         true => rendering.film.write_layers(path, &prepared),
         false => rendering.picture.write(path),
@@ -136,6 +154,44 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = format!("interrupted; pixels have {least} to {most} samples, which are kept");
         Err(Failure::new(Exit::Interrupted, anyhow::anyhow!(message)))
     }
+}
+
+impl Arguments {
+    /// Refuses what a renderer does not know.
+    fn check(&self) -> Result<(), Failure> {
+        let given = [
+            ("--error", self.error.is_some()),
+            ("--seconds", self.seconds.is_some()),
+            ("--resume", self.resume.is_some()),
+            ("--pixel", self.pixel.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given && self.renderer == Kind::ScanLine) {
+            Some((name, _)) => {
+                let message = format!("scan line has no {name}: it takes all samples at once");
+                Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Traces rays, after those of a file if there is one to go on with.
+fn trace(
+    arguments: &Arguments,
+    scene: &Scene,
+    tracer: &RayTracer<'_>,
+    (view, order): (&View, &Order),
+    watch: &Watch<'_>,
+) -> Result<Rendering, Failure> {
+    let Some(path) = &arguments.resume else { return Ok(tracer.render(view, order, watch)?) };
+    let fingerprint = Fingerprint::of(scene, tracer.prepared(), order);
+    let film = match path.exists() {
+        true => Film::read_state(path, order, fingerprint)?,
+        false => Film::new(order.width, order.height)?,
+    };
+    let rendering = tracer.go_on(film, view, order, watch)?;
+    rendering.film.write_state(path, fingerprint)?;
+    Ok(rendering)
 }
 
 /// Reads the place of a pixel.
@@ -219,6 +275,7 @@ fn report(
             "render_seconds": rendering.seconds,
             "threads": rendering.threads,
             "rays": rendering.rays,
+            "spans": rendering.spans,
             "complete": rendering.complete,
         });
         say!("{}", serde_json::to_string_pretty(&json)?);
@@ -226,7 +283,6 @@ fn report(
     }
     let [least, most] = rendering.film.samples();
     let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
-    let rays = rendering.rays;
     say!(
         "{}: {} x {} pixels, {} to {} samples each; standard error of luminance {:.2e}",
         names.join(", "),
@@ -237,14 +293,18 @@ fn report(
         rendering.film.standard_error()
     );
     say!("{} triangles, built in {build_seconds:.3} s", prepared.triangles.len());
+    let Rendering { rays, spans, seconds, threads, .. } = rendering;
+    if arguments.renderer == Kind::ScanLine {
+        let (all, shadows) = (spans.surfaces, spans.shadows);
+        say!("{all} spans of surfaces, {shadows} of shadow polygons in {seconds:.3} s on {threads} threads");
+        return Ok(());
+    }
     say!(
-        "{} rays (primary {}, shadow {}, reflected {}) in {:.3} s on {} threads: {:.2} million a second",
+        "{} rays (primary {}, shadow {}, reflected {}) in {seconds:.3} s on {threads} threads: {:.2} million a second",
         rays.total(),
         rays.primary,
         rays.shadow,
         rays.reflected,
-        rendering.seconds,
-        rendering.threads,
         rendering.mega_rays_per_second()
     );
     Ok(())

@@ -22,7 +22,7 @@ pub enum Stage {
     Specular,
     /// The ambient term.
     Ambient,
-    /// Rays towards the lights.
+    /// Rays towards the lights, or shadow volumes.
     Shadows,
     /// Rays from mirrors, through glass, and from rough surfaces.
     Reflection,
@@ -149,7 +149,7 @@ impl Stage {
             Stage::Diffuse => "Lambert's term",
             Stage::Specular => "highlights",
             Stage::Ambient => "ambient term",
-            Stage::Shadows => "shadow rays",
+            Stage::Shadows => "shadows",
             Stage::Reflection => "reflected and refracted rays",
             Stage::AntiAliasing => "anti-aliasing",
         }

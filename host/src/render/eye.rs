@@ -188,7 +188,7 @@ fn clip(range: &mut [f64; 2], [slope, value]: [f64; 2]) {
 }
 
 /// The point that three planes share.
-fn meet(a: DVec4, b: DVec4, c: DVec4) -> Option<DVec3> {
+pub(super) fn meet(a: DVec4, b: DVec4, c: DVec4) -> Option<DVec3> {
     let unit = |p: DVec4| {
         let length = p.truncate().length();
         (length > 0.0).then(|| p / length)

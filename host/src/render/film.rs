@@ -2,6 +2,7 @@
 
 use crate::picture::{Picture, PictureError, Pixel};
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Weights of red, green and blue in luminance (ITU-R BT.709).
@@ -53,18 +54,24 @@ pub struct Sample {
 impl Tally {
     /// Adds a sample; one that is not a number is taken for black.
     pub fn add(&mut self, sample: &Sample) {
+        self.add_alike(sample, 1);
+    }
+
+    /// Adds several samples that are the same.
+    pub fn add_alike(&mut self, sample: &Sample, count: u32) {
         let radiance = if sample.radiance.is_finite() { sample.radiance } else { DVec3::ZERO };
-        self.sum += radiance;
-        self.squares += radiance.dot(LUMINANCE).powi(2);
-        self.count += 1;
-        self.covered += u32::from(sample.covered);
+        let times = f64::from(count);
+        self.sum += radiance * times;
+        self.squares += radiance.dot(LUMINANCE).powi(2) * times;
+        self.count += count;
+        self.covered += if sample.covered { count } else { 0 };
         if let Some((distance, normal, seen)) = sample.first {
             if self.elements == 0 {
                 self.seen = seen;
             }
-            self.distances += distance;
-            self.normals += normal;
-            self.elements += 1;
+            self.distances += distance * times;
+            self.normals += normal * times;
+            self.elements += count;
         }
     }
 
@@ -96,7 +103,9 @@ impl Film {
     /// [`PictureError::Size`].
     pub fn new(width: u32, height: u32) -> Result<Film, PictureError> {
         let count = Picture::pixels_of(width, height)?;
-        Ok(Film { width, height, tallies: vec![Tally::default(); count] })
+        // In parallel: most of the time goes into getting the memory.
+        let tallies = (0..count).into_par_iter().with_min_len(1 << 14).map(|_| Tally::default()).collect();
+        Ok(Film { width, height, tallies })
     }
 
     /// A film of pixels that are known; none if there are not as many as that.
@@ -128,10 +137,11 @@ impl Film {
     /// The picture so far; pixels without samples are black and uncovered.
     pub fn picture(&self) -> Result<Picture, PictureError> {
         let mut picture = Picture::new(self.width, self.height)?;
-        for (pixel, tally) in picture.pixels_mut().iter_mut().zip(&self.tallies) {
+        let pixels = picture.pixels_mut().par_iter_mut().with_min_len(1 << 14).zip(&self.tallies);
+        pixels.for_each(|(pixel, tally)| {
             let coverage = f64::from(tally.covered) / f64::from(tally.count.max(1));
             *pixel = Pixel { radiance: tally.mean().as_vec3().to_array(), coverage: coverage as f32 };
-        }
+        });
         Ok(picture)
     }
 

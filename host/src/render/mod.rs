@@ -6,6 +6,7 @@ mod film;
 mod layers;
 mod ready;
 pub mod ray_tracing;
+pub mod scan_line;
 mod state;
 
 pub use film::{Film, LUMINANCE, Sample, Tally};
@@ -94,8 +95,10 @@ pub struct Rendering {
     pub film: Film,
     /// Whether nothing was left out because the rendering was stopped.
     pub complete: bool,
-    /// How many rays were traced.
+    /// How many rays were traced; none by scan line.
     pub rays: RayCounts,
+    /// How many spans were drawn; none by ray tracing.
+    pub spans: SpanCounts,
     /// Wall-clock time, seconds.
     pub seconds: f64,
     /// Threads that worked.
@@ -136,6 +139,23 @@ impl std::ops::Add for RayCounts {
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
         }
+    }
+}
+
+/// Spans of samples by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SpanCounts {
+    /// Of triangles that may be seen.
+    pub surfaces: u64,
+    /// Of shadow polygons.
+    pub shadows: u64,
+}
+
+impl std::ops::Add for SpanCounts {
+    type Output = SpanCounts;
+
+    fn add(self, other: SpanCounts) -> SpanCounts {
+        SpanCounts { surfaces: self.surfaces + other.surfaces, shadows: self.shadows + other.shadows }
     }
 }
 

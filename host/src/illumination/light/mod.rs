@@ -11,7 +11,7 @@ mod tests;
 pub use goniometry::{Goniometry, GoniometryError};
 pub use patch::Patch;
 pub use sky::Sky;
-pub use source::{Beam, Glow, Source};
+pub use source::{Beam, Glow, LightPoint, Source};
 
 use crate::color::Color;
 use crate::picture::Picture;

@@ -141,6 +141,37 @@ impl Patch {
         }
     }
 
+    /// A point of it, drawn evenly by area, and its normal if it has one.
+    ///
+    /// - `middle`: its middle instead.
+    pub(super) fn point(&self, uniform: [f64; 2], middle: bool) -> (DVec3, Option<DVec3>) {
+        let [u, v] = if middle { [0.5; 2] } else { uniform };
+        match *self {
+            Patch::Rectangle { corner, across, up } => (corner + across * u + up * v, self.normal()),
+            Patch::Disc { center, radius, .. } => {
+                let (x, y) = self.normal().unwrap_or(DVec3::Y).any_orthonormal_pair();
+                let [a, b] = if middle { [0.0; 2] } else { disk([u, v]) };
+                (center + (x * a + y * b) * radius, self.normal())
+            }
+            Patch::Sphere { center, .. } if middle => (center, None),
+            Patch::Sphere { center, radius } => {
+                let (height, (sin, cos)) = (1.0 - 2.0 * u, (TAU * v).sin_cos());
+                let across = (1.0 - height * height).max(0.0).sqrt();
+                // Seen from anywhere, as far from the middle in the mean square as the points of a disc.
+                let radius = radius * 0.75f64.sqrt();
+                (center + DVec3::new(across * cos, height, across * sin) * radius, None)
+            }
+        }
+    }
+
+    /// The area that is seen of it from straight before it and far away.
+    pub(super) fn seen_area(&self) -> f64 {
+        match *self {
+            Patch::Sphere { radius, .. } => PI * radius * radius,
+            _ => self.area(),
+        }
+    }
+
     fn by_area(&self, point: DVec3, at: DVec3, normal: DVec3) -> Option<Drawn> {
         let offset = at - point;
         let distance = offset.length();

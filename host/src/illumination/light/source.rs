@@ -32,6 +32,25 @@ pub struct Glow {
     pub density: f64,
 }
 
+/// One of a few fixed points that stand for a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightPoint {
+    /// Where it is; none for light from infinitely far away.
+    pub at: Option<DVec3>,
+    /// Towards the light that is infinitely far away, unit length; 0 otherwise.
+    pub towards: DVec3,
+    /// The part of an emitting surface that it stands for, square units, and its normal; no normal where it is seen alike from
+    /// everywhere. None for a light without size.
+    surface: Option<(f64, Option<DVec3>, Sides)>,
+}
+
+/// On which sides a surface emits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Sides {
+    Front,
+    Both,
+}
+
 /// A light ready for rendering.
 #[derive(Clone, Debug)]
 pub struct Source {
@@ -145,6 +164,53 @@ impl Source {
         }
     }
 
+    /// Points that stand for it: itself if it has no size, none for a sky.
+    ///
+    /// A sphere's points lie on a smaller one, so that they are spread as its disc is, as seen from anywhere.
+    ///
+    /// - `count`: of them where it has a size, 1 and more; a single one is in its middle.
+    pub fn points(&self, count: u32) -> Vec<LightPoint> {
+        let count = count.max(1);
+        let sharp = |at: Option<DVec3>, towards: DVec3| vec![LightPoint { at, towards, surface: None }];
+        let sequence = crate::numeric::sequence::Sequence::new(0, 0);
+        let squares = |i: u32| if count == 1 { [0.5; 2] } else { sequence.point(i, 0) };
+        let part = f64::from(count).recip();
+        let spread = |point: &dyn Fn([f64; 2]) -> (DVec3, f64, Option<DVec3>, Sides)| {
+            let of = |i: u32| {
+                let (at, area, normal, sides) = point(squares(i));
+                LightPoint { at: Some(at), towards: DVec3::ZERO, surface: Some((area * part, normal, sides)) }
+            };
+            (0..count).map(of).collect()
+        };
+        match &self.kind {
+            Kind::Point { at } | Kind::Spot { at, .. } | Kind::Luminaire { at, .. } => sharp(Some(*at), DVec3::ZERO),
+            Kind::Directional { towards } => sharp(None, *towards),
+            Kind::Sky(_) => Vec::new(),
+            Kind::Area(patch) => spread(&|uniform| {
+                let (at, normal) = patch.point(uniform, count == 1);
+                (at, patch.seen_area(), normal, Sides::Front)
+            }),
+            Kind::Mesh(triangles) => spread(&|uniform| {
+                let (at, normal) = triangles.point(uniform);
+                (at, triangles.area, Some(normal), Sides::Both)
+            }),
+        }
+    }
+
+    /// Light that arrives from one of [`Source::points`] if nothing stands between.
+    pub fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+        let (Some((area, normal, sides)), Some(at)) = (from.surface, from.at) else {
+            return self.beam(point, None, [0.5; 2], comb);
+        };
+        let beam = from_point(at - point, self.strength.of(comb) * area)?;
+        let facing = match (normal, sides) {
+            (None, _) => 1.0,
+            (Some(normal), Sides::Front) => -normal.dot(beam.towards),
+            (Some(normal), Sides::Both) => normal.dot(beam.towards).abs(),
+        };
+        (facing > 0.0).then(|| Beam { irradiance: beam.irradiance * facing, ..beam })
+    }
+
     /// What a ray sees of a light that is a surface of its own.
     pub fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<Glow> {
         let Kind::Area(patch) = &self.kind else { return None };
@@ -199,6 +265,17 @@ fn from_point(offset: DVec3, intensity: Channels) -> Option<Beam> {
 }
 
 impl Triangles {
+    /// A point, drawn evenly by area, and the normal there.
+    fn point(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
+        let index = self.below.partition_point(|part| *part <= x).min(self.below.len() - 1);
+        let from = if index == 0 { 0.0 } else { self.below[index - 1] };
+        let x = ((x - from) / (self.below[index] - from)).clamp(0.0, 1.0);
+        let [a, b, c] = self.corners[index];
+        let root = x.sqrt();
+        let at = a * (1.0 - root) + b * (root * (1.0 - y)) + c * (root * y);
+        (at, (b - a).cross(c - a).normalize_or_zero())
+    }
+
     fn draw(&self, point: DVec3, [x, y]: [f64; 2]) -> Option<(DVec3, f64, f64)> {
         let index = self.below.partition_point(|part| *part <= x).min(self.below.len() - 1);
         let from = if index == 0 { 0.0 } else { self.below[index - 1] };

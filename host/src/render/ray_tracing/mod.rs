@@ -23,7 +23,7 @@ pub use tracer::ENERGY_CUTOFF;
 
 use super::eye::Eye;
 use super::film::{Film, Sample, Tally};
-use super::{Order, RayCounts, RenderError, Renderer, Rendering, Watch};
+use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::octree::Octree;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
@@ -64,6 +64,11 @@ impl<'a> RayTracer<'a> {
     /// [`RenderError::Octree`], [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
         Ok(RayTracer { plan, world: World::new(prepared, plan)? })
+    }
+
+    /// The scene.
+    pub fn prepared(&self) -> &Prepared {
+        self.world.appearance.prepared
     }
 
     /// The octree, if the plan needs one.
@@ -155,7 +160,7 @@ impl<'a> RayTracer<'a> {
         watch: &Watch<'_>,
     ) -> Result<Rendering, RenderError> {
         let Exposed { rays, complete, seconds, threads } = self.expose(&mut film, view, order, watch)?;
-        Ok(Rendering { picture: film.picture()?, film, complete, rays, seconds, threads })
+        Ok(Rendering { picture: film.picture()?, film, complete, rays, spans: SpanCounts::default(), seconds, threads })
     }
 
     /// Adds samples to a pixel until it has `samples`.

@@ -1,0 +1,322 @@
+//! Scan line: triangles to spans of samples, with Crow's shadow volumes.
+//!
+//! Each pixel has as many lines of samples as samples, one on each line and in each column of a grid (n rooks). A triangle
+//! covers spans of the lines; the nearest is seen, sample by sample, and passable ones before it are kept in their order.
+//! Light is found once for each pixel and surface, shadows for each sample.
+//!
+//! *Not modelled*: only light that comes straight from lights is seen. Mirrors and glass show nothing but highlights;
+//! transparency goes straight on and shadows are as weak as what stands in between lets through (where a pattern says how
+//! much, as in the middle of its first triangle). A light with a size is represented by points of it, in number the
+//! `light_samples` of the scene, and is itself no obstacle to others; a sky is background only; a lens is a pinhole.
+//!
+//! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 280 for each silhouette and light, and
+//! for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
+
+mod casters;
+mod enclosed;
+mod screen;
+mod shade;
+mod shadow;
+mod spans;
+#[cfg(test)]
+mod tests;
+mod visibility;
+
+use super::eye::Eye;
+use super::film::{Film, Tally};
+use super::ready::Appearance;
+use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
+use crate::color::Channels;
+use crate::illumination::light::LightPoint;
+use crate::plan::{Plan, Stage};
+use crate::scene::{Prepared, View};
+use casters::Casters;
+use enclosed::Enclosed;
+use glam::DVec3;
+use rayon::prelude::*;
+use screen::Screen;
+use shade::{Desk, Pixel, Shader};
+use shadow::Shadow;
+use spans::{Lines, MOST_LINES, rooks};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+use visibility::{Facets, Strip};
+
+/// Most groups of casters that let different light through; what is beyond throws no shadow.
+const MOST_GROUPS: usize = 200;
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Light {
+    Point(DVec3),
+    /// Towards the light, infinitely far away.
+    Direction(DVec3),
+}
+
+impl Light {
+    /// From a point towards the light, any length.
+    fn from(&self, point: DVec3) -> DVec3 {
+        match self {
+            Light::Point(at) => *at - point,
+            Light::Direction(towards) => *towards,
+        }
+    }
+}
+
+/// One point of a light.
+#[derive(Clone, Copy, Debug)]
+struct Lamp {
+    /// Which of the sources it is of.
+    source: usize,
+    point: LightPoint,
+    light: Light,
+    /// 1; what there is of it.
+    part: f64,
+}
+
+/// A scan-line renderer that holds a scene and which triangles are neighbours.
+pub struct ScanLine<'a> {
+    plan: &'a Plan,
+    appearance: Appearance<'a>,
+    casters: Casters<'a>,
+    /// All triangles of the objects that the plan keeps.
+    triangles: Vec<u32>,
+    /// For each triangle of the scene, whether light goes straight through; empty if there is none such.
+    passable: Vec<bool>,
+    /// What each group of casters lets through, comb by comb; the first is opaque.
+    passing: Vec<Vec<Channels>>,
+    lamps: Vec<Lamp>,
+}
+
+/// What the threads share while a picture is made.
+struct Work<'a> {
+    shader: Shader<'a>,
+    facets: &'a Facets<'a>,
+    shadows: &'a [Shadow],
+    offsets: &'a [f64],
+    handed: i32,
+    width: usize,
+    /// Rows of pixels in a band.
+    rows: usize,
+}
+
+/// What one thread needs, band by band.
+#[derive(Default)]
+struct Tools<'a> {
+    strip: Strip,
+    counts: Vec<Vec<i32>>,
+    desk: Desk<'a>,
+}
+
+impl<'a> ScanLine<'a> {
+    /// Makes materials and lights ready, and finds the neighbours of triangles that throw shadows.
+    ///
+    /// # Errors
+    /// [`RenderError::Material`].
+    pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<ScanLine<'a>, RenderError> {
+        let appearance = Appearance::new(prepared, plan)?;
+        let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
+        let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
+        let (groups, passing) = groups(&appearance);
+        let passable: Vec<bool> = groups.iter().map(|group| *group > 0).collect();
+        let shadows = plan.needs(Stage::Shadows);
+        let casters = Casters::new(prepared, if shadows { triangles.clone() } else { Vec::new() }, groups);
+        let samples = prepared.settings.light_samples.max(1);
+        let mut lamps = Vec::new();
+        for (source, (_, light)) in appearance.sources.iter().enumerate() {
+            for point in light.points(samples) {
+                let light = point.at.map_or(Light::Direction(point.towards), Light::Point);
+                lamps.push(Lamp { source, point, light, part: 1.0 });
+            }
+        }
+        Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps })
+    }
+
+    /// What of the scene the pictures do not show, in words.
+    pub fn left_out(&self, view: &View) -> Vec<&'static str> {
+        let mut left_out = Vec::new();
+        if self.plan.needs(Stage::Reflection) {
+            left_out.push("mirrors, glass and rough surfaces reflect and refract nothing but light of lights");
+        }
+        if self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
+            left_out.push("the sky is seen, but lights nothing");
+        }
+        if let View::Camera(camera) = view
+            && camera.lens.is_some()
+        {
+            left_out.push("the lens is a pinhole");
+        }
+        left_out
+    }
+
+    /// The shadow volumes of a lamp.
+    fn shadows(&self, screen: &Screen, facets: &Facets<'_>, bands: [usize; 2]) -> Vec<Shadow> {
+        if !self.plan.needs(Stage::Shadows) {
+            return Vec::new();
+        }
+        let groups = self.passing.len();
+        let shadow = |lamp: &Lamp| Shadow::new(&self.casters, lamp.light, (screen, facets), bands, groups);
+        self.lamps.par_iter().map(shadow).collect()
+    }
+
+    fn draw(
+        &self,
+        film: &mut Film,
+        (view, order): (&View, &Order),
+        stopped: &(dyn Fn() -> bool + Sync),
+        watch: &Watch<'_>,
+    ) -> Result<(SpanCounts, bool), RenderError> {
+        let prepared = self.appearance.prepared;
+        let samples = order.samples.max(1);
+        let size = [order.width, order.height];
+        let eye = Eye::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
+        let filter = prepared.settings.texture_filter.max(1e-3);
+        let eye = if self.plan.needs(Stage::Textures) { eye.with_cones(filter) } else { eye };
+        let screen = Screen::new(view, size, samples, &prepared.bounds).ok_or(RenderError::View)?;
+        let offsets = rooks(samples);
+        let rows = (MOST_LINES / samples as usize).max(1);
+        let lines = rows * samples as usize;
+        let bands = (order.height as usize).div_ceil(rows);
+        let facets = Facets::new(prepared, (&self.triangles, &self.passable), &screen, lines, bands);
+        let shadows = self.shadows(&screen, &facets, [lines, bands]);
+        let enclosed: Vec<Option<Enclosed<'_>>> = shadows
+            .par_iter()
+            .map(|shadow| {
+                let Shadow { light, facing, silhouettes, .. } = shadow;
+                let groups = self.passing.len();
+                let new = || Enclosed::new(&self.casters, *light, facing, silhouettes, groups).sorted();
+                self.appearance.curved.then(new)
+            })
+            .collect();
+        let shader = Shader {
+            appearance: &self.appearance,
+            casters: &self.casters,
+            lamps: &self.lamps,
+            enclosed: &enclosed,
+            passing: &self.passing,
+            eye: &eye,
+            offsets: &offsets,
+            matte: order.matte,
+            has_surfaces: self.appearance.sources.iter().any(|(_, source)| source.is_surface()),
+            has_sky: self.appearance.sources.iter().any(|(_, source)| source.is_sky()),
+        };
+        let work = Work {
+            shader,
+            facets: &facets,
+            shadows: &shadows,
+            offsets: &offsets,
+            handed: screen.handed(),
+            width: order.width as usize,
+            rows,
+        };
+        let done = AtomicU64::new(0);
+        let drawn: Vec<Option<SpanCounts>> = film
+            .tallies_mut()
+            .par_chunks_mut(order.width as usize * rows)
+            .enumerate()
+            .map_init(Tools::default, |tools, (band, tallies)| {
+                if stopped() {
+                    return None;
+                }
+                let counts = work.band(self, band, tallies, tools);
+                let rows = (tallies.len() / work.width) as u64;
+                (watch.progress)(done.fetch_add(rows, Ordering::Relaxed) + rows, u64::from(order.height));
+                Some(counts)
+            })
+            .collect();
+        let complete = drawn.iter().all(Option::is_some);
+        Ok((drawn.into_iter().flatten().fold(SpanCounts::default(), |a, b| a + b), complete))
+    }
+}
+
+impl<'a> Work<'a> {
+    /// Draws a band of the picture.
+    fn band(&self, scan: &ScanLine<'_>, band: usize, tallies: &mut [Tally], tools: &mut Tools<'a>) -> SpanCounts {
+        let samples = self.offsets.len();
+        let first = band * self.rows * samples;
+        let last = first + tallies.len() / self.width * samples;
+        let mut drawn = SpanCounts::default();
+        let Tools { strip, counts, desk } = tools;
+        counts.resize_with(self.shadows.len(), Vec::new);
+        for begin in (first..last).step_by(MOST_LINES) {
+            let range = begin..(begin + MOST_LINES).min(last);
+            let lines = Lines { range: range.clone(), width: self.width, offsets: self.offsets };
+            strip.spans = 0;
+            self.facets.see(band, &lines, strip);
+            drawn.surfaces += strip.spans;
+            for (shadow, counts) in self.shadows.iter().zip(counts.iter_mut()) {
+                drawn.shadows += shadow.count((&scan.casters, self.handed), band, &lines, strip, counts);
+            }
+            for row in range.start / samples..range.end.div_ceil(samples) {
+                let from = range.start.max(row * samples);
+                let to = range.end.min((row + 1) * samples);
+                let tallies = &mut tallies[(row - band * self.rows) * self.width..][..self.width];
+                for (column, tally) in tallies.iter_mut().enumerate() {
+                    let pixel = Pixel {
+                        at: [column, row],
+                        first: (from - range.start) * self.width + column,
+                        stride: self.width,
+                        lines: from - row * samples..to - row * samples,
+                    };
+                    self.shader.shade(&pixel, strip, counts, desk, tally);
+                }
+            }
+        }
+        drawn
+    }
+}
+
+/// For each triangle, which group of casters it is of, and what each group lets through; no groups where all are opaque.
+fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
+    let prepared = appearance.prepared;
+    let combs = 0..appearance.wavelengths.combs();
+    let mut passing: Vec<Vec<Channels>> = vec![combs.clone().map(|_| Channels::ZERO).collect()];
+    if !appearance.passing {
+        return (Vec::new(), passing);
+    }
+    let mut groups = vec![0; prepared.triangles.len()];
+    let mut known: Vec<((u32, u32), u8)> = Vec::new();
+    for triangle in 0..prepared.triangles.len() as u32 {
+        let key = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let group = known.iter().rev().find(|(other, _)| *other == key).map(|(_, group)| *group);
+        groups[triangle as usize] = group.unwrap_or_else(|| {
+            let optics = appearance.optics(key.0, key.1);
+            let place = || prepared.place(triangle, [1.0 / 3.0; 3], Default::default());
+            let passes: Vec<Channels> = combs.clone().map(|comb| optics.passing(comb, place)).collect();
+            let is_opaque = !optics.is_passable() || passes.iter().all(|part| part.max() <= 0.0);
+            let same = passing.iter().skip(1).position(|other| *other == passes);
+            let group = match same {
+                _ if is_opaque => 0,
+                Some(place) => place + 1,
+                None => {
+                    passing.push(passes);
+                    passing.len() - 1
+                }
+            };
+            let group = group.min(MOST_GROUPS) as u8;
+            known.push((key, group));
+            group
+        });
+    }
+    passing.truncate(MOST_GROUPS + 1);
+    (groups, passing)
+}
+
+impl Renderer for ScanLine<'_> {
+    fn name(&self) -> &'static str {
+        "scan line"
+    }
+
+    /// Takes all samples at once: a target of the error is not looked at.
+    fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
+        let start = Instant::now();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
+        let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
+        let stopped = || watch.is_cancelled() || late();
+        let mut film = pool.install(|| Film::new(order.width, order.height))?;
+        let (spans, complete) = pool.install(|| self.draw(&mut film, (view, order), &stopped, watch))?;
+        let picture = pool.install(|| film.picture())?;
+        let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
+        Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, seconds, threads })
+    }
+}

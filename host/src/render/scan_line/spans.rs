@@ -1,0 +1,180 @@
+//! Polygons to spans: which samples of a line a polygon covers, and how near it is there.
+
+use super::screen::Point;
+use std::ops::Range;
+
+/// Most lines of samples that are drawn together.
+pub(super) const MOST_LINES: usize = 64;
+
+/// Where in a pixel the sample of each line lies, 0..1 from the left: one sample in each row and column of a grid of as
+/// many rows and columns, which lie apart like multiples of the golden section.
+///
+/// # Source
+/// The n rooks of Shirley 1991; which of them: ours.
+pub(super) fn rooks(samples: u32) -> Vec<f64> {
+    let golden = (5f64.sqrt() - 1.0) / 2.0;
+    let key = |line: u32| (f64::from(line + 1) * golden).fract();
+    let mut order: Vec<u32> = (0..samples).collect();
+    order.sort_by(|a, b| key(*a).total_cmp(&key(*b)));
+    let mut offsets = vec![0.5; samples as usize];
+    for (rank, line) in order.into_iter().enumerate() {
+        offsets[line as usize] = (rank as f64 + 0.5) / f64::from(samples);
+    }
+    offsets
+}
+
+/// Samples of a line that a polygon covers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Span {
+    /// Which line, from the top of the picture.
+    pub(super) line: usize,
+    /// From this column.
+    pub(super) from: usize,
+    /// Up to and without this one.
+    pub(super) to: usize,
+    /// 1 where the polygon turns clockwise as it is seen, else -1.
+    pub(super) turns: i32,
+}
+
+/// Lines that are drawn together.
+#[derive(Clone, Debug)]
+pub(super) struct Lines<'a> {
+    /// Which.
+    pub(super) range: Range<usize>,
+    /// Columns.
+    pub(super) width: usize,
+    /// Where samples lie in their pixels, for each line of a row of pixels.
+    pub(super) offsets: &'a [f64],
+}
+
+impl Lines<'_> {
+    /// Where the samples of a line lie in their pixels.
+    #[inline]
+    pub(super) fn offset(&self, line: usize) -> f64 {
+        self.offsets[line % self.offsets.len()]
+    }
+
+    /// Gives the spans of a convex polygon.
+    ///
+    /// Sides that two polygons share are crossed at the same place bit by bit: no sample between them is lost or found twice.
+    #[inline]
+    pub(super) fn spans(&self, corners: &[Point], mut give: impl FnMut(Span)) {
+        if rises_once(corners) {
+            self.monotone(corners, &mut give);
+        } else {
+            // Rounding has dented it: triangles cannot be dented, and what they share cancels out.
+            for pair in corners[1..].windows(2) {
+                self.monotone(&[corners[0], pair[0], pair[1]], &mut give);
+            }
+        }
+    }
+
+    #[inline]
+    fn monotone(&self, corners: &[Point], give: &mut impl FnMut(Span)) {
+        let mut crossings = [[0.0; 2]; MOST_LINES];
+        let (mut first, mut last) = (usize::MAX, 0);
+        let mut from = corners[corners.len() - 1];
+        for &to in corners {
+            let falls = usize::from(to.y < from.y);
+            let [low, high] = if falls == 1 { [to, from] } else { [from, to] };
+            let begin = up(low.y).max(self.range.start);
+            let end = up(high.y).min(self.range.end);
+            if begin < end {
+                let slope = (high.x - low.x) / (high.y - low.y);
+                for line in begin..end {
+                    crossings[line - self.range.start][falls] = low.x + (line as f64 - low.y) * slope;
+                }
+                (first, last) = (first.min(begin), last.max(end));
+            }
+            from = to;
+        }
+        for line in first.min(last)..last {
+            let [rising, falling] = crossings[line - self.range.start];
+            let offset = self.offset(line);
+            let (a, b) = (up(rising - offset).min(self.width), up(falling - offset).min(self.width));
+            if a < b {
+                give(Span { line, from: a, to: b, turns: -1 });
+            } else if b < a {
+                give(Span { line, from: b, to: a, turns: 1 });
+            }
+        }
+    }
+}
+
+/// Whether the corners go down and up once only.
+#[inline]
+fn rises_once(corners: &[Point]) -> bool {
+    if corners.len() <= 3 {
+        return true;
+    }
+    let mut changes = 0;
+    let mut from = corners[corners.len() - 1];
+    let mut rose = from.y >= corners[corners.len() - 2].y;
+    for &to in corners {
+        let rises = if to.y == from.y { rose } else { to.y > from.y };
+        changes += u32::from(rises != rose);
+        (rose, from) = (rises, to);
+    }
+    changes <= 2
+}
+
+/// The least whole number that is not below, 0 and more.
+#[inline]
+fn up(value: f64) -> usize {
+    let whole = value as i32;
+    (whole + i32::from(f64::from(whole) < value)).max(0) as usize
+}
+
+/// Nearness over the picture: linear, and never beyond that of the corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Nearness {
+    at: Point,
+    by_column: f64,
+    by_line: f64,
+    least: f64,
+    most: f64,
+}
+
+impl Nearness {
+    /// Through the corners of a polygon in a plane; none if it is seen edge on.
+    #[inline]
+    pub(super) fn new(corners: &[Point]) -> Option<Nearness> {
+        let at = corners[0];
+        let apart = |p: &Point| (p.x - at.x, p.y - at.y, p.near - at.near);
+        // The fan of the whole polygon: thin ends count little.
+        let (mut area, mut by_column, mut by_line) = (0.0, 0.0, 0.0);
+        let (mut least, mut most) = (at.near, at.near);
+        let mut before = apart(&corners[1]);
+        for p in &corners[2..] {
+            let next = apart(p);
+            area += before.0 * next.1 - before.1 * next.0;
+            by_column += before.2 * next.1 - before.1 * next.2;
+            by_line += before.0 * next.2 - before.2 * next.0;
+            before = next;
+        }
+        for p in &corners[1..] {
+            (least, most) = (least.min(p.near), most.max(p.near));
+        }
+        let nearness = Nearness { at, by_column: by_column / area, by_line: by_line / area, least, most };
+        (nearness.by_column.is_finite() && nearness.by_line.is_finite()).then_some(nearness)
+    }
+
+    /// Along a span: nearness at its first sample, what each sample adds, and whether it has to be kept within bounds.
+    ///
+    /// - `offset`: where samples lie in their pixels.
+    #[inline]
+    pub(super) fn along(&self, span: &Span, offset: f64) -> (f64, f64, bool) {
+        let start = self.at.near
+            + self.by_column * (span.from as f64 + offset - self.at.x)
+            + self.by_line * (span.line as f64 - self.at.y);
+        let end = start + self.by_column * (span.to - 1 - span.from) as f64;
+        let bounded = start.min(end) < self.least || start.max(end) > self.most;
+        (start, self.by_column, bounded)
+    }
+
+    /// Keeps a value within bounds.
+    #[inline]
+    pub(super) fn bound(&self, value: f64) -> f64 {
+        value.clamp(self.least, self.most)
+    }
+}

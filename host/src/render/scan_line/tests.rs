@@ -1,0 +1,330 @@
+//! Facts about scan line: closed forms, and what ray tracing finds of the same scenes.
+
+use super::*;
+use crate::color::Color;
+use crate::illumination::light::Patch;
+use crate::illumination::material::Classic;
+use crate::illumination::{Bands, Material, Paint};
+use crate::numeric::ray::Ray;
+use crate::octree::{Octree, Settings as OctreeSettings};
+use crate::render::ray_tracing::RayTracer;
+use crate::scene::{Camera, Object, Parallel, Projection, Scene, Settings, Shape};
+use crate::solid::Primitive;
+use glam::{DMat4, DVec2, DVec4};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
+use std::sync::atomic::AtomicBool;
+
+type Lamps = Vec<crate::illumination::Light>;
+
+fn object(shape: Shape, transform: DMat4, material: impl Into<Material>) -> Object {
+    Object { name: shape.word().into(), shape, transform, material: Some(material.into()), tolerance: None }
+}
+
+fn diffuse(k: f64) -> Classic {
+    Classic { diffuse: Paint::grey(k), ..Classic::default() }
+}
+
+fn ground(size: f64) -> Object {
+    object(Shape::Ground { size }, DMat4::IDENTITY, diffuse(0.6))
+}
+
+fn cuboid(size: DVec3, at: DVec3) -> Object {
+    let transform = DMat4::from_translation(at) * DMat4::from_rotation_y(0.4);
+    object(Shape::Solid(Primitive::Box { size }), transform, diffuse(0.5))
+}
+
+/// A floor with two boxes, one of which is sunk into it, and into the other.
+fn boxes() -> Vec<Object> {
+    vec![
+        ground(20.0),
+        cuboid(DVec3::new(1.0, 2.0, 1.0), DVec3::new(1.0, 1.0, 0.0)),
+        cuboid(DVec3::new(2.5, 0.8, 2.0), DVec3::new(-0.3, 0.2, 0.5)),
+    ]
+}
+
+fn pane(at: DVec3, turned: f64) -> Object {
+    let through = Paint::Plain(Color::Bands(Bands::new(0.8, 0.5, 0.3)));
+    let material = Classic { transparency: through, ..diffuse(0.2) };
+    let transform = DMat4::from_translation(at) * DMat4::from_rotation_y(turned);
+    object(Shape::Solid(Primitive::Box { size: DVec3::new(1.5, 2.0, 0.1) }), transform, material)
+}
+
+fn lamp(at: DVec3) -> crate::illumination::Light {
+    crate::illumination::Light::Point { at, intensity: Color::grey(30.0) }
+}
+
+fn sun() -> crate::illumination::Light {
+    crate::illumination::Light::Directional { direction: DVec3::new(1.0, -1.0, -0.5), irradiance: Color::grey(2.0) }
+}
+
+fn spot() -> crate::illumination::Light {
+    let (at, direction) = (DVec3::new(-3.0, 5.0, 1.0), DVec3::new(0.6, -1.0, -0.1));
+    crate::illumination::Light::Spot { at, direction, intensity: Color::grey(60.0), inner: 10.0, outer: 25.0 }
+}
+
+fn camera(from: DVec3, at: DVec3) -> Camera {
+    Camera { from, at, up: DVec3::Y, field_of_view: 35.0, near: 0.0, far: None, lens: None, parallel: None }
+}
+
+fn usual() -> Camera {
+    camera(DVec3::new(1.0, 3.0, 8.0), DVec3::new(0.0, 0.8, 0.0))
+}
+
+fn scene(objects: Vec<Object>, lights: Lamps, camera: Camera) -> Scene {
+    let settings = Settings { width: 72, height: 64, samples: 16, ..Settings::default() };
+    let (ambient, background) = (Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
+    Scene { objects, lights, settings, camera: Some(camera), ambient, background, ..Scene::default() }
+}
+
+fn order(scene: &Scene, threads: usize) -> Order {
+    Order { threads: NonZeroUsize::new(threads), ..Order::of(&scene.settings) }
+}
+
+fn scan(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
+    let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
+    let view = view.unwrap_or(prepared.view());
+    let plan = Plan::new(&prepared, &view);
+    let scan = ScanLine::new(&prepared, &plan).expect("ready");
+    scan.render(&view, &order(scene, threads), &Watch::NOBODY).expect("a picture")
+}
+
+/// Compares a scene with many rays: the mean difference, and the share of pixels that differ by more than a tenth.
+fn compared(scene: &Scene, view: Option<View>) -> [f64; 2] {
+    let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
+    let view = view.unwrap_or(prepared.view());
+    let plan = Plan::new(&prepared, &view);
+    let order = Order { samples: 64, ..order(scene, 2) };
+    let traced = RayTracer::new(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY);
+    let (traced, drawn) = (traced.expect("a picture"), scan(scene, Some(view), 2));
+    let mut sums = [0.0; 2];
+    for (index, (a, b)) in drawn.film.tallies().iter().zip(traced.film.tallies()).enumerate() {
+        let off = (a.mean() - b.mean()).abs().max_element();
+        sums[0] += off;
+        sums[1] += f64::from(off > 0.1);
+        let [covered_a, covered_b] = [a, b].map(|tally| f64::from(tally.covered) / f64::from(tally.count));
+        assert!((covered_a - covered_b).abs() < 0.2, "pixel {index} is covered by {covered_a}, not {covered_b}");
+        // Within a surface, everything that is known of it agrees.
+        if a.elements == a.count && b.elements == b.count && a.seen == b.seen && off < 0.01 {
+            let [near, far] = [a, b].map(|tally| tally.distances / f64::from(tally.elements));
+            assert!((near / far - 1.0).abs() < 0.05, "pixel {index} is at {near}, not at {far}");
+        }
+    }
+    sums.map(|sum| sum / drawn.film.tallies().len() as f64)
+}
+
+fn agrees(name: &str, scene: &Scene, view: Option<View>) {
+    let [mean, many] = compared(scene, view);
+    assert!(mean < 2e-3 && many < 4e-3, "{name}: off by {mean} in the mean, and much in {many} of the pixels");
+}
+
+#[test]
+fn all_kinds_of_sharp_lights_give_what_ray_tracing_gives() {
+    agrees("two lights", &scene(boxes(), vec![lamp(DVec3::new(3.0, 5.0, 4.0)), sun()], usual()), None);
+    agrees("a spot", &scene(boxes(), vec![spot()], usual()), None);
+    let from_below = scene(boxes(), vec![lamp(DVec3::new(1.0, -2.0, 2.0))], usual());
+    agrees("from below the floor", &from_below, None);
+}
+
+#[test]
+fn the_bunny_and_its_shadow_are_those_of_ray_tracing() {
+    let bunny = object(Shape::Bunny, DMat4::from_translation(DVec3::Y), diffuse(0.7));
+    agrees("bunny", &scene(vec![ground(20.0), bunny], vec![lamp(DVec3::new(3.0, 5.0, 4.0))], usual()), None);
+}
+
+#[test]
+fn a_coarse_sphere_has_no_dark_triangles_where_its_light_ends() {
+    let ball = Shape::Solid(Primitive::Sphere { radius: 1.0 });
+    let mut ball = object(ball, DMat4::from_translation(DVec3::Y), diffuse(0.7));
+    ball.tolerance = Some(0.02);
+    agrees("sphere", &scene(vec![ground(20.0), ball], vec![lamp(DVec3::new(6.0, 3.0, 1.0))], usual()), None);
+}
+
+#[test]
+fn an_eye_within_shadow_volumes_sees_the_right_shadows() {
+    let roof = cuboid(DVec3::new(6.0, 0.2, 4.0), DVec3::new(0.0, 2.0, -1.0));
+    let objects = vec![ground(20.0), roof, cuboid(DVec3::splat(0.5), DVec3::new(0.3, 0.3, 2.0))];
+    let eye = camera(DVec3::new(0.0, 0.3, -2.0), DVec3::new(0.0, 0.5, 3.0));
+    agrees("in shadow", &scene(objects, vec![lamp(DVec3::new(0.5, 5.0, 0.0)), sun()], eye), None);
+}
+
+#[test]
+fn sheets_without_an_inside_throw_shadows_from_both_sides() {
+    let turned = DMat4::from_translation(DVec3::new(0.0, 1.5, 0.0)) * DMat4::from_rotation_z(0.5);
+    let sheet = object(Shape::Ground { size: 2.0 }, turned, diffuse(0.5));
+    let lights = vec![lamp(DVec3::new(3.0, 5.0, 4.0)), lamp(DVec3::new(-1.0, 0.5, 2.0))];
+    agrees("open", &scene(vec![ground(20.0), sheet], lights, usual()), None);
+}
+
+#[test]
+fn panes_are_seen_through_in_their_order_and_throw_colored_shadows() {
+    let mut objects = boxes();
+    objects.extend([pane(DVec3::new(0.0, 1.0, 1.5), 0.0), pane(DVec3::new(0.6, 1.0, 1.0), 1.0)]);
+    agrees("panes", &scene(objects, vec![lamp(DVec3::new(3.0, 5.0, 4.0)), sun()], usual()), None);
+}
+
+#[test]
+fn parallel_and_oblique_views_and_those_of_matrices_agree() {
+    let lights = || vec![lamp(DVec3::new(3.0, 5.0, 4.0)), sun()];
+    for oblique in [DVec2::ZERO, DVec2::new(0.3, 0.2)] {
+        let view = Camera { parallel: Some(Parallel { height: 6.0, oblique }), ..usual() };
+        agrees("parallel", &scene(boxes(), lights(), view), None);
+    }
+    let clipped = Camera { near: 6.0, far: Some(11.0), ..usual() };
+    let scene = scene(boxes(), lights(), clipped);
+    let Projection { to_clip, depth_clipping } = clipped.projection().expect("sees");
+    agrees("matrix", &scene, Some(View::Projection(Projection { to_clip, depth_clipping })));
+    let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * to_clip;
+    agrees("mirrored", &scene, Some(View::Projection(Projection { to_clip: mirror, depth_clipping })));
+}
+
+#[test]
+fn what_is_cut_off_at_the_near_plane_still_throws_its_shadow() {
+    let near = Camera { near: 8.3, far: Some(12.0), ..usual() };
+    agrees("near", &scene(boxes(), vec![lamp(DVec3::new(3.0, 5.0, 4.0)), sun()], near), None);
+}
+
+#[test]
+fn surfaces_near_and_far_by_one_to_ten_million_hide_one_another() {
+    let mut objects = boxes();
+    objects[0] = ground(2e4);
+    objects.push(cuboid(DVec3::splat(0.0005), DVec3::new(1.0, 1.0, 7.998)));
+    let eye = camera(DVec3::new(1.0, 1.0, 8.0), DVec3::new(0.0, 1.0, 0.0));
+    agrees("ratio", &scene(objects, vec![sun()], Camera { near: 1e-3, far: Some(1e4), ..eye }), None);
+}
+
+#[test]
+fn an_eye_inside_an_object_sees_its_inside() {
+    let hall = cuboid(DVec3::splat(6.0), DVec3::new(0.0, 2.9, 0.0));
+    let eye = camera(DVec3::new(1.0, 1.0, 2.0), DVec3::new(0.0, 1.0, 0.0));
+    let objects = vec![hall, cuboid(DVec3::splat(0.7), DVec3::new(0.0, 0.5, 0.0))];
+    agrees("inside", &scene(objects, vec![lamp(DVec3::new(2.0, 4.0, 1.0))], eye), None);
+}
+
+#[test]
+fn a_light_with_a_size_gives_its_light_from_its_points() {
+    let (across, up) = (DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 0.0, 1.0));
+    let patch = Patch::Rectangle { corner: DVec3::new(-1.5, 4.0, -0.5), across, up };
+    let light = crate::illumination::Light::Area { patch, radiance: Color::grey(20.0) };
+    let mut scene = scene(boxes(), vec![light], usual());
+    scene.settings.light_samples = 64;
+    let [mean, _] = compared(&scene, None);
+    assert!(mean < 8e-3, "off by {mean}");
+}
+
+#[test]
+fn a_diffuse_floor_under_a_lamp_follows_its_closed_form() {
+    let mut scene = scene(vec![ground(50.0)], vec![lamp(DVec3::new(0.0, 2.0, 0.0))], usual());
+    (scene.settings.width, scene.settings.height, scene.settings.samples) = (21, 21, 1);
+    scene.ambient = Bands::ZERO;
+    let half = 5.25;
+    let rows = [
+        DVec4::new(1.0 / half, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -1.0 / half, 0.0),
+        DVec4::new(0.0, -1e-3, 0.0, 0.5),
+        DVec4::W,
+    ];
+    let to_clip = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+    let drawn = scan(&scene, Some(View::Projection(Projection { to_clip, depth_clipping: false })), 1);
+    for x in 0..21u32 {
+        let r = (f64::from(x) - 10.0) * 0.5;
+        let expected = 0.6 / PI * 30.0 * 2.0 / (4.0 + r * r).powf(1.5);
+        let found = f64::from(drawn.picture.get(x, 10).expect("inside").radiance[0]);
+        assert!((found - expected).abs() < 1e-6, "at {r}: {found}, not {expected}");
+    }
+}
+
+#[test]
+fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
+    let bunny = object(Shape::Bunny, DMat4::from_translation(DVec3::Y), diffuse(0.7));
+    let mut objects = boxes();
+    objects.push(bunny);
+    let scene = scene(objects, vec![], usual());
+    let prepared = Prepared::new(&scene).expect("a scene");
+    let octree = Octree::build(&prepared.vertices, &prepared.triangles, &OctreeSettings::default()).expect("octree");
+    let casters = Casters::new(&prepared, (0..prepared.triangles.len() as u32).collect(), Vec::new());
+    let points = if cfg!(debug_assertions) { 20_000 } else { 1_000_000 / 4 };
+    let mut random = Pcg64Mcg::seed_from_u64(1);
+    let lights = [
+        Light::Point(DVec3::new(3.0, 5.0, 4.0)),
+        Light::Point(DVec3::new(0.2, 0.9, 0.3)),
+        Light::Direction(DVec3::new(-1.0, 1.0, 0.5)),
+        Light::Direction(DVec3::Y),
+    ];
+    let mut in_shadow = 0;
+    for light in lights {
+        let facing = casters.facing(&light);
+        let silhouettes = casters.silhouettes(&facing);
+        let enclosed = Enclosed::new(&casters, light, &facing, &silhouettes, 1).sorted();
+        for _ in 0..points {
+            let mut within = |low: f64, high: f64| random.random_range(low..high);
+            let point = DVec3::new(within(-3.0, 3.0), within(-1.0, 3.0), within(-3.0, 3.0));
+            let t_max = if matches!(light, Light::Point(_)) { 1.0 } else { f64::INFINITY };
+            let stopped = octree.occluded(&Ray { origin: point, direction: light.from(point) }, 0.0, t_max);
+            let count = enclosed.counts(point)[0];
+            assert!(
+                count >= 0 && (count > 0) == stopped,
+                "{light:?}: {point} is in {count} volumes; stopped: {stopped}"
+            );
+            in_shadow += usize::from(stopped);
+        }
+    }
+    assert!(in_shadow > points / 2, "{in_shadow}");
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let mut objects = boxes();
+    objects.push(pane(DVec3::new(0.0, 1.0, 1.5), 0.0));
+    let scene = scene(objects, vec![lamp(DVec3::new(3.0, 5.0, 4.0)), sun()], usual());
+    let [one, four] = [1, 4].map(|threads| scan(&scene, None, threads));
+    assert!(one.film == four.film && one.spans == four.spans && one.threads != four.threads);
+}
+
+#[test]
+fn pixels_have_as_many_samples_as_were_asked_for() {
+    for samples in [1, 3, 31, 40, 100] {
+        let mut scene = scene(boxes(), vec![sun()], usual());
+        (scene.settings.width, scene.settings.height, scene.settings.samples) = (9, 7, samples);
+        let drawn = scan(&scene, None, 2);
+        assert!(drawn.complete && drawn.film.samples() == [samples; 2], "{samples}");
+    }
+}
+
+#[test]
+fn an_empty_scene_is_its_background_and_degenerate_triangles_are_nothing() {
+    let empty = scene(vec![], vec![sun()], usual());
+    let drawn = scan(&empty, None, 2);
+    let is_background = |p: &crate::picture::Pixel| p.coverage == 0.0 && (p.radiance[2] - 0.5).abs() < 1e-6;
+    assert!(drawn.picture.pixels().iter().all(is_background));
+    let line = object(Shape::Ground { size: 2.0 }, DMat4::from_scale(DVec3::new(1.0, 1.0, 0.0)), diffuse(0.5));
+    let mut objects = boxes();
+    objects.push(line);
+    agrees("a line", &scene(objects, vec![lamp(DVec3::new(3.0, 5.0, 4.0))], usual()), None);
+}
+
+#[test]
+fn a_cancelled_picture_keeps_what_was_finished() {
+    let scene = scene(boxes(), vec![sun()], usual());
+    let prepared = Prepared::new(&scene).expect("a scene");
+    let view = prepared.view();
+    let plan = Plan::new(&prepared, &view);
+    let cancelled = AtomicBool::new(false);
+    let stop = |_: u64, _: u64| cancelled.store(true, Ordering::Relaxed);
+    let watch = Watch { cancelled: &cancelled, progress: &stop };
+    let scan = ScanLine::new(&prepared, &plan).expect("ready");
+    let drawn = scan.render(&view, &order(&scene, 1), &watch).expect("a part");
+    assert!(!drawn.complete && drawn.film.samples() == [0, 16]);
+}
+
+#[test]
+fn rooks_are_one_in_each_column() {
+    for samples in [1, 2, 4, 7, 16, 64] {
+        let mut offsets = rooks(samples);
+        offsets.sort_by(f64::total_cmp);
+        let even = (0..samples).map(|i| (f64::from(i) + 0.5) / f64::from(samples));
+        assert!(offsets.iter().zip(even).all(|(a, b)| (a - b).abs() < 1e-15), "{samples}: {offsets:?}");
+    }
+}

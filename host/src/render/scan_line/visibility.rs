@@ -1,0 +1,231 @@
+//! Which triangles the samples of a strip of the picture see.
+
+use super::screen::{Corner, Outline, Point, Screen};
+use super::spans::{Lines, Nearness, Span};
+use crate::scene::Prepared;
+use rayon::prelude::*;
+
+/// No triangle, and no outline.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Something to be drawn: a triangle, whole or clipped.
+#[derive(Clone, Copy, Debug)]
+struct Facet {
+    triangle: u32,
+    /// Which of the outlines it has, if it was clipped.
+    outline: u32,
+}
+
+/// Numbers of what is drawn, for each band of the picture, in order.
+pub(super) struct Bands {
+    begins: Vec<u32>,
+    numbers: Vec<u32>,
+}
+
+impl Bands {
+    /// Sorts what is drawn by the bands that it is in.
+    ///
+    /// - `ranges`: the first and the last line of each. `lines`: of a band; `bands`: how many there are.
+    pub(super) fn new(ranges: &[[f64; 2]], lines: usize, bands: usize) -> Bands {
+        let of = |range: &[f64; 2]| {
+            let [from, to] = range.map(|y| (y / lines as f64).floor().clamp(0.0, bands as f64 - 1.0) as usize);
+            if range[1] < 0.0 || range[0] >= (lines * bands) as f64 { 0..0 } else { from..to + 1 }
+        };
+        let mut begins = vec![0u32; bands + 1];
+        ranges.iter().for_each(|range| of(range).for_each(|band| begins[band] += 1));
+        let mut sum = 0;
+        for begin in &mut begins {
+            sum += std::mem::replace(begin, sum);
+        }
+        let mut ends = begins.clone();
+        let mut numbers = vec![0; sum as usize];
+        for (range, number) in ranges.iter().zip(0..) {
+            for band in of(range) {
+                numbers[ends[band] as usize] = number;
+                ends[band] += 1;
+            }
+        }
+        Bands { begins, numbers }
+    }
+
+    /// Those of a band.
+    pub(super) fn of(&self, band: usize) -> &[u32] {
+        &self.numbers[self.begins[band] as usize..self.begins[band + 1] as usize]
+    }
+}
+
+/// The first and the last line of a polygon.
+pub(super) fn lines_of(corners: &[Point]) -> [f64; 2] {
+    corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p.y), high.max(p.y)])
+}
+
+/// All triangles in the picture.
+pub(super) struct Facets<'a> {
+    prepared: &'a Prepared,
+    points: Vec<Point>,
+    facets: Vec<Facet>,
+    outlines: Vec<Outline>,
+    bands: Bands,
+    /// For each triangle of the scene, whether light goes straight through it; empty if none is so.
+    passable: &'a [bool],
+}
+
+/// A passable surface before the opaque one of a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Layer {
+    pub(super) sample: u32,
+    pub(super) near: f64,
+    pub(super) triangle: u32,
+    /// As [`Span::turns`].
+    pub(super) turns: i32,
+}
+
+/// What the samples of a strip see.
+#[derive(Default)]
+pub(super) struct Strip {
+    /// For each sample, line by line, the nearness of its opaque surface, minus infinity if there is none.
+    pub(super) near: Vec<f64>,
+    /// Its triangle.
+    pub(super) seen: Vec<u32>,
+    /// Passable surfaces, sample by sample from the nearest.
+    pub(super) layers: Vec<Layer>,
+    /// Where the layers of each sample begin, if there are any at all.
+    pub(super) begins: Vec<u32>,
+    /// Spans that were drawn.
+    pub(super) spans: u64,
+}
+
+impl<'a> Facets<'a> {
+    /// Places the triangles in the picture.
+    ///
+    /// - `lines`: of a band; `bands`: how many there are.
+    pub(super) fn new(
+        prepared: &'a Prepared,
+        (triangles, passable): (&[u32], &'a [bool]),
+        screen: &Screen,
+        lines: usize,
+        bands: usize,
+    ) -> Facets<'a> {
+        let place = |vertex: &glam::DVec3| {
+            let corner = screen.corner(*vertex);
+            (Screen::point(&corner), screen.outside(&corner))
+        };
+        let (points, outside): (Vec<Point>, Vec<u8>) =
+            prepared.vertices.par_iter().with_min_len(1 << 12).map(place).unzip();
+        let mut facets = Vec::with_capacity(triangles.len());
+        let mut ranges = Vec::with_capacity(triangles.len());
+        let mut outlines = Vec::new();
+        for &triangle in triangles {
+            let [a, b, c] = prepared.triangles[triangle as usize].map(|i| i as usize);
+            let beside = [outside[a], outside[b], outside[c]];
+            if beside[0] & beside[1] & beside[2] != 0 {
+                continue;
+            }
+            if beside == [0; 3] {
+                let range = lines_of(&[points[a], points[b], points[c]]);
+                // Between two lines of samples there is nothing to draw.
+                if range[0].ceil() < range[1].ceil() {
+                    ranges.push(range);
+                    facets.push(Facet { triangle, outline: NONE });
+                }
+                continue;
+            }
+            let corners: [Corner; 3] = prepared.corners(triangle).map(|corner| screen.corner(corner));
+            if let Some(outline) = screen.clip(&corners, 1) {
+                ranges.push(lines_of(outline.corners()));
+                facets.push(Facet { triangle, outline: outlines.len() as u32 });
+                outlines.push(outline);
+            }
+        }
+        let bands = Bands::new(&ranges, lines, bands);
+        Facets { prepared, points, facets, outlines, bands, passable }
+    }
+
+    /// Where a vertex is in the picture; worth nothing for one that is cut off.
+    pub(super) fn point(&self, vertex: u32) -> Point {
+        self.points[vertex as usize]
+    }
+
+    /// Gives the facets of a band that are passable or not.
+    fn each(&self, band: usize, passable: bool, mut give: impl FnMut(u32, &[Point])) {
+        for &number in self.bands.of(band) {
+            let Facet { triangle, outline } = self.facets[number as usize];
+            if self.passable.get(triangle as usize).copied().unwrap_or(false) != passable {
+                continue;
+            }
+            match self.outlines.get(outline as usize) {
+                Some(outline) => give(triangle, outline.corners()),
+                None => give(triangle, &self.prepared.triangles[triangle as usize].map(|i| self.points[i as usize])),
+            }
+        }
+    }
+
+    /// Finds what the samples of some lines of a band see.
+    pub(super) fn see(&self, band: usize, lines: &Lines<'_>, strip: &mut Strip) {
+        let samples = lines.range.len() * lines.width;
+        let Strip { near, seen, layers, begins, spans } = strip;
+        near.clear();
+        near.resize(samples, f64::NEG_INFINITY);
+        seen.clear();
+        seen.resize(samples, NONE);
+        layers.clear();
+        begins.clear();
+        let first = |span: &Span| (span.line - lines.range.start) * lines.width;
+        self.each(band, false, |triangle, corners| {
+            let Some(nearness) = Nearness::new(corners) else { return };
+            lines.spans(corners, |span| {
+                *spans += 1;
+                let (start, step, bounded) = nearness.along(&span, lines.offset(span.line));
+                let range = first(&span) + span.from..first(&span) + span.to;
+                let samples = near[range.clone()].iter_mut().zip(&mut seen[range]);
+                for (i, (near, seen)) in samples.enumerate() {
+                    let value = start + step * i as f64;
+                    let value = if bounded { nearness.bound(value) } else { value };
+                    if value > *near {
+                        (*near, *seen) = (value, triangle);
+                    }
+                }
+            });
+        });
+        if self.passable.is_empty() {
+            return;
+        }
+        self.each(band, true, |triangle, corners| {
+            let Some(nearness) = Nearness::new(corners) else { return };
+            lines.spans(corners, |span| {
+                *spans += 1;
+                let (start, step, _) = nearness.along(&span, lines.offset(span.line));
+                for i in 0..span.to - span.from {
+                    let sample = first(&span) + span.from + i;
+                    let value = nearness.bound(start + step * i as f64);
+                    if value > near[sample] {
+                        layers.push(Layer { sample: sample as u32, near: value, triangle, turns: span.turns });
+                    }
+                }
+            });
+        });
+        if !layers.is_empty() {
+            layers.sort_by(|a, b| {
+                a.sample.cmp(&b.sample).then(b.near.total_cmp(&a.near)).then(a.triangle.cmp(&b.triangle))
+            });
+            begins.resize(samples + 1, 0);
+            layers.iter().for_each(|layer| begins[layer.sample as usize + 1] += 1);
+            (0..samples).for_each(|sample| begins[sample + 1] += begins[sample]);
+        }
+    }
+}
+
+impl Strip {
+    /// The layers of a sample, as a range of all of them.
+    pub(super) fn layers_of(&self, sample: usize) -> std::ops::Range<usize> {
+        match self.begins.get(sample..sample + 2) {
+            Some(range) => range[0] as usize..range[1] as usize,
+            None => 0..0,
+        }
+    }
+
+    /// Opaque surfaces and layers together.
+    pub(super) fn fragments(&self) -> usize {
+        self.near.len() + self.layers.len()
+    }
+}
