@@ -182,3 +182,26 @@ fn a_script_uses_what_is_stored() {
         assert!(code == Some(3) && errors.contains(problem) && errors.contains("wrong.rhai:1:"), "{errors}");
     }
 }
+
+#[test]
+fn a_script_lays_a_stored_picture_on_a_surface() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    // A picture of one grey, rendered: the ambient light on a half reflecting floor.
+    write(
+        folder,
+        "grey.rhai",
+        "image(4, 4); ground(9).material(0.5); ambient(1); camera(#{ from: [0, 9, 0.1], at: [0, 0, 0] });",
+    );
+    done(folder, &["render", "grey.rhai", "-o", "grey.exr"]);
+    done(folder, &["db", "add", "a.redb", "grey.exr"]);
+    std::fs::remove_file(folder.join("grey.exr")).expect("removed");
+    let script = "use_database(\"a.redb\"); image(4, 4); ground(9).material(picture(\"grey\")); ambient(1); camera(#{ from: [0, 9, 0.1], at: [0, 0, 0] });";
+    write(folder, "b.rhai", script);
+    let told = done(folder, &["render", "b.rhai", "--pixel", "2,2", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    assert!((told["radiance"][0].as_f64().expect("a number") - 0.5).abs() < 1e-4, "{told}");
+    write(folder, "c.rhai", &script.replace("\"grey\"", "\"none\""));
+    let (code, errors) = failed(folder, &["render", "c.rhai", "--pixel", "2,2"]);
+    assert!(code == Some(3) && errors.contains("none"), "{errors}");
+}

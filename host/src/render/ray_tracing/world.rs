@@ -26,7 +26,6 @@ pub(super) struct World<'a> {
 }
 
 /// What a ray meets first.
-#[expect(clippy::large_enum_variant, reason = "it is looked at once, at once; putting it aside takes longer")]
 pub(super) enum Met<'a> {
     /// An element of an object.
     Element(Found<'a>),
