@@ -14,6 +14,7 @@ pub mod surface;
 pub mod solid;
 pub mod intersection;
 pub mod illumination;
+pub mod database;
 pub mod scene;
 pub mod plan;
 pub mod render;

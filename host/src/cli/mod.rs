@@ -7,6 +7,7 @@ mod check;
 mod compose;
 mod continuity;
 mod convert;
+mod database;
 mod diff;
 mod exit;
 mod formula;
@@ -61,6 +62,7 @@ pub const COMMANDS: &[Row] = &[
     study::ROW,
     tessellate::ROW,
     convert::ROW,
+    database::ROW,
     boolean::ROW,
     intersect::ROW,
     check::ROW,

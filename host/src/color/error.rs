@@ -42,6 +42,12 @@ pub enum ColorError {
         /// The longest, nm.
         to: f64,
     },
+    /// A formula that is none.
+    #[error("{name}: its coefficients are not finite, or hold nowhere")]
+    Formula {
+        /// What.
+        name: String,
+    },
     /// A colour is not three finite numbers.
     #[error("the colour {0} is not finite")]
     Color(glam::DVec3),

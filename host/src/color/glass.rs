@@ -34,6 +34,16 @@ impl Glass {
         Err(ColorError::OutOfRange { name: self.name.clone(), wavelength, from: self.from, to: self.to })
     }
 
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`ColorError::Formula`] for a range that is empty, or numbers that are not finite.
+    pub fn check(&self) -> Result<(), ColorError> {
+        let possible = self.from > 0.0 && self.from <= self.to && self.to.is_finite();
+        let finite = self.terms.iter().flatten().all(|term| term.is_finite());
+        if possible && finite { Ok(()) } else { Err(ColorError::Formula { name: self.name.clone() }) }
+    }
+
     /// Abbe's number (n_d − 1) / (n_F − n_C): the less, the more the glass disperses.
     ///
     /// # Errors
@@ -46,6 +56,7 @@ impl Glass {
 #[cfg(test)]
 mod tests {
     use super::super::shipped::glass;
+    use super::Glass;
 
     #[test]
     fn indices_and_dispersion_are_those_of_the_catalogues() {
@@ -57,6 +68,14 @@ mod tests {
             assert!((glass.index(587.5618).expect("an index") - n_d).abs() < 6e-5 * n_d, "{name}");
             assert!((glass.abbe_number().expect("a number") / abbe - 1.0).abs() < 5e-3, "{name}");
         }
+    }
+
+    #[test]
+    fn a_range_that_is_turned_round_is_an_error() {
+        let diamond = glass("diamond").expect("a glass");
+        assert!(diamond.check().is_ok());
+        assert!(Glass { from: 800.0, to: 300.0, ..diamond.clone() }.check().is_err());
+        assert!(Glass { terms: vec![[f64::NAN, 1.0]], ..diamond }.check().is_err());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::distribution::{DistributionError, FAMILY, Tabulated};
 use super::fresnel::{Conductor, Dielectric, IndexError};
 use super::texture::{Paint, Relief, TextureError};
-use crate::color::{Color, Glass, Spectrum};
+use crate::color::{Color, ColorError, Glass, Spectrum};
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -229,6 +229,9 @@ pub enum MaterialError {
     /// A distribution cannot be made.
     #[error(transparent)]
     Distribution(#[from] DistributionError),
+    /// An impossible formula of an index.
+    #[error(transparent)]
+    Formula(#[from] ColorError),
     /// An impossible index of refraction.
     #[error(transparent)]
     Index(#[from] IndexError),
@@ -312,6 +315,9 @@ impl Material {
             }
             Body::Transparent(Transparent { index, roughness, absorption }) => {
                 power("absorption", absorption)?;
+                if let Index::Dispersive(glass) = index {
+                    glass.check()?;
+                }
                 Dielectric::new(1.0, index.at(550.0))?;
                 polished_or_rough(*roughness)
             }

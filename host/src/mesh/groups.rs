@@ -1,11 +1,12 @@
 //! Names of the surfaces of a mesh: the groups of files.
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use super::Mesh;
 
 /// A mesh and what its surfaces are called.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Grouped {
     /// The mesh; its `surfaces` are numbers of groups.
     pub mesh: Mesh,
@@ -16,7 +17,7 @@ pub struct Grouped {
 }
 
 /// What a surface looks like, in the terms of glTF.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Look {
     /// Reflected fraction of red, green and blue, linear, each 0..=1.
     pub base: DVec3,

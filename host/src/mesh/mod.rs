@@ -34,12 +34,13 @@ pub(crate) use placement::normal_matrix;
 pub use polylines::{Polylines, polylines, polylines_of_groups};
 
 use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 
 /// Triangles over shared vertices.
 ///
 /// Counter-clockwise corners seen from outside, in the right-handed modelling space (x right, y up, z
 /// towards the viewer). The per-corner tables are either empty or as long as `triangles`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
     /// Positions.
     pub vertices: Vec<DVec3>,

@@ -89,7 +89,8 @@ pub struct Settings {
     /// Whether diffuse light is carried on from surface to surface, up to the same depth.
     pub interreflection: bool,
     /// Whether light counts that a mirror or glass throws from a lamp on what is neither. Rays from the eye find it by
-    /// chance only: such pictures take very many samples. Light of a sky always counts.
+    /// chance only: such pictures take very many samples. Without it, too, highlights of lamps are cut off on what is seen
+    /// by spread light. Light of a sky always counts.
     pub caustics: bool,
     /// Whether rays carry spectra; without a word, where a material or a light has one.
     pub spectral: Option<bool>,

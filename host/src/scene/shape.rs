@@ -6,6 +6,7 @@ use super::composite::{Composite, MAX_NESTING};
 use super::meeting::meet;
 use super::prepared::largest_stretch;
 use super::sculpture::{Sculpture, SculptureError};
+use crate::database::{Content, DatabaseError, Kind, Library};
 use crate::intersection::Precision;
 use crate::mesh::{self, Mesh, MeshError, Polylines, edges::EdgeTable};
 use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError};
@@ -28,6 +29,9 @@ pub enum ShapeError {
     /// The mesh cannot be read.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The geometry cannot be had from its database.
+    #[error(transparent)]
+    Database(#[from] DatabaseError),
     /// The surface cannot be approximated to the tolerance.
     #[error(transparent)]
     Tessellation(#[from] TessellationError),
@@ -85,6 +89,13 @@ pub enum Shape {
         /// The file.
         path: PathBuf,
     },
+    /// Geometry of a database.
+    Stored {
+        /// The file of the database; none if it ships with the program.
+        database: Option<PathBuf>,
+        /// Its name.
+        name: String,
+    },
     /// Sculptured surfaces, open or closed.
     Sculpture(Box<Sculpture>),
     /// The smooth limit of a polyhedron.
@@ -132,6 +143,7 @@ impl Shape {
             Shape::HalfSpace { .. } => "half_space",
             Shape::Ground { .. } => "ground",
             Shape::Mesh { .. } => "mesh",
+            Shape::Stored { .. } => "stored",
             Shape::Sculpture(_) => "surface",
             Shape::Subdivision(_) => "subdivision",
             Shape::Composite(composite) => composite.operation.word(),
@@ -144,7 +156,7 @@ impl Shape {
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             // What sculptured surfaces are made of was checked; whether they can be tessellated is seen then.
-            Shape::Teapot | Shape::Bunny | Shape::Mesh { .. } | Shape::Sculpture(_) => Ok(()),
+            Shape::Teapot | Shape::Bunny | Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Sculpture(_) => Ok(()),
             Shape::Subdivision(cage) => cage.polyhedron().map(|_| ()).map_err(|error| error.to_string()),
             Shape::Solid(primitive) => primitive.body().map(|_| ()).map_err(|error| error.to_string()),
             Shape::HalfSpace { normal, .. } if normal.try_normalize().is_some() => Ok(()),
@@ -185,7 +197,8 @@ impl Shape {
                     || Some(rounded.object.shape.made(Tolerance::new(f64::MAX, 180.0)).ok()?.mesh.bounds()?.diagonal());
                 rounded.object.extent().or_else(|| Some(extent()? * largest_stretch(&rounded.object.transform)))
             }
-            Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Mesh { .. } => None,
+            Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny => None,
+            Shape::Mesh { .. } | Shape::Stored { .. } => None,
         }
     }
 
@@ -217,6 +230,13 @@ impl Shape {
             Shape::Rounded(rounded) => rounded.made(tolerance),
             Shape::Bunny => Ok(Made { mesh: mesh::bunny(), ..Made::default() }),
             Shape::Mesh { path } => Ok(Made { mesh: mesh::read(path)?, ..Made::default() }),
+            Shape::Stored { database, name } => {
+                let (record, _) = Library::of(database.as_deref())?.record(Kind::Geometry, name)?;
+                match record.content {
+                    Content::Geometry(grouped) => Ok(Made { mesh: grouped.mesh, ..Made::default() }),
+                    _ => Ok(Made::default()),
+                }
+            }
             Shape::HalfSpace { .. } => Err(PrimitiveError::Endless.into()),
             Shape::Solid(primitive) => {
                 let body = primitive.body()?;

@@ -4,8 +4,9 @@ use super::builder::Handle;
 use super::function::{Default, Function, Kind, Parameter};
 use super::lists::{contours, curve, indices, loops, numbers, objects, points, sides, vector};
 use super::spline::ControlMeaning;
-use crate::color::{Color, shipped};
+use crate::color::Color;
 use crate::curve::SplineCurve;
+use crate::database::Library;
 use crate::illumination::Paint;
 use crate::solid::primitive::path;
 use crate::surface::SurfaceSide;
@@ -40,13 +41,15 @@ pub(super) struct Bound {
 
 impl Bound {
     /// Assigns the values of a call to the parameters of `function` and checks each.
-    pub(super) fn new(function: &Function, values: &[Dynamic]) -> Result<Bound, String> {
+    ///
+    /// - `library`: where names of reflectances are looked up.
+    pub(super) fn new(function: &Function, values: &[Dynamic], library: &Library) -> Result<Bound, String> {
         let mut bound = Bound { values: Vec::new() };
         let mut rest = values;
         let mut parameters = function.parameters.iter();
         while let Some(first) = rest.first() {
             if rest.len() == 1 && first.is_map() && !first.is::<Handle>() {
-                bound.take_map(function, first)?;
+                bound.take_map(function, first, library)?;
                 break;
             }
             let Some(parameter) = parameters.next() else {
@@ -55,7 +58,7 @@ impl Bound {
             let three =
                 parameter.kind.takes_three() && rest.len() >= 3 && rest[..3].iter().all(|v| number(v).is_some());
             let (value, used) = if three { (Dynamic::from_array(rest[..3].to_vec()), 3) } else { (first.clone(), 1) };
-            bound.put(parameter, &value)?;
+            bound.put(parameter, &value, library)?;
             rest = &rest[used..];
         }
         let missing = |p: &&Parameter| p.default == Default::Required && bound.get(p.name).is_none();
@@ -65,7 +68,7 @@ impl Bound {
         }
     }
 
-    fn take_map(&mut self, function: &Function, map: &Dynamic) -> Result<(), String> {
+    fn take_map(&mut self, function: &Function, map: &Dynamic, library: &Library) -> Result<(), String> {
         let map = map.read_lock::<Map>().ok_or("the map cannot be read")?;
         for (key, value) in map.iter() {
             let named = function.parameters.iter().find(|p| p.kind != Kind::Object && p.name == key.as_str());
@@ -77,12 +80,18 @@ impl Bound {
             if self.get(parameter.name).is_some() {
                 return Err(format!("{key} is given twice"));
             }
-            self.put(parameter, value)?;
+            self.put(parameter, value, library)?;
         }
         Ok(())
     }
 
-    fn put(&mut self, parameter: &Parameter, value: &Dynamic) -> Result<(), String> {
+    fn put(&mut self, parameter: &Parameter, value: &Dynamic, library: &Library) -> Result<(), String> {
+        let name = value.read_lock::<rhai::ImmutableString>().filter(|_| parameter.kind == Kind::Reflectance);
+        if let Some(name) = name {
+            let found = library.reflectance(&name).map_err(|error| format!("{}: {error}", parameter.name))?;
+            self.values.push((parameter.name, Argument::Paint(Color::Spectrum(found).into())));
+            return Ok(());
+        }
         let checked = check(parameter.kind, value)
             .ok_or_else(|| format!("{} must be {}, not {}", parameter.name, parameter.kind.words(), shown(value)))?;
         self.values.push((parameter.name, checked));
@@ -176,11 +185,8 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
         Kind::Fractions => vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Argument::Vector),
         Kind::Reflectance => {
             let bands = || vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Color::Bands);
-            let name = value.read_lock::<rhai::ImmutableString>();
-            let named = |name: &str| shipped::reflectance(name).ok().map(Color::Spectrum);
-            let plain = || name.map_or_else(bands, |name| named(&name)).map(Paint::Plain);
             let paint = value.read_lock::<Paint>().map(|paint| paint.clone());
-            paint.or_else(plain).map(Argument::Paint)
+            paint.or_else(|| bands().map(Paint::Plain)).map(Argument::Paint)
         }
         Kind::Powers => vector_or_number(value).filter(|v| within(*v, 0.0, f64::MAX)).map(Argument::Vector),
         Kind::Axis => {

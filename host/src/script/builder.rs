@@ -2,6 +2,7 @@
 
 use super::definition::{Definition, Definitions};
 use super::function::Done;
+use crate::database::Library;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Object, Operation, Scene, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
@@ -20,12 +21,20 @@ pub(super) struct Builder {
     pub(super) folder: PathBuf,
     /// Values of parameters.
     pub(super) definitions: Definitions,
+    /// Where names of reflectances, spectra, materials, lights and geometry are looked up.
+    pub(super) library: Library,
 }
 
 impl Builder {
     /// An empty scene.
     pub(super) fn new(folder: PathBuf, given: &[Definition]) -> Builder {
-        Builder { scene: Scene::default(), objects: Vec::new(), folder, definitions: Definitions::new(given) }
+        Builder {
+            scene: Scene::default(),
+            objects: Vec::new(),
+            folder,
+            definitions: Definitions::new(given),
+            library: Library::default(),
+        }
     }
 
     /// The scene as it stands.

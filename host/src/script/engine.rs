@@ -148,6 +148,6 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
         let message = format!("{}: {problem}", function.name);
         Box::new(EvalAltResult::ErrorRuntime(message.into(), context.call_position()))
     };
-    let bound = Bound::new(function, values).map_err(failed)?;
+    let bound = Bound::new(function, values, &state.borrow().library).map_err(failed)?;
     (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)
 }

@@ -4,7 +4,7 @@ use super::argument::Bound;
 use super::builder::Builder;
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, Parameter, parameter};
-use crate::color::{Color, Spectrum, blackbody, daylight, shipped};
+use crate::color::{Color, Spectrum, blackbody, daylight};
 use crate::illumination::Light;
 use crate::illumination::light::{Goniometry, Patch, SkyMap};
 use crate::picture::Picture;
@@ -42,7 +42,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "point_light(#{ at: [5, 9, 6], intensity: 150 });",
         action: |builder, bound| {
             let at = bound.vector("at").unwrap_or_default();
-            let intensity = either(bound, "intensity", 4.0 * PI)?;
+            let intensity = either(builder, bound, "intensity", 4.0 * PI)?;
             add(builder, Light::Point { at, intensity })
         },
     },
@@ -57,7 +57,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "directional_light(#{ direction: [-1, -2, -1], irradiance: 2 });",
         action: |builder, bound| {
             let direction = bound.vector("direction").unwrap_or_default();
-            let irradiance = color_of_light(bound, bound.vector("irradiance").unwrap_or(DVec3::splat(PI)))?;
+            let irradiance = color_of_light(builder, bound, bound.vector("irradiance").unwrap_or(DVec3::splat(PI)))?;
             add(builder, Light::Directional { direction, irradiance })
         },
     },
@@ -80,7 +80,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "spot_light(#{ at: [0, 8, 0], to: [0, 0, 0], intensity: 80, inner: 10, outer: 25 });",
         action: |builder, bound| {
             let at = bound.vector("at").unwrap_or_default();
-            let intensity = color_of_light(bound, bound.vector("intensity").unwrap_or_default())?;
+            let intensity = color_of_light(builder, bound, bound.vector("intensity").unwrap_or_default())?;
             let (inner, outer) = (bound.number("inner").unwrap_or(15.0), bound.number("outer").unwrap_or(30.0));
             let direction = bound.vector("to").unwrap_or_default() - at;
             add(builder, Light::Spot { at, direction, intensity, inner, outer })
@@ -103,7 +103,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
             let goniometry = Goniometry::parse(&text).map_err(|error| format!("{}: {error}", path.display()))?;
             let vector = |name, default| bound.vector(name).unwrap_or(default);
-            let color = color_of_light(bound, vector("factor", DVec3::ONE))?;
+            let color = color_of_light(builder, bound, vector("factor", DVec3::ONE))?;
             let (down, front) = (vector("down", DVec3::NEG_Y), vector("front", DVec3::Z));
             add(builder, Light::Luminaire { at: vector("at", DVec3::ZERO), down, front, goniometry, color })
         },
@@ -179,7 +179,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                     Some(SkyMap { file: file.to_owned(), picture: Some(Arc::new(picture)) })
                 }
             };
-            let radiance = color_of_light(bound, bound.vector("radiance").unwrap_or(DVec3::ONE))?;
+            let radiance = color_of_light(builder, bound, bound.vector("radiance").unwrap_or(DVec3::ONE))?;
             add(builder, Light::Sky { map, radiance, turned: bound.number("turned").unwrap_or(0.0) })
         },
     },
@@ -206,44 +206,44 @@ pub(super) const FUNCTIONS: &[Function] = &[
 ];
 
 /// The strength of a light that is given, or its power over what one unit of strength emits.
-fn either(bound: &Bound, strength: &str, flux: f64) -> Result<Color, String> {
+fn either(builder: &Builder, bound: &Bound, strength: &str, flux: f64) -> Result<Color, String> {
     let bands = match (bound.vector(strength), bound.vector("power")) {
         (Some(strength), None) => strength,
         (None, Some(power)) => power / flux,
         _ => return Err(format!("give either its {strength} or its power")),
     };
-    color_of_light(bound, bands)
+    color_of_light(builder, bound, bands)
 }
 
 fn add_area(builder: &mut Builder, bound: &Bound, patch: Patch) -> Done {
     // A surface of radiance 1 emits pi on each unit of area.
-    let radiance = either(bound, "radiance", PI * patch.area().max(f64::MIN_POSITIVE))?;
+    let radiance = either(builder, bound, "radiance", PI * patch.area().max(f64::MIN_POSITIVE))?;
     add(builder, Light::Area { patch, radiance })
 }
 
 /// Bands as a light, with a spectrum if one is given.
-pub(super) fn color_of_light(bound: &Bound, bands: DVec3) -> Result<Color, String> {
+pub(super) fn color_of_light(builder: &Builder, bound: &Bound, bands: DVec3) -> Result<Color, String> {
     let Some(name) = bound.text("spectrum") else { return Ok(Color::Bands(bands)) };
-    let spectrum = spectrum(name)?;
+    let spectrum = spectrum(builder, name)?;
     let color = Color::light_of(&spectrum, bands.dot(LUMINANCE));
     color.ok_or_else(|| format!("the spectrum {name} cannot be seen"))
 }
 
 /// A spectrum of light by its name.
-fn spectrum(name: &str) -> Result<Spectrum, String> {
+fn spectrum(builder: &Builder, name: &str) -> Result<Spectrum, String> {
     let mut words = name.split_whitespace();
     let (kind, kelvin) = (words.next().unwrap_or_default(), words.next());
     let temperature = |text: &str| text.parse::<f64>().map_err(|_| format!("{text} is no temperature"));
     match (kind, kelvin) {
         ("blackbody", Some(kelvin)) => blackbody::spectrum(temperature(kelvin)?),
         ("daylight", Some(kelvin)) => daylight::spectrum(temperature(kelvin)?),
-        _ => shipped::light(name),
+        _ => return builder.library.light(name).map_err(|error| error.to_string()),
     }
     .map_err(|error| error.to_string())
 }
 
 /// Adds a light that was checked.
-fn add(builder: &mut Builder, light: Light) -> Done {
+pub(super) fn add(builder: &mut Builder, light: Light) -> Done {
     if builder.scene.lights.len() >= MAX_LIGHTS {
         return Err(format!("more than {MAX_LIGHTS} lights"));
     }

@@ -49,7 +49,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         summary: "Makes an object of a metal, with the refractive indices that were measured of it.",
         parameters: &[
             OBJECT,
-            parameter("name", Kind::Text, Required, "copper, gold, silver, aluminium or iron"),
+            parameter("name", Kind::Text, Required, "copper, gold, silver, aluminium, iron, or one of a database"),
             ROUGHNESS,
             parameter(
                 "distribution",
@@ -126,7 +126,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[OBJECT, parameter("radiance", Kind::Powers, Required, "its radiance, W/(m² sr)"), SPECTRUM],
         example: "pot.emits([3, 2, 1]);",
         action: |builder, bound| {
-            let emission = color_of_light(bound, bound.vector("radiance").unwrap_or_default())?;
+            let emission = color_of_light(builder, bound, bound.vector("radiance").unwrap_or_default())?;
             let object = builder.object(bound.object("object"))?;
             object.material.get_or_insert_default().emission = emission;
             Ok(value(bound.object("object")))
@@ -146,7 +146,7 @@ fn give(builder: &mut Builder, bound: &Bound, body: Body) -> Done {
 
 fn add_metal(builder: &mut Builder, bound: &Bound) -> Done {
     let shipped::Metal { n, k } =
-        shipped::metal(bound.text("name").unwrap_or_default()).map_err(|error| error.to_string())?;
+        builder.library.metal(bound.text("name").unwrap_or_default()).map_err(|error| error.to_string())?;
     let roughness = bound.number("roughness").unwrap_or(0.0);
     let name = bound.text("distribution");
     let finish = match (bound.vector("along"), bound.number("across")) {

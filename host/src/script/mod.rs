@@ -16,6 +16,7 @@ mod sculpting;
 mod shaping;
 mod solids;
 mod spline;
+mod stored;
 mod subdividing;
 mod surfaces;
 mod table;
@@ -44,6 +45,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
         lighting::FUNCTIONS,
+        stored::FUNCTIONS,
         table::FUNCTIONS,
     ]
     .into_iter()
@@ -62,7 +64,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 10] = [
+pub const EMBEDDED: [Embedded; 11] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -107,6 +109,11 @@ pub const EMBEDDED: [Embedded; 10] = [
         name: "textures",
         summary: "wood, marble, tiles and plaster: patterns through bodies and on surfaces, and reliefs",
         text: include_str!("../../scenes/textures.rhai"),
+    },
+    Embedded {
+        name: "room",
+        summary: "a living room with the sun in its window, a mirror and glass; three views",
+        text: include_str!("../../scenes/room.rhai"),
     },
     Embedded {
         name: "vases",

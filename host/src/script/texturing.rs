@@ -4,6 +4,7 @@ use super::argument::Bound;
 use super::builder::{Builder, value};
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, Parameter, parameter};
+use crate::database::{self, Record};
 use crate::illumination::Paint;
 use crate::illumination::texture::{Content, Image, Laying, Motif, Pattern, Relief};
 use glam::DVec3;
@@ -20,8 +21,12 @@ const SIZE_ON_SURFACE: Parameter = parameter(
 );
 const AT: Parameter = parameter("at", Kind::Vector, Is("[0, 0, 0]"), "where it begins");
 const UP: Parameter = parameter("up", Kind::Vector, Is("[0, 1, 0]"), "its y direction");
-const FILE: Parameter =
-    parameter("file", Kind::Text, Required, "a PNG or EXR file; relative to the folder of the script");
+const FILE: Parameter = parameter(
+    "file",
+    Kind::Text,
+    Required,
+    "a PNG or EXR file, relative to the folder of the script; or a texture of a database",
+);
 
 /// The functions.
 pub(super) const FUNCTIONS: &[Function] = &[
@@ -150,9 +155,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
 ];
 
+/// An image from a file or, if there is none of that name, from the databases.
 fn read(builder: &Builder, bound: &Bound, content: Content) -> Result<Image, String> {
-    let path = builder.folder.join(bound.text("file").unwrap_or_default());
-    Image::read(&path, content).map_err(|error| error.to_string())
+    let name = bound.text("file").unwrap_or_default();
+    let path = builder.folder.join(name);
+    match builder.library.record(database::Kind::Texture, name) {
+        Ok((Record { content: database::Content::Texture(picture), .. }, _)) if !path.exists() => {
+            Ok(Image::of_picture(name.to_owned(), &picture, content))
+        }
+        _ => Image::read(&path, content).map_err(|error| error.to_string()),
+    }
 }
 
 fn laying(bound: &Bound, solid: bool) -> Laying {

@@ -163,6 +163,7 @@ impl IlluminationStudy {
                 y_label: "integral of D over the viewer".into(),
                 note: format!("1 is normalised; more creates energy; cut at {LOWEST} and {HIGHEST}"),
                 x_axis: Axis::Linear,
+                y_axis: Axis::Logarithmic,
                 series: self.rows.iter().filter(|row| row.roughness == m).map(of_row).collect(),
             }
         };

@@ -1,15 +1,18 @@
-//! Plots over logarithmic axes, or a linear and a logarithmic one, as SVG and PNG, with a font of their own: nothing needs to be installed.
+//! Plots over logarithmic and linear axes, as SVG and PNG, with a font of their own: nothing needs to be installed.
 
-use plotters::coord::combinators::IntoLogRange;
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
 /// Size of a plot in points; the PNG has [`PNG_SCALE`] pixels for each.
 const SIZE: (u32, u32) = (760, 500);
 const PNG_SCALE: u32 = 2;
+/// More points than these are drawn as a curve.
+const CURVE: usize = 24;
 /// Name under which the embedded font is known to the plotting library, and a generic family in SVG.
 const FONT: &str = "sans-serif";
 /// Colours of the series: dark enough on white, and told apart by people who do not tell red from green.
@@ -35,7 +38,57 @@ pub enum Axis {
     Logarithmic,
 }
 
-/// Curves over a logarithmic vertical axis.
+impl Axis {
+    /// Where a number stands on the axis.
+    fn place(self, number: f64) -> f64 {
+        if self == Axis::Linear { number } else { number.log10() }
+    }
+
+    /// The number that stands at a place.
+    fn number(self, place: f64) -> f64 {
+        if self == Axis::Linear { place } else { 10f64.powf(place) }
+    }
+
+    /// The places of the ticks between two places.
+    fn ticks(self, low: f64, high: f64) -> Vec<f64> {
+        if self == Axis::Logarithmic {
+            return ticks(self.number(low), self.number(high)).into_iter().map(f64::log10).collect();
+        }
+        // Steps of 1, 2 or 5 times a power of ten, ten or so of them.
+        let rough = (high - low) / 12.0;
+        let power = 10f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= rough).unwrap_or(rough);
+        let count = (high / step).floor() as i64;
+        let first = (low / step).ceil() as i64;
+        (first..=count).map(|index| index as f64 * step).collect()
+    }
+}
+
+/// The places along an axis, and those of its ticks.
+struct Places {
+    range: Range<f64>,
+    ticks: Vec<f64>,
+}
+
+impl Ranged for Places {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, place: &f64, limit: (i32, i32)) -> i32 {
+        let part = (place - self.range.start) / (self.range.end - self.range.start);
+        limit.0 + (part * f64::from(limit.1 - limit.0)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        self.ticks.clone()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.range.clone()
+    }
+}
+
+/// Curves over two axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
     /// The heading.
@@ -48,6 +101,8 @@ pub struct Plot {
     pub note: String,
     /// How the horizontal axis is divided.
     pub x_axis: Axis,
+    /// How the vertical axis is divided; a linear one begins at 0, if nothing is below.
+    pub y_axis: Axis,
     /// The curves.
     pub series: Vec<Series>,
 }
@@ -75,8 +130,8 @@ pub struct Point {
 /// Why there is no plot.
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
-    /// No point can be shown on logarithmic axes.
-    #[error("nothing to plot: no point has both coordinates above 0")]
+    /// No point can be shown on the axes.
+    #[error("nothing to plot: no point has a place on the axes")]
     Empty,
     /// The plotting library gave up.
     #[error("plot: {0}")]
@@ -138,45 +193,28 @@ impl Plot {
 
     /// The points that have a place on the axes.
     fn visible<'a>(&self, series: &'a Series) -> impl Iterator<Item = &'a Point> {
-        let linear = self.x_axis == Axis::Linear;
-        let seen = move |p: &&Point| (linear || p.x > 0.0) && p.y > 0.0 && p.x.is_finite() && p.y.is_finite();
-        series.points.iter().filter(seen)
+        let has_place = |axis: Axis, x: f64| x.is_finite() && (axis == Axis::Linear || x > 0.0);
+        let (x_axis, y_axis) = (self.x_axis, self.y_axis);
+        series.points.iter().filter(move |p| has_place(x_axis, p.x) && has_place(y_axis, p.y))
     }
 
-    /// The decades of the logarithmic axis that stand for one unit of a linear one: two for the greatest number.
-    fn decades(&self) -> f64 {
-        let greatest = self.series.iter().flat_map(|s| self.visible(s)).map(|p| p.x.abs()).fold(0.0, f64::max);
-        if greatest > 0.0 { 2.0 / greatest } else { 1.0 }
-    }
-
-    /// The place of a number on the horizontal axis, which the plotting library takes for logarithmic.
-    fn place(&self, x: f64) -> f64 {
-        match self.x_axis {
-            Axis::Linear => 10f64.powf(x * self.decades()),
-            Axis::Logarithmic => x,
-        }
-    }
-
-    /// Places and numbers of the ticks of the horizontal axis.
-    fn x_ticks(&self, low: f64, high: f64) -> Vec<(f64, f64)> {
-        if self.x_axis == Axis::Logarithmic {
-            return ticks(low, high).into_iter().map(|x| (x, x)).collect();
-        }
-        let greatest = 2.0 / self.decades();
-        // Tens, or their like for other magnitudes; thirty at the most.
-        let mut step = 10f64.powf((greatest / 2.0).log10().floor());
-        step *= if greatest / step > 15.0 { 2.0 } else { 1.0 };
-        let numbers = (-15..=15).map(|i| f64::from(i) * step).filter(|x| *x <= greatest * 1.001);
-        numbers.map(|x| (self.place(x), x)).filter(|(place, _)| (low..=high).contains(place)).collect()
-    }
-
-    /// Least and greatest value on an axis, with a margin; at least a factor of four apart.
-    fn range(&self, of: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
+    /// Least and greatest place on an axis, with a margin; on a logarithmic one at least a factor of four apart.
+    fn range(&self, axis: Axis, of: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
         let values = self.series.iter().flat_map(|series| self.visible(series)).map(of);
-        let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v), h.max(v)));
-        let middle = (low * high).sqrt();
-        let (low, high) = (low.min(middle / 2.0), high.max(middle * 2.0));
-        (low <= high).then_some((low / 1.5, high * 1.8))
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        if low > high {
+            return None;
+        }
+        match axis {
+            Axis::Logarithmic => {
+                let middle = (low * high).sqrt();
+                Some((axis.place(low.min(middle / 2.0) / 1.5), axis.place(high.max(middle * 2.0) * 1.8)))
+            }
+            Axis::Linear => {
+                let span = if high > low { high - low } else { high.abs().max(1.0) };
+                Some((low - 0.05 * span, high + 0.08 * span))
+            }
+        }
     }
 
     fn draw<B: DrawingBackend>(
@@ -186,14 +224,18 @@ impl Plot {
     ) -> Result<(), PlotError> {
         embed_font();
         let failed = |e: &dyn std::fmt::Display| PlotError::Draw(e.to_string());
-        let (x0, x1) = self.range(|p| self.place(p.x)).ok_or(PlotError::Empty)?;
+        let (x0, x1) = self.range(self.x_axis, |p| p.x).ok_or(PlotError::Empty)?;
         // On even steps curves end anywhere: the legend gets a place of its own beside them.
-        let x1 = if self.x_axis == Axis::Linear { x1 * 4.0 } else { x1 };
-        let (y0, y1) = self.range(|p| p.y).ok_or(PlotError::Empty)?;
+        let x1 = if self.x_axis == Axis::Linear { x1 + 0.35 * (x1 - x0) } else { x1 };
+        let (y0, y1) = self.range(self.y_axis, |p| p.y).ok_or(PlotError::Empty)?;
+        // What is never negative begins at 0.
+        let is_above =
+            self.y_axis == Axis::Linear && self.series.iter().flat_map(|s| self.visible(s)).all(|p| p.y >= 0.0);
+        let y0 = if is_above { 0.0 } else { y0 };
         let points = |n: u32| f64::from(n * scale);
-        let x_ticks = self.x_ticks(x0, x1);
-        let places: Vec<f64> = x_ticks.iter().map(|tick| tick.0).collect();
-        let number = |place: &f64| x_ticks.iter().find(|tick| tick.0 == *place).map_or(*place, |tick| tick.1);
+        let (x_ticks, y_ticks) = (self.x_axis.ticks(x0, x1), self.y_axis.ticks(y0, y1));
+        let (x_axis, y_axis) = (self.x_axis, self.y_axis);
+        let place = |p: &Point| (x_axis.place(p.x), y_axis.place(p.y));
         area.fill(&WHITE).map_err(|e| failed(&e))?;
         let (head, body) = area.split_vertically(54 * scale);
         let dark = RGBColor(30, 30, 30);
@@ -206,17 +248,14 @@ impl Plot {
             .margin_right(24 * scale)
             .x_label_area_size(46 * scale)
             .y_label_area_size(74 * scale)
-            .build_cartesian_2d(
-                (x0..x1).log_scale().with_key_points(places),
-                (y0..y1).log_scale().with_key_points(ticks(y0, y1)),
-            )
+            .build_cartesian_2d(Places { range: x0..x1, ticks: x_ticks }, Places { range: y0..y1, ticks: y_ticks })
             .map_err(|e| failed(&e))?;
         chart
             .configure_mesh()
             .x_desc(self.x_label.as_str())
             .y_desc(self.y_label.as_str())
-            .x_label_formatter(&|x| tick_text(number(x)))
-            .y_label_formatter(&|y| tick_text(*y))
+            .x_label_formatter(&|x| tick_text(x_axis.number(*x)))
+            .y_label_formatter(&|y| tick_text(y_axis.number(*y)))
             .label_style(text(13))
             .axis_desc_style(text(15))
             .axis_style(dark.stroke_width(scale))
@@ -226,8 +265,10 @@ impl Plot {
             .draw()
             .map_err(|e| failed(&e))?;
         for (series, color) in self.series.iter().zip(COLORS.into_iter().cycle()) {
-            let line: Vec<(f64, f64)> = self.visible(series).map(|p| (self.place(p.x), p.y)).collect();
+            let line: Vec<(f64, f64)> = self.visible(series).map(place).collect();
             let style = color.stroke_width(2 * scale);
+            // Many points are a curve.
+            let dot = if line.len() > CURVE { 1 } else { 4 };
             let key = move |(x, y): (i32, i32)| PathElement::new([(x, y), (x + 18 * scale as i32, y)], style);
             chart
                 .draw_series(LineSeries::new(line.iter().copied(), style))
@@ -235,15 +276,14 @@ impl Plot {
                 .label(series.name.as_str())
                 .legend(key);
             chart
-                .draw_series(line.iter().map(|p| Circle::new(*p, 4 * scale, color.filled())))
+                .draw_series(line.iter().map(|p| Circle::new(*p, dot * scale, color.filled())))
                 .map_err(|e| failed(&e))?;
             // Errors fall as time grows: below and to the left of the last curve there is room.
-            let place = Pos::new(HPos::Right, VPos::Top);
-            let small = TextStyle::from((FONT, points(12))).color(&color).pos(place);
+            let corner = Pos::new(HPos::Right, VPos::Top);
+            let small = TextStyle::from((FONT, points(12))).color(&color).pos(corner);
             let beside_point = (-6 * scale as i32, 3 * scale as i32);
-            let beside = |p: &Point| {
-                EmptyElement::at((self.place(p.x), p.y)) + Text::new(p.label.clone(), beside_point, small.clone())
-            };
+            let beside =
+                |p: &Point| EmptyElement::at(place(p)) + Text::new(p.label.clone(), beside_point, small.clone());
             chart.draw_series(self.visible(series).map(beside)).map_err(|e| failed(&e))?;
         }
         chart
@@ -301,6 +341,7 @@ mod tests {
             y_label: "error".into(),
             note: "labels: samples".into(),
             x_axis: Axis::Logarithmic,
+            y_axis: Axis::Logarithmic,
             series: vec![Series { name: "RMSE".into(), points: (0..6).map(point).collect() }],
         }
     }
@@ -323,12 +364,19 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_axis_begins_at_zero_and_has_even_ticks() {
-        let mut plot = Plot { x_axis: Axis::Linear, ..sample() };
-        plot.series[0].points.iter_mut().enumerate().for_each(|(i, p)| p.x = 18.0 * i as f64);
-        let ticks: Vec<f64> = plot.x_ticks(plot.place(0.0), plot.place(90.0)).iter().map(|tick| tick.1).collect();
-        assert_eq!(ticks, [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0]);
-        assert!(plot.svg().expect("drawn").contains("\n70\n"));
+    fn a_linear_axis_has_even_ticks() {
+        assert_eq!(Axis::Linear.ticks(0.0, 90.0), [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0]);
+        assert_eq!(Axis::Linear.ticks(-0.01, 0.1).iter().filter(|tick| **tick < 0.0).count(), 1);
+        let mut plot = Plot { x_axis: Axis::Linear, y_axis: Axis::Linear, ..sample() };
+        plot.series[0]
+            .points
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, p)| (p.x, p.y) = (380.0 + 80.0 * i as f64, 0.1 * i as f64));
+        let svg = plot.svg().expect("drawn");
+        for text in ["\n400\n", "\n700\n", "\n0\n", "\n0.5\n"] {
+            assert!(svg.contains(text), "{text}");
+        }
     }
 
     #[test]

@@ -191,6 +191,7 @@ impl Study {
             y_label: "error".into(),
             note: format!("numbers at the last curve, for the points above too: {}", self.setting),
             x_axis: Axis::Logarithmic,
+            y_axis: Axis::Logarithmic,
             series: series.collect(),
         }
     }
@@ -212,6 +213,7 @@ impl Study {
             y_label: "cost, in the unit of each curve".into(),
             note: format!("no setting has an error: {} 0 at all of them", self.error_names.join(", ")),
             x_axis: Axis::Logarithmic,
+            y_axis: Axis::Logarithmic,
             series: series.collect(),
         }
     }

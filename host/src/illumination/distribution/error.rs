@@ -38,6 +38,14 @@ pub enum DistributionError {
     /// A table too small to hold a function, or too large to be kept.
     #[error("a table of {0} steps: from 4 to 96 are possible")]
     Resolution(usize),
+    /// A table whose numbers contradict each other.
+    #[error("the table of {name} contradicts itself: {problem}")]
+    Table {
+        /// The distribution.
+        name: String,
+        /// What is wrong.
+        problem: &'static str,
+    },
     /// A function that emits nothing cannot be normalised.
     #[error("{name} emits nothing for light from {light} (z is the normal): it cannot be normalised")]
     Nothing {

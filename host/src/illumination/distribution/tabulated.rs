@@ -32,6 +32,7 @@ pub struct Accuracy {
 /// The table has `steps` + 1 angles of the light, `steps` rings of cells for the viewer and 2 `steps` cells in each
 /// ring. D / (N·V) is linear between the angles of the light and between the middles of the cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Plain")]
 pub struct Tabulated {
     name: String,
     steps: usize,
@@ -40,6 +41,43 @@ pub struct Tabulated {
     /// For each angle of the light: the part of what is emitted up to each cell.
     below: Vec<f64>,
     accuracy: Accuracy,
+}
+
+/// A table as it is stored; checked when it is read.
+#[derive(Deserialize)]
+struct Plain {
+    name: String,
+    steps: usize,
+    values: Vec<f64>,
+    below: Vec<f64>,
+    accuracy: Accuracy,
+}
+
+impl TryFrom<Plain> for Tabulated {
+    type Error = DistributionError;
+
+    fn try_from(Plain { name, steps, values, below, accuracy }: Plain) -> Result<Tabulated, DistributionError> {
+        if !STEPS.contains(&steps) {
+            return Err(DistributionError::Resolution(steps));
+        }
+        let cells = 2 * steps * steps;
+        let problem = if values.len() != (steps + 1) * cells || below.len() != values.len() {
+            "it has not one number for each cell"
+        } else if values.iter().any(|value| !(*value >= 0.0 && value.is_finite())) {
+            "a value is negative or not finite"
+        } else if below.chunks(cells).any(|row| !rises_to_one(row)) {
+            "its sums do not rise to 1"
+        } else {
+            return Ok(Tabulated { name, steps, values, below, accuracy });
+        };
+        Err(DistributionError::Table { name, problem })
+    }
+}
+
+/// Whether sums of parts rise from 0 or more to 1, but for rounding.
+fn rises_to_one(sums: &[f64]) -> bool {
+    let starts = sums.first().is_some_and(|first| *first >= 0.0);
+    starts && sums.is_sorted() && sums.last().is_some_and(|last| (last - 1.0).abs() < 1e-9)
 }
 
 impl Tabulated {

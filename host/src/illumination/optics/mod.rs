@@ -119,6 +119,12 @@ impl Optics {
         lobes.flat_map(|lobe| lobe.mirrored(sighting)).flatten()
     }
 
+    /// What goes straight through, if anything does.
+    pub fn straight(&self, sighting: &Sighting) -> Option<Onward> {
+        let weight = self.passing.as_ref()?.of(sighting);
+        Some(Onward { light: -sighting.view, weight, density: None, is_straight: true })
+    }
+
     /// One direction, drawn about as what comes from there counts; none where what is drawn counts nothing.
     ///
     /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.

@@ -34,7 +34,7 @@ struct Level {
 pub enum Content {
     /// Fractions of light.
     Color,
-    /// Numbers: what an eight-bit file holds is not decoded from sRGB.
+    /// Numbers, that were taken for light of sRGB when they were read: they are encoded again.
     Numbers,
 }
 
@@ -45,21 +45,27 @@ impl PartialEq for Image {
 }
 
 impl Image {
-    /// Reads a PNG or EXR file. What is below 0 or above 1 is cut off; coverage is not heeded.
+    /// Reads a PNG or EXR file, as [`Image::of_picture`].
     ///
     /// # Errors
     /// [`PictureError`].
     pub fn read(path: &Path, content: Content) -> Result<Image, PictureError> {
         let picture = Picture::read_finite(path)?;
-        let decoded = content == Content::Numbers && !Picture::is_exr(path);
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        // The bytes of an eight-bit file were decoded as if they were light.
+        let content = if Picture::is_exr(path) { Content::Color } else { content };
+        Ok(Image::of_picture(name, &picture, content))
+    }
+
+    /// An image of a picture. What is below 0 or above 1 is cut off; coverage is not heeded.
+    pub fn of_picture(name: String, picture: &Picture, content: Content) -> Image {
         let texel = |x: u32, y: u32| {
             let pixel = picture.get(x, y).unwrap_or_default();
             let cover = if pixel.coverage > 0.0 { f64::from(pixel.coverage) } else { 1.0 };
             let linear = DVec3::from_array(pixel.radiance.map(f64::from)) / cover;
-            if decoded { linear.map(encoded) } else { linear }
+            if content == Content::Numbers { linear.map(encoded) } else { linear }
         };
-        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        Ok(Image::new(name, picture.width(), picture.height(), texel))
+        Image::new(name, picture.width(), picture.height(), texel)
     }
 
     /// An image of a function of column and row.

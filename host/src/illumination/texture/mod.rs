@@ -17,7 +17,9 @@ pub use place::{Place, Side};
 
 use crate::color::Color;
 use glam::{DMat3, DVec2, DVec3};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
+use std::cell::Cell;
 
 /// Most patterns within each other.
 pub const MAX_NESTING: u32 = 16;
@@ -44,7 +46,23 @@ pub struct Pattern {
     /// How it lies.
     pub laying: Laying,
     /// The paints: two, or none for an image, which has its own.
+    #[serde(deserialize_with = "nested")]
     pub paints: Vec<Paint>,
+}
+
+/// Reads the paints of a pattern, no deeper than patterns may be nested: a file must not exhaust the stack.
+fn nested<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Paint>, D::Error> {
+    thread_local! {
+        static DEPTH: Cell<u32> = const { Cell::new(0) };
+    }
+    let depth = DEPTH.get();
+    if depth > MAX_NESTING {
+        return Err(D::Error::custom(TextureError::Nesting));
+    }
+    DEPTH.set(depth + 1);
+    let paints = Vec::deserialize(deserializer);
+    DEPTH.set(depth);
+    paints
 }
 
 /// How a pattern lies.

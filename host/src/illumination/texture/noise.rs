@@ -8,7 +8,7 @@ use glam::{DVec3, I64Vec3};
 /// Perlin 2002, improving noise: the polynomial of fifth degree and the twelve gradients.
 pub(super) fn noise(at: DVec3) -> f64 {
     // Beyond the whole numbers that doubles can count there is no lattice.
-    if !(at.abs().max_element() < 1e15) {
+    if !at.is_finite() || at.abs().max_element() >= 1e15 {
         return 0.0;
     }
     let floor = at.floor();

@@ -72,10 +72,15 @@ impl<'a> Direct<'a> {
 
     /// What a beam adds.
     fn arriving(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, counts: &mut RayCounts) -> Channels {
-        let Encounter { found, frame, sighting, parts, .. } = encounter;
+        let Encounter { found, frame, sighting, parts, highest, .. } = encounter;
         let optics = found.optics;
         let light = frame.local(beam.towards);
         let mut continued = optics.value(Which::Continued, sighting, light);
+        let source = &self.world.appearance.sources[index].1;
+        let most = continued.max();
+        if most > *highest && !source.is_sky() {
+            continued *= highest / most;
+        }
         if let Some(density) = beam.density
             && continued != Channels::ZERO
         {

@@ -204,3 +204,60 @@ fn a_sphere_far_from_the_origin_is_lit_as_one_at_the_origin() {
         assert!(apart.rmse < 1e-2, "{place}: {apart:?}");
     }
 }
+
+#[test]
+fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
+    // Spread and narrow lobes, a lamp with a size and one that emits as an object, with and without a pane between.
+    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.5), index: 1.5, roughness: 0.3 });
+    let clear = Classic { transparency: Paint::grey(1.0), ..diffuse(0.0) };
+    let shining = Material { emission: Color::grey(8.0), ..Material::from(diffuse(0.0)) };
+    let patch = Patch::Rectangle { corner: DVec3::new(-1.5, 2.0, -0.5), across: DVec3::X, up: DVec3::Z };
+    let lamp = Light::Area { patch, radiance: Color::grey(8.0) };
+    let seen = |pane: bool, depth: u32| {
+        let floor = object(Shape::Ground { size: 4.0 }, DMat4::IDENTITY, coat.clone());
+        let other = DMat4::from_translation(DVec3::new(1.0, 2.0, 0.0)) * DMat4::from_rotation_x(PI);
+        let mut objects = vec![floor, object(Shape::Ground { size: 1.0 }, other, shining.clone())];
+        if pane {
+            objects.push(object(Shape::Ground { size: 20.0 }, DMat4::from_translation(DVec3::Y), clear.clone()));
+        }
+        let mut scene = scene(objects, vec![lamp.clone()], 12);
+        (scene.settings.samples, scene.settings.reflection_depth) = (256, depth);
+        scene.settings.interreflection = true;
+        let below = from_above(1.0);
+        mean(&trace(&scene, Some(below), false, 2))
+    };
+    for depth in [1, 4] {
+        let (with, without) = (seen(true, depth + 1), seen(false, depth));
+        assert!((with / without - 1.0).abs() < 0.01, "{depth}: {with} {without}");
+    }
+}
+
+#[test]
+fn highlights_that_spread_light_sees_are_cut_off_unless_caustics_count() {
+    // A small bright lamp over a smooth coat beside a matt wall: what the wall shows of it comes by chance only.
+    let wall = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0)) * DMat4::from_rotation_x(PI / 2.0);
+    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.0), index: 1.5, roughness: 0.03 });
+    let lamp = Patch::Sphere { center: DVec3::new(0.0, 1.5, 1.0), radius: 0.02 };
+    let spots = |caustics: bool| {
+        let floor = object(Shape::Ground { size: 4.0 }, DMat4::IDENTITY, coat.clone());
+        let wall = object(Shape::Ground { size: 4.0 }, wall, diffuse(0.8));
+        let lamp = Light::Area { patch: lamp, radiance: Color::grey(2000.0) };
+        let mut scene = scene(vec![floor, wall], vec![lamp], 24);
+        (scene.settings.samples, scene.settings.interreflection, scene.settings.caustics) = (16, true, caustics);
+        let camera = Camera {
+            from: DVec3::new(0.0, 1.0, 3.0),
+            at: DVec3::new(0.0, 1.0, -1.0),
+            up: DVec3::Y,
+            field_of_view: 25.0,
+            near: 0.1,
+            far: None,
+            lens: None,
+            parallel: None,
+        };
+        scene.camera = Some(camera);
+        let film = trace(&scene, None, false, 2).film;
+        film.tallies().iter().map(|tally| tally.variance()).fold(0.0, f64::max).sqrt()
+    };
+    let (with, without) = (spots(true), spots(false));
+    assert!(without < 0.4 * with, "{without} {with}");
+}

@@ -17,14 +17,27 @@ use glam::DVec3;
 pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
 /// Where a way parts, both parts are followed as long as each passes on so much of the light.
 const WORTH_PARTING: f64 = 1.0 / 64.0;
+/// What a lamp reflects on an element that is seen by spread light is cut off at this value, 1/sr, unless caustics count:
+/// a diffuse surface has at most 1/π.
+///
+/// # Source
+/// Ours, in the place of the path regularisation of Kaplanyan and Dachsbacher 2013.
+const HIGHEST: f64 = 1.0;
+/// A direction that is drawn with a greater density, 1/sr, is that of a highlight and not of spread light.
+const NARROW: f64 = 1.5;
 /// Most legs of a sample that wait to be followed.
 const MOST_WAITING: usize = 8;
 
 /// A part of a sample's way.
+#[derive(Clone, Copy)]
 struct Leg {
     sight: Sight,
     /// How much of the radiance along it comes to the eye.
     passed: Channels,
+    /// How much of the light of a lamp counts that it meets.
+    lamps: f64,
+    /// How far from the beginning of its ray it begins, scene units: more than 0 behind what it went straight through.
+    begin: f64,
     /// How many legs came before it.
     depth: u32,
     /// Unlike that of all other legs of the sample.
@@ -108,6 +121,8 @@ impl<'a> Tracer<'a> {
         let first = Leg {
             sight: *sight,
             passed: Channels::ONE,
+            lamps: 1.0,
+            begin: 0.0,
             depth: 0,
             number: 1,
             density: None,
@@ -136,7 +151,7 @@ impl<'a> Tracer<'a> {
                     log.note(|| Note::term(leg.depth, "meets nothing", leg.passed * radiance));
                 }
                 Met::Glow(index, glow) => {
-                    let absorbed = leg.media.absorbed(self.world, glow.t * direction.length(), comb);
+                    let absorbed = leg.media.absorbed(self.world, glow.t * direction.length() - leg.begin, comb);
                     let part = self.part(&leg, glow.density);
                     let radiance = absorbed * glow.radiance * part;
                     seen.radiance += leg.passed * radiance;
@@ -168,14 +183,14 @@ impl<'a> Tracer<'a> {
     ) -> Channels {
         let optics = found.optics;
         let towards = leg.sight.ray.direction.normalize();
-        leg.passed *= leg.media.absorbed(self.world, found.distance, comb);
+        leg.passed *= leg.media.absorbed(self.world, found.distance - leg.begin, comb);
         log.note(|| Note::element(leg.depth, self.world.appearance.prepared, found));
         let mut sum = Channels::ZERO;
         if let Some((emission, density)) = self.world.emitted(found, towards, comb) {
             sum += leg.passed * emission * self.part(&leg, density);
             log.note(|| Note::term(leg.depth, "emits", sum));
         }
-        if leg.for_lights {
+        if leg.for_lights && !optics.is_passable() {
             return sum;
         }
         let normal = found.element.normal;
@@ -186,6 +201,11 @@ impl<'a> Tracer<'a> {
         let lane = leg.lane.unwrap_or(((parting * lanes as f64) as usize).min(lanes - 1));
         let side = leg.media.side(self.world, found, comb);
         let sighting = Sighting { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
+        if leg.for_lights {
+            let onward = optics.straight(&sighting);
+            waiting.extend(onward.and_then(|onward| self.straight(&leg, found, (onward, 0), draws)));
+            return sum;
+        }
         if let Some(ambient) = &self.world.appearance.ambient {
             let radiance = leg.passed * optics.ambient(&sighting) * ambient.of(comb);
             sum += radiance;
@@ -196,7 +216,8 @@ impl<'a> Tracer<'a> {
             optics.mirrored(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));
         let directions = count + usize::from(optics.spreads());
         let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
-        let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, parts };
+        let highest = if self.is_blurred(&leg) { HIGHEST } else { f64::INFINITY };
+        let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, parts, highest };
         if optics.answers_lights() {
             let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
             sum += leg.passed * self.direct.light(&encounter, counts, add);
@@ -219,14 +240,22 @@ impl<'a> Tracer<'a> {
     /// How much a light counts that a leg meets.
     fn part(&self, leg: &Leg, light: f64) -> f64 {
         let is_caustic = leg.density.is_none() && leg.after_spread;
-        if is_caustic && !self.caustics { 0.0 } else { counted(leg.density, light) }
+        if is_caustic && !self.caustics { 0.0 } else { leg.lamps * counted(leg.density, light) }
+    }
+
+    /// Whether highlights of lamps are cut off where a leg arrives.
+    fn is_blurred(&self, leg: &Leg) -> bool {
+        leg.after_spread && !self.caustics
     }
 
     /// The leg that goes on in a direction; none if it is not worth following.
     fn onward(&self, leg: &Leg, encounter: &Encounter<'_>, onward: Onward, branch: u32) -> Option<Leg> {
         let Encounter { found, frame, sighting, draws, .. } = encounter;
+        if onward.is_straight {
+            return self.straight(leg, found, (onward, branch), draws);
+        }
         let through = onward.light.z < 0.0;
-        let parts_wavelengths = through && !onward.is_straight && leg.lane.is_none() && disperses(found);
+        let parts_wavelengths = through && leg.lane.is_none() && disperses(found);
         // Beyond the last leg, a direction that might have been drawn for a light still looks for it.
         let is_last = leg.depth >= self.depth;
         if is_last && (onward.density.is_none() || !self.direct.is_spread()) {
@@ -237,25 +266,24 @@ impl<'a> Tracer<'a> {
             passed = passed.only(sighting.lane, self.world.appearance.wavelengths.lanes());
         }
         let number = leg.number.wrapping_mul(3).wrapping_add(branch);
-        let most = passed.max();
-        if most < ENERGY_CUTOFF {
-            let survival = most / ENERGY_CUTOFF;
-            if most <= 0.0 || draws.leg(number, Purpose::Survival, 0)[0] >= survival {
-                return None;
-            }
-            passed *= survival.recip();
-        }
+        let passed = survived(passed, number, draws)?;
         let element = &found.element;
         let direction = frame.world(onward.light);
         // Of a spread lobe, what falls on the wrong side of the triangle is lost.
         if onward.density.is_some() && (direction.dot(element.face) < 0.0) != through {
             return None;
         }
-        let direction = if onward.is_straight { direction } else { element.righted(direction, !through) };
+        let direction = element.righted(direction, !through);
         let mut media = leg.media;
-        if through && !onward.is_straight {
+        if through {
             media.cross(found);
         }
+        let lamps = match onward.density {
+            Some(density) if self.is_blurred(leg) => {
+                (HIGHEST * onward.light.z.abs() / (onward.weight.max() * density)).clamp(0.0, 1.0)
+            }
+            _ => 1.0,
+        };
         let origin = if through { element.through } else { element.leave };
         Some(Leg {
             sight: Sight {
@@ -266,6 +294,8 @@ impl<'a> Tracer<'a> {
                 cone: Cone { width: leg.sight.cone.at(found.distance), ..leg.sight.cone },
             },
             passed,
+            lamps,
+            begin: 0.0,
             depth: leg.depth + 1,
             number,
             density: onward.density,
@@ -273,9 +303,32 @@ impl<'a> Tracer<'a> {
             media,
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,
-            after_spread: leg.after_spread || onward.density.is_some(),
+            after_spread: leg.after_spread || onward.density.is_some_and(|density| density < NARROW),
         })
     }
+
+    /// The rest of a leg behind what it goes straight through: the same ray, so that lights are met as if nothing was there.
+    fn straight(&self, leg: &Leg, found: &Found<'_>, (onward, branch): (Onward, u32), draws: &Draws) -> Option<Leg> {
+        let is_last = leg.depth >= self.depth;
+        if is_last && (leg.density.is_none() || !self.direct.is_spread()) {
+            return None;
+        }
+        let number = leg.number.wrapping_mul(3).wrapping_add(branch);
+        let passed = survived(leg.passed * onward.weight, number, draws)?;
+        let sight = Sight { t_min: found.t, ..leg.sight };
+        let for_lights = leg.for_lights || is_last;
+        Some(Leg { sight, passed, begin: found.distance, depth: leg.depth + 1, number, for_lights, ..*leg })
+    }
+}
+
+/// What of a leg is followed: all of it, or, of one that passes little on, by chance more or nothing.
+fn survived(passed: Channels, number: u32, draws: &Draws) -> Option<Channels> {
+    let most = passed.max();
+    if most >= ENERGY_CUTOFF {
+        return Some(passed);
+    }
+    let survival = most / ENERGY_CUTOFF;
+    (most > 0.0 && draws.leg(number, Purpose::Survival, 0)[0] < survival).then(|| passed * survival.recip())
 }
 
 /// How much a light counts that a leg of a density meets: the rest is what its own samples bring.

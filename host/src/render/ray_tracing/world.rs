@@ -26,7 +26,6 @@ pub(super) struct World<'a> {
 }
 
 /// What a ray meets first.
-#[expect(clippy::large_enum_variant, reason = "it is looked at once, at once; putting it aside takes longer")]
 pub(super) enum Met<'a> {
     /// An element of an object.
     Element(Found<'a>),
@@ -47,6 +46,8 @@ pub(super) struct Encounter<'a> {
     pub(super) leg: u32,
     /// Whether mirrored directions are followed beside a drawn one, so that none of them is drawn.
     pub(super) parts: bool,
+    /// The greatest value with which it may reflect a lamp, 1/sr.
+    pub(super) highest: f64,
 }
 
 /// An element of an object.
@@ -59,6 +60,8 @@ pub(super) struct Found<'a> {
     pub(super) material: u32,
     /// From where the ray began.
     pub(super) distance: f64,
+    /// The same in lengths of the ray's direction.
+    pub(super) t: f64,
     /// What the patterns of the material give; none for a material that has none.
     painting: Option<Box<Painting>>,
 }
@@ -105,7 +108,7 @@ impl<'a> World<'a> {
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
             Box::new(optics.paint(&place, comb))
         });
-        Met::Element(Found { element, optics, triangle, object, material, distance, painting })
+        Met::Element(Found { element, optics, triangle, object, material, distance, t: hit.t, painting })
     }
 
     /// The light that an element emits, and the density with which its light would have drawn it.

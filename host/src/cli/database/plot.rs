@@ -1,0 +1,133 @@
+//! Records drawn: spectra as curves, materials and geometry as pictures.
+
+use super::{Failure, Place};
+use crate::cli::watch_interrupts;
+use crate::color::Color;
+use crate::database::{Content, Curves, Record};
+use crate::illumination::light::{Light, Patch};
+use crate::illumination::material::{Body, Classic, Material};
+use crate::plan::Plan;
+use crate::render::ray_tracing::RayTracer;
+use crate::render::{Order, Renderer, Watch};
+use crate::scene::{Camera, Object, Prepared, Scene, Shape};
+use crate::solid::Primitive;
+use crate::study::{Axis, Plot, Point, Series};
+use glam::{DMat4, DVec3};
+use std::path::{Path, PathBuf};
+
+/// The range of wavelengths in a plot, nm.
+const SEEN: (f64, f64) = (360.0, 830.0);
+
+/// Writes the files of a record, and says which.
+pub(super) fn plot(record: &Record, place: &Place, folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder)?;
+    let is_plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+    let name: String = record.name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+    let written = match &record.content {
+        Content::Spectrum(curves) => curve(record, curves).write(folder, &name)?.to_vec(),
+        Content::Light(light) => match light.strength().1 {
+            Color::Spectrum(spectrum) => curve(record, &Curves::Light(spectrum.clone())).write(folder, &name)?.to_vec(),
+            Color::Bands(bands) => {
+                return Err(anyhow::anyhow!("the light \"{}\" has no spectrum, but {bands}", record.name).into());
+            }
+        },
+        Content::Texture(picture) => {
+            let path = folder.join(format!("{name}.png"));
+            picture.write(&path)?;
+            vec![path]
+        }
+        Content::Material(material) => {
+            let ball = Object {
+                name: name.clone(),
+                shape: Shape::Solid(Primitive::Sphere { radius: 1.0 }),
+                transform: DMat4::from_translation(DVec3::Y),
+                material: Some((**material).clone()),
+                tolerance: None,
+            };
+            vec![render(ball, &folder.join(format!("{name}.png")))?]
+        }
+        Content::Geometry(grouped) => {
+            let bounds = grouped.mesh.bounds().ok_or_else(|| anyhow::anyhow!("the mesh is empty"))?;
+            let (middle, size) = ((bounds.min + bounds.max) / 2.0, bounds.diagonal().max(f64::MIN_POSITIVE));
+            let lowest = DVec3::new(middle.x, bounds.min.y, middle.z);
+            let (_, database) = place.library()?.record(record.kind(), &record.name)?;
+            let object = Object {
+                name: name.clone(),
+                shape: Shape::Stored { database, name: record.name.clone() },
+                transform: DMat4::from_scale(DVec3::splat(2.4 / size)) * DMat4::from_translation(-lowest),
+                material: Some(Material::default()),
+                tolerance: None,
+            };
+            vec![render(object, &folder.join(format!("{name}.png")))?]
+        }
+    };
+    let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+    say!("{}", names.join(", "));
+    Ok(())
+}
+
+/// Curves over the wavelengths that are seen.
+fn curve(record: &Record, curves: &Curves) -> Plot {
+    let of = |(name, spectrum): (&str, &crate::color::Spectrum)| {
+        let within = spectrum.samples().filter(|(wavelength, _)| (SEEN.0..=SEEN.1).contains(wavelength));
+        let points = within.map(|(x, y)| Point { x, y, label: String::new() }).collect();
+        Series { name: name.to_owned(), points }
+    };
+    let y_label = match curves {
+        Curves::Reflectance(_) => "reflected fraction",
+        Curves::Light(_) => "relative power",
+        Curves::Metal(_) => "index n, extinction k",
+        Curves::Functions(_) => "value",
+    };
+    let source = &record.origin.source;
+    let short: String = source.chars().take(110).collect();
+    Plot {
+        title: record.name.clone(),
+        x_label: "wavelength (nm)".into(),
+        y_label: y_label.into(),
+        note: if short.len() < source.len() { short + " ..." } else { short },
+        x_axis: Axis::Linear,
+        y_axis: Axis::Linear,
+        series: curves.named().into_iter().map(of).collect(),
+    }
+}
+
+/// A picture of an object about two units high: on a grey ground under a pale sky, a window of daylight and a lamp.
+fn render(object: Object, path: &Path) -> Result<PathBuf, Failure> {
+    let grey = Body::Classic(Classic { diffuse: Color::grey(0.4).into(), ..Classic::default() });
+    let ground = Object {
+        name: "ground".into(),
+        shape: Shape::Ground { size: 60.0 },
+        transform: DMat4::IDENTITY,
+        material: Some(grey.into()),
+        tolerance: None,
+    };
+    let window = Patch::Rectangle {
+        corner: DVec3::new(-5.0, 1.5, 2.0),
+        across: DVec3::new(1.0, 4.5, 0.0),
+        up: DVec3::new(0.0, 0.0, 4.0),
+    };
+    let lamp = Patch::Sphere { center: DVec3::new(3.5, 4.0, 4.0), radius: 0.4 };
+    let light = |patch, strength| Light::Area { patch, radiance: Color::grey(strength) };
+    let sky = Light::Sky { map: None, radiance: Color::grey(0.35), turned: 0.0 };
+    let camera = Camera {
+        from: DVec3::new(0.0, 2.4, 7.0),
+        at: DVec3::new(0.0, 0.95, 0.0),
+        up: DVec3::Y,
+        field_of_view: 26.0,
+        near: 0.0,
+        far: None,
+        lens: None,
+        parallel: None,
+    };
+    let lights = vec![light(window, 2.5), light(lamp, 20.0), sky];
+    let mut scene = Scene { objects: vec![object, ground], lights, camera: Some(camera), ..Scene::default() };
+    (scene.settings.width, scene.settings.height, scene.settings.samples) = (360, 360, 48);
+    let prepared = Prepared::new(&scene)?;
+    let view = prepared.view();
+    let plan = Plan::new(&prepared, &view);
+    let watch = Watch { cancelled: watch_interrupts(), progress: &|_, _| {} };
+    let rendering = RayTracer::new(&prepared, &plan)?.render(&view, &Order::of(&prepared.settings), &watch)?;
+    rendering.picture.write(path)?;
+    Ok(path.to_owned())
+}

@@ -1,0 +1,196 @@
+//! Records from files, and files from records.
+//!
+//! Meshes come and go in the formats of meshes, pictures in those of pictures, spectra as columns of text (see
+//! [`columns`]), and all but meshes and pictures as JSON: `{"name": "...", "source": "...", "terms": "...", "material":
+//! {...}}`, with `light` or `spectrum` in place of `material`.
+
+use super::{Content, Curves, DatabaseError, Record, check_name};
+use crate::color::shipped::Metal;
+use crate::color::{Beyond, Origin, Spectrum, columns};
+use crate::illumination::{Light, Material};
+use crate::mesh;
+use crate::picture::Picture;
+use serde::{Deserialize, Serialize};
+use std::io::Read;
+use std::path::Path;
+
+/// The longest text that is read, bytes.
+const MAX_TEXT: u64 = 64 << 20;
+
+/// What the columns of a text are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Quantity {
+    /// Each what a surface reflects, 0..=1.
+    Reflectance,
+    /// Each the power of a light.
+    Light,
+    /// Index and extinction of a metal, called n and k.
+    Metal,
+    /// Functions that belong together.
+    Functions,
+}
+
+/// A record as JSON.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sheet {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    what: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    source: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    terms: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    material: Option<Material>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    light: Option<Light>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    spectrum: Option<Curves>,
+}
+
+impl Record {
+    /// The record as JSON; none of a mesh or a picture.
+    pub fn json(&self) -> Option<serde_json::Value> {
+        let Origin { what, source, terms } = self.origin.clone();
+        let mut sheet =
+            Sheet { name: Some(self.name.clone()), what, source, terms, material: None, light: None, spectrum: None };
+        match &self.content {
+            Content::Material(material) => sheet.material = Some((**material).clone()),
+            Content::Light(light) => sheet.light = Some((**light).clone()),
+            Content::Spectrum(curves) => sheet.spectrum = Some(curves.clone()),
+            Content::Geometry(_) | Content::Texture(_) => return None,
+        }
+        serde_json::to_value(&sheet).ok()
+    }
+}
+
+/// The records of a file, whose ending names its format; a text with several columns gives several.
+///
+/// - `name`: what the record is called; without it what the file says, or its name without ending.
+/// - `quantity`: what the columns of a text are; without it a metal where they are called n and k, and else reflectances,
+///   if they lie within 0 and 1.
+///
+/// # Errors
+/// [`DatabaseError`], with the place where the content is wrong.
+pub fn read(path: &Path, name: Option<&str>, quantity: Option<Quantity>) -> Result<Vec<Record>, DatabaseError> {
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let one = |content| Record { name: name.unwrap_or(stem).to_owned(), origin: Origin::default(), content };
+    let records = match ending(path).as_str() {
+        _ if mesh::Format::of(path).is_some() => {
+            vec![one(Content::Geometry(Box::new(mesh::read_grouped(path)?)))]
+        }
+        "png" | "exr" => vec![one(Content::Texture(Box::new(Picture::read_finite(path)?)))],
+        "txt" => of_columns(path, name, stem, quantity)?,
+        "json" => vec![of_sheet(path, name, stem)?],
+        _ => return Err(unknown_ending(path)),
+    };
+    records.iter().try_for_each(|record| check_name(&record.name))?;
+    Ok(records)
+}
+
+/// Writes a record into a file, whose ending names the format.
+///
+/// # Errors
+/// [`DatabaseError`] if the format cannot hold it, or the file cannot be written.
+pub fn write(record: &Record, path: &Path) -> Result<(), DatabaseError> {
+    let failed = |problem: &str| DatabaseError::Exchange { path: path.into(), problem: problem.into() };
+    let text = match (&record.content, ending(path).as_str()) {
+        (Content::Geometry(grouped), _) if mesh::Format::of(path).is_some() => {
+            return Ok(mesh::write_grouped(grouped, path)?);
+        }
+        (Content::Geometry(_), _) => return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh")),
+        (Content::Texture(picture), "png" | "exr") => return Ok(picture.write(path)?),
+        (Content::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
+        (Content::Spectrum(curves), "txt") => {
+            let named = match curves {
+                Curves::Reflectance(spectrum) | Curves::Light(spectrum) => vec![(&*record.name, spectrum)],
+                _ => curves.named(),
+            };
+            let text = columns::print(&record.origin, &named);
+            text.ok_or_else(|| failed("its curves are over different wavelengths; write .json"))?
+        }
+        (_, "json") => match record.json().map(|json| serde_json::to_string_pretty(&json)) {
+            Some(Ok(text)) => text + "\n",
+            _ => return Err(failed("it cannot be written as JSON")),
+        },
+        (Content::Spectrum(_), _) => return Err(failed("a spectrum goes into .txt or .json")),
+        _ => return Err(failed("a material or a light goes into .json")),
+    };
+    std::fs::write(path, text).map_err(|source| DatabaseError::File { path: path.into(), source })
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+fn unknown_ending(path: &Path) -> DatabaseError {
+    let known =
+        "known are meshes (.obj, .stl, .ply, .gltf, .glb, .cmesh), pictures (.png, .exr), spectra (.txt) and .json";
+    DatabaseError::Exchange { path: path.into(), problem: format!("unknown kind of file; {known}") }
+}
+
+fn text_of(path: &Path) -> Result<String, DatabaseError> {
+    let failed = |source| DatabaseError::File { path: path.into(), source };
+    let mut text = String::new();
+    std::fs::File::open(path).map_err(failed)?.take(MAX_TEXT + 1).read_to_string(&mut text).map_err(failed)?;
+    if text.len() as u64 > MAX_TEXT {
+        let problem = format!("longer than {MAX_TEXT} bytes");
+        return Err(DatabaseError::Exchange { path: path.into(), problem });
+    }
+    Ok(text)
+}
+
+fn of_columns(
+    path: &Path,
+    name: Option<&str>,
+    stem: &str,
+    quantity: Option<Quantity>,
+) -> Result<Vec<Record>, DatabaseError> {
+    let failed = |problem: String| DatabaseError::Exchange { path: path.into(), problem };
+    let text = text_of(path)?;
+    let origin = columns::origin(&text);
+    let found = |beyond| columns::spectra(&text, beyond).map_err(|error| failed(error.to_string()));
+    let held = found(Beyond::Held)?;
+    let is_metal = held.len() == 2 && held[0].0 == "n" && held[1].0 == "k";
+    let quantity = quantity.unwrap_or(if is_metal { Quantity::Metal } else { Quantity::Reflectance });
+    let whole = |curves| vec![(name.unwrap_or(stem).to_owned(), curves)];
+    let each = |columns: Vec<(&str, Spectrum)>, of: fn(Spectrum) -> Curves| match (name, columns.len()) {
+        (Some(_), 2..) => Err(failed("a name for several columns; each is called by its head".into())),
+        _ => Ok(columns.into_iter().map(|(head, s)| (name.unwrap_or(head).to_owned(), of(s))).collect()),
+    };
+    let all: Vec<(String, Curves)> = match quantity {
+        Quantity::Metal if is_metal => {
+            let mut both = held.into_iter().map(|(_, spectrum)| spectrum);
+            let metal = both.next().zip(both.next()).map(|(n, k)| Curves::Metal(Metal { n, k }));
+            metal.map(whole).unwrap_or_default()
+        }
+        Quantity::Metal => return Err(failed("a metal has two columns, called n and k".into())),
+        Quantity::Reflectance => each(held, Curves::Reflectance)?,
+        Quantity::Light => each(found(Beyond::Zero)?, Curves::Light)?,
+        Quantity::Functions => {
+            whole(Curves::Functions(found(Beyond::Zero)?.into_iter().map(|(head, s)| (head.to_owned(), s)).collect()))
+        }
+    };
+    let record = |(name, curves): (String, Curves)| {
+        let hint = if quantity == Quantity::Reflectance { " (or is it a light?)" } else { "" };
+        curves.check().map_err(|problem| failed(format!("{name}: {problem}{hint}")))?;
+        Ok(Record { name, origin: origin.clone(), content: Content::Spectrum(curves) })
+    };
+    all.into_iter().map(record).collect()
+}
+
+fn of_sheet(path: &Path, name: Option<&str>, stem: &str) -> Result<Record, DatabaseError> {
+    let failed = |problem: String| DatabaseError::Exchange { path: path.into(), problem };
+    let sheet: Sheet = serde_json::from_str(&text_of(path)?).map_err(|error| failed(error.to_string()))?;
+    let content = match (sheet.material, sheet.light, sheet.spectrum) {
+        (Some(material), None, None) => Content::Material(Box::new(material)),
+        (None, Some(light), None) => Content::Light(Box::new(light)),
+        (None, None, Some(curves)) => Content::Spectrum(curves),
+        _ => return Err(failed("it must hold one of material, light and spectrum".into())),
+    };
+    let name = name.map(str::to_owned).or(sheet.name).unwrap_or_else(|| stem.to_owned());
+    let origin = Origin { what: sheet.what, source: sheet.source, terms: sheet.terms };
+    Ok(Record { name, origin, content })
+}

@@ -1,0 +1,48 @@
+//! The kinds of records.
+
+use serde::Serialize;
+use std::fmt;
+
+/// What a record is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A mesh with its groups.
+    Geometry,
+    /// A picture.
+    Texture,
+    /// How a surface reflects, lets through and emits.
+    Material,
+    /// A source of light.
+    Light,
+    /// A quantity over the wavelength, or several.
+    Spectrum,
+}
+
+impl Kind {
+    /// Every kind.
+    pub const ALL: [Kind; 5] = [Kind::Geometry, Kind::Texture, Kind::Material, Kind::Light, Kind::Spectrum];
+
+    /// The kind in a word; the name of its table, too.
+    pub fn word(self) -> &'static str {
+        match self {
+            Kind::Geometry => "geometry",
+            Kind::Texture => "texture",
+            Kind::Material => "material",
+            Kind::Light => "light",
+            Kind::Spectrum => "spectrum",
+        }
+    }
+
+    /// The version of the form in which records of the kind are stored. It rises when what is stored changes; a test fails
+    /// when that is forgotten.
+    pub(super) fn version(self) -> u32 {
+        1
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.word())
+    }
+}

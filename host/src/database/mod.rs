@@ -1,0 +1,27 @@
+//! Databases: geometry, textures, materials, light sources and spectra, on disk and in the program.
+//!
+//! A database is one file. What one transaction writes is there as a whole or not at all, also after a crash; one process
+//! writes at a time, and any number of processes and threads read meanwhile, each what was there when it began. A record
+//! has a name, a note of its source and terms, the version of its form, and a checksum, so that it is found out when it is
+//! damaged or of a later program.
+//!
+//! The database that ships with the program has records of the same kinds and is read-only.
+
+mod check;
+mod error;
+mod exchange;
+mod kind;
+mod library;
+mod record;
+pub mod shipped;
+mod store;
+#[cfg(test)]
+mod tests;
+
+pub use check::{Problem, Report};
+pub use error::DatabaseError;
+pub use exchange::{Quantity, read, write};
+pub use kind::Kind;
+pub use library::Library;
+pub use record::{Content, Curves, Entry, LONGEST_NAME, MAX_RECORD, Record, check_name};
+pub use store::Store;

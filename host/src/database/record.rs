@@ -1,0 +1,350 @@
+//! Records: what they hold, and their bytes.
+//!
+//! The bytes of a record are its version and a checksum, four bytes each, lowest first, and then in bincode a head (what
+//! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
+
+use super::{DatabaseError, Kind};
+use crate::color::shipped::Metal;
+use crate::color::{Origin, Spectrum};
+use crate::illumination::light::{Light, SkyMap};
+use crate::illumination::material::Material;
+use crate::mesh::Grouped;
+use crate::picture::Picture;
+use bincode::config::{Configuration, Limit, LittleEndian, Varint};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// The longest name, bytes.
+pub const LONGEST_NAME: usize = 200;
+/// The largest record, bytes.
+pub const MAX_RECORD: usize = 1 << 30;
+/// Bytes before the head.
+const BEFORE: usize = 8;
+
+const ENCODING: Configuration<LittleEndian, Varint, Limit<MAX_RECORD>> =
+    bincode::config::standard().with_limit::<MAX_RECORD>();
+
+/// A record of a database.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Its name, the only one of its kind.
+    pub name: String,
+    /// Where it comes from; empty where that is not known.
+    pub origin: Origin,
+    /// What it holds.
+    pub content: Content,
+}
+
+/// What a record holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// A mesh with its groups.
+    Geometry(Box<Grouped>),
+    /// A picture.
+    Texture(Box<Picture>),
+    /// A material.
+    Material(Box<Material>),
+    /// A source of light.
+    Light(Box<Light>),
+    /// A quantity over the wavelength, or several.
+    Spectrum(Curves),
+}
+
+/// Quantities over the wavelength.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Curves {
+    /// What a surface reflects, 0..=1.
+    Reflectance(Spectrum),
+    /// The power of a light, relative to any unit, 0 and more.
+    Light(Spectrum),
+    /// Index and extinction of a metal, 0 and more.
+    Metal(Metal),
+    /// Functions that belong together, each with its name.
+    Functions(Vec<(String, Spectrum)>),
+}
+
+/// What a list says of a record.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Entry {
+    /// Its kind.
+    pub kind: Kind,
+    /// Its name.
+    pub name: String,
+    /// What it holds, in a few words.
+    pub summary: String,
+    /// What it is.
+    pub what: String,
+    /// Who measured or made it.
+    pub source: String,
+    /// Under which terms it may be passed on.
+    pub terms: String,
+    /// Its bytes; 0 for what ships with the program.
+    pub bytes: u64,
+}
+
+/// The head of a record as it is stored.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    summary: String,
+    what: String,
+    source: String,
+    terms: String,
+}
+
+/// A picture as it is stored: red, green, blue and coverage of each pixel, row by row from the top.
+#[derive(Serialize, Deserialize)]
+struct Pixels {
+    width: u32,
+    height: u32,
+    pixels: Vec<[f32; 4]>,
+}
+
+/// Checks that a text can be the name of a record.
+///
+/// # Errors
+/// [`DatabaseError::Name`] if it is empty, longer than [`LONGEST_NAME`], begins or ends with a blank, or holds a control
+/// character.
+pub fn check_name(name: &str) -> Result<(), DatabaseError> {
+    let possible = (1..=LONGEST_NAME).contains(&name.len()) && name.trim() == name;
+    if possible && !name.chars().any(char::is_control) { Ok(()) } else { Err(DatabaseError::Name(name.into())) }
+}
+
+impl Content {
+    /// Its kind.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Content::Geometry(_) => Kind::Geometry,
+            Content::Texture(_) => Kind::Texture,
+            Content::Material(_) => Kind::Material,
+            Content::Light(_) => Kind::Light,
+            Content::Spectrum(_) => Kind::Spectrum,
+        }
+    }
+
+    /// What it holds, in a few words.
+    pub fn summary(&self) -> String {
+        match self {
+            Content::Geometry(grouped) => {
+                format!("{} vertices, {} triangles", grouped.mesh.vertices.len(), grouped.mesh.triangles.len())
+            }
+            Content::Texture(picture) => format!("{} x {} pixels", picture.width(), picture.height()),
+            Content::Material(material) => material.word().into(),
+            Content::Light(light) => light.words().into(),
+            Content::Spectrum(curves) => curves.summary(),
+        }
+    }
+
+    /// Checks every number; the problem in words.
+    fn check(&self) -> Result<(), String> {
+        match self {
+            Content::Geometry(grouped) => {
+                let finite = |look: &crate::mesh::Look| {
+                    look.base.is_finite() && look.metallic.is_finite() && look.roughness.is_finite()
+                };
+                grouped.mesh.validate().map_err(|fault| fault.to_string())?;
+                let looks = grouped.looks.iter().flatten().all(finite);
+                if looks { Ok(()) } else { Err("the look of a surface is not finite".into()) }
+            }
+            Content::Texture(picture) if picture.is_finite() => Ok(()),
+            Content::Texture(_) => Err("a pixel is not finite".into()),
+            Content::Material(material) => material.check().map_err(|error| error.to_string()),
+            Content::Light(light) => match **light {
+                Light::Sky { map: Some(SkyMap { ref file, .. }), .. } => {
+                    Err(format!("the picture {file} of a sky is kept as a texture, not in a light"))
+                }
+                _ => light.check().map_err(|error| error.to_string()),
+            },
+            Content::Spectrum(curves) => curves.check(),
+        }
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        match self {
+            Content::Geometry(grouped) => encoded(grouped),
+            Content::Texture(picture) => {
+                let of = |p: &crate::picture::Pixel| [p.radiance[0], p.radiance[1], p.radiance[2], p.coverage];
+                let pixels = picture.pixels().iter().map(of).collect();
+                encoded(&Pixels { width: picture.width(), height: picture.height(), pixels })
+            }
+            Content::Material(material) => encoded(material),
+            Content::Light(light) => encoded(light),
+            Content::Spectrum(curves) => encoded(curves),
+        }
+    }
+
+    fn of_bytes(kind: Kind, bytes: &[u8]) -> Result<Content, String> {
+        let content = match kind {
+            Kind::Geometry => Content::Geometry(Box::new(decoded(bytes)?)),
+            Kind::Texture => Content::Texture(Box::new(decoded::<Pixels>(bytes)?.picture()?)),
+            Kind::Material => Content::Material(Box::new(decoded(bytes)?)),
+            Kind::Light => Content::Light(Box::new(decoded(bytes)?)),
+            Kind::Spectrum => Content::Spectrum(decoded(bytes)?),
+        };
+        content.check().map(|()| content)
+    }
+}
+
+impl Pixels {
+    fn picture(self) -> Result<Picture, String> {
+        let mut picture = Picture::new(self.width, self.height).map_err(|error| error.to_string())?;
+        if picture.pixels().len() != self.pixels.len() {
+            return Err(format!("{} pixels for {} x {}", self.pixels.len(), self.width, self.height));
+        }
+        for (pixel, [red, green, blue, coverage]) in picture.pixels_mut().iter_mut().zip(self.pixels) {
+            (pixel.radiance, pixel.coverage) = ([red, green, blue], coverage);
+        }
+        Ok(picture)
+    }
+}
+
+impl Curves {
+    /// Each curve with its name.
+    pub fn named(&self) -> Vec<(&str, &Spectrum)> {
+        match self {
+            Curves::Reflectance(spectrum) => vec![("reflectance", spectrum)],
+            Curves::Light(spectrum) => vec![("power", spectrum)],
+            Curves::Metal(metal) => vec![("n", &metal.n), ("k", &metal.k)],
+            Curves::Functions(functions) => functions.iter().map(|(name, spectrum)| (&**name, spectrum)).collect(),
+        }
+    }
+
+    /// What they are, in a word.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Curves::Reflectance(_) => "reflectance",
+            Curves::Light(_) => "light",
+            Curves::Metal(_) => "metal",
+            Curves::Functions(_) => "functions",
+        }
+    }
+
+    fn summary(&self) -> String {
+        let curves = self.named();
+        let count: usize = curves.iter().map(|(_, spectrum)| spectrum.count()).sum();
+        let range = |(low, high): (f64, f64), (_, s): &(&str, &Spectrum)| (low.min(s.range().0), high.max(s.range().1));
+        let (low, high) = curves.iter().fold((f64::INFINITY, 0.0), range);
+        format!("{}, {count} samples, {low} to {high} nm", self.word())
+    }
+
+    /// Checks every number; the problem in words.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let curves = self.named();
+        if curves.is_empty() {
+            return Err("there is no curve".into());
+        }
+        let (least, most) = match self {
+            // A spectrum that was measured may err a little.
+            Curves::Reflectance(_) => (0.0, 1.001),
+            Curves::Light(_) | Curves::Metal(_) => (0.0, f64::MAX),
+            Curves::Functions(_) => (f64::MIN, f64::MAX),
+        };
+        for (name, spectrum) in curves {
+            if let Some((wavelength, value)) = spectrum.samples().find(|(_, value)| !(least..=most).contains(value)) {
+                return Err(format!("{name} is {value} at {wavelength} nm: it must lie within {least} and {most}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Record {
+    /// Its kind.
+    pub fn kind(&self) -> Kind {
+        self.content.kind()
+    }
+
+    /// What a list says of it.
+    pub fn entry(&self, bytes: u64) -> Entry {
+        let Origin { what, source, terms } = self.origin.clone();
+        Entry {
+            kind: self.kind(),
+            name: self.name.clone(),
+            summary: self.content.summary(),
+            what,
+            source,
+            terms,
+            bytes,
+        }
+    }
+
+    /// Its bytes; the same record gives the same bytes.
+    pub(super) fn to_bytes(&self) -> Result<Vec<u8>, DatabaseError> {
+        let (kind, name) = (self.kind(), self.name.clone());
+        let failed = |problem: String| DatabaseError::Record { kind, name: name.clone(), problem };
+        check_name(&self.name)?;
+        self.content.check().map_err(failed)?;
+        let Origin { what, source, terms } = self.origin.clone();
+        let head = Head { summary: self.content.summary(), what, source, terms };
+        let mut bytes = kind.version().to_le_bytes().to_vec();
+        bytes.extend([0; 4]);
+        bytes.extend(encoded(&head).map_err(failed)?);
+        bytes.extend(self.content.bytes().map_err(failed)?);
+        if bytes.len() > MAX_RECORD {
+            return Err(DatabaseError::TooLarge { kind, name: self.name.clone() });
+        }
+        let sum = checksum(kind, &self.name, &bytes);
+        bytes[4..BEFORE].copy_from_slice(&sum.to_le_bytes());
+        Ok(bytes)
+    }
+
+    /// What [`Record::to_bytes`] wrote.
+    pub(super) fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Record, DatabaseError> {
+        let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
+        let (Head { what, source, terms, .. }, content) = head(kind, name, bytes)?;
+        if checksum(kind, name, bytes).to_le_bytes() != bytes[4..BEFORE] {
+            return Err(failed("damaged: its checksum is another".into()));
+        }
+        let content = Content::of_bytes(kind, content).map_err(failed)?;
+        Ok(Record { name: name.into(), origin: Origin { what, source, terms }, content })
+    }
+}
+
+impl Entry {
+    /// What a list says of a record, from its bytes; only its head is read.
+    pub(super) fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Entry, DatabaseError> {
+        let (Head { summary, what, source, terms }, _) = head(kind, name, bytes)?;
+        Ok(Entry { kind, name: name.into(), summary, what, source, terms, bytes: bytes.len() as u64 })
+    }
+}
+
+/// The head of a record, and the bytes behind it.
+fn head<'a>(kind: Kind, name: &str, bytes: &'a [u8]) -> Result<(Head, &'a [u8]), DatabaseError> {
+    let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
+    let (before, rest) = bytes.split_at_checked(BEFORE).ok_or_else(|| failed("damaged: it has no head".into()))?;
+    let version = before[..4].iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte));
+    let known = u64::from(kind.version());
+    if version > known {
+        return Err(DatabaseError::Newer { what: format!("{kind} \"{name}\""), found: version, known });
+    }
+    if version == 0 {
+        return Err(failed("damaged: it has no version".into()));
+    }
+    let (head, used) = bincode::serde::decode_from_slice(rest, ENCODING)
+        .map_err(|error| failed(format!("damaged: its head cannot be read: {error}")))?;
+    Ok((head, &rest[used..]))
+}
+
+/// The checksum over kind, name, version and all behind the checksum.
+fn checksum(kind: Kind, name: &str, bytes: &[u8]) -> u32 {
+    let mut sum = crc32fast::Hasher::new();
+    for part in [kind.word().as_bytes(), &[0], name.as_bytes(), &[0], &bytes[..4], &bytes[BEFORE..]] {
+        sum.update(part);
+    }
+    sum.finalize()
+}
+
+#[cfg(test)]
+pub(super) fn checksum_for_tests(kind: Kind, name: &str, bytes: &[u8]) -> u32 {
+    if bytes.len() < BEFORE { 0 } else { checksum(kind, name, bytes) }
+}
+
+fn encoded<T: Serialize>(value: &T) -> Result<Vec<u8>, String> {
+    bincode::serde::encode_to_vec(value, ENCODING).map_err(|error| format!("it cannot be stored: {error}"))
+}
+
+fn decoded<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
+    let (value, used) = bincode::serde::decode_from_slice(bytes, ENCODING)
+        .map_err(|error| format!("its content cannot be read: {error}"))?;
+    if used == bytes.len() { Ok(value) } else { Err("its content is followed by other bytes".into()) }
+}

@@ -1,0 +1,95 @@
+//! The database that ships with the program: read-only, each record with its source and its terms.
+
+use super::store::unknown;
+use super::{Content, Curves, DatabaseError, Entry, Kind, Record};
+use crate::color::shipped;
+use crate::color::{ColorError, Origin};
+use crate::illumination::material::{Body, Finish, Index, Metal, Transparent};
+use crate::mesh;
+
+/// The name of the mesh that ships.
+const BUNNY: &str = "bunny";
+
+/// The names of a kind, in the order of their tables.
+pub fn names(kind: Kind) -> Vec<&'static str> {
+    match kind {
+        Kind::Geometry => vec![BUNNY],
+        Kind::Material => [shipped::metals(), shipped::glasses()].concat(),
+        Kind::Spectrum => {
+            [shipped::lights(), shipped::metals(), shipped::reflectances(), shipped::functions()].concat()
+        }
+        Kind::Texture | Kind::Light => Vec::new(),
+    }
+}
+
+/// What there is, of one kind or of all.
+pub fn entries(kind: Option<Kind>) -> Vec<Entry> {
+    let all = |kind: &Kind| names(*kind).into_iter().filter_map(|name| find(*kind, name).ok()?).collect::<Vec<_>>();
+    let kinds = kind.as_ref().map_or(&Kind::ALL[..], std::slice::from_ref);
+    kinds.iter().flat_map(all).map(|record| record.entry(0)).collect()
+}
+
+/// A record.
+///
+/// # Errors
+/// [`DatabaseError::Unknown`] with the names that there are.
+pub fn record(kind: Kind, name: &str) -> Result<Record, DatabaseError> {
+    find(kind, name)?.ok_or_else(|| unknown(kind.word(), name, &names(kind)))
+}
+
+/// A record; none if there is none of that name.
+///
+/// # Errors
+/// [`DatabaseError::Record`] if what is in the program is damaged.
+pub fn find(kind: Kind, name: &str) -> Result<Option<Record>, DatabaseError> {
+    if !names(kind).contains(&name) {
+        return Ok(None);
+    }
+    let failed = |error: ColorError| DatabaseError::Record { kind, name: name.into(), problem: error.to_string() };
+    let origin = shipped::origin(name).unwrap_or_default();
+    let made = match kind {
+        Kind::Geometry => return Ok(Some(bunny())),
+        Kind::Material if shipped::metals().contains(&name) => {
+            shipped::metal(name).map(|shipped::Metal { n, k }| polished(n, k))
+        }
+        Kind::Material => shipped::glass(name).map(clear),
+        Kind::Spectrum => curves(name).map(Content::Spectrum),
+        Kind::Texture | Kind::Light => return Ok(None),
+    };
+    Ok(Some(Record { name: name.into(), origin, content: made.map_err(failed)? }))
+}
+
+fn curves(name: &str) -> Result<Curves, ColorError> {
+    if shipped::lights().contains(&name) {
+        shipped::light(name).map(Curves::Light)
+    } else if shipped::metals().contains(&name) {
+        shipped::metal(name).map(Curves::Metal)
+    } else if shipped::functions().contains(&name) {
+        let owned = |all: Vec<(&str, _)>| all.into_iter().map(|(name, s)| (name.to_owned(), s)).collect();
+        shipped::function(name).map(|all| Curves::Functions(owned(all)))
+    } else {
+        shipped::reflectance(name).map(Curves::Reflectance)
+    }
+}
+
+fn polished(n: crate::color::Spectrum, k: crate::color::Spectrum) -> Content {
+    Content::Material(Box::new(Body::Metal(Metal { n, k, finish: Finish::Polished }).into()))
+}
+
+fn clear(glass: crate::color::Glass) -> Content {
+    let absorption = crate::color::Color::BLACK;
+    let body = Transparent { index: Index::Dispersive(glass), roughness: 0.0, absorption };
+    Content::Material(Box::new(Body::Transparent(body).into()))
+}
+
+fn bunny() -> Record {
+    let origin = Origin {
+        what: "The Stanford bunny, closed, about 2 units high.".into(),
+        source: "Stanford 3D Scanning Repository, scan of Greg Turk and Marc Levoy, 1994; its holes are filled.".into(),
+        terms:
+            "Free to pass on and to publish with thanks to the Stanford Computer Graphics Laboratory; no commercial \
+                use without its permission."
+                .into(),
+    };
+    Record { name: BUNNY.into(), origin, content: Content::Geometry(Box::new(mesh::bunny().into())) }
+}
