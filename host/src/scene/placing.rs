@@ -19,9 +19,13 @@ pub type Sides = [DVec3; 2];
 pub fn footprint(normal: DVec3, towards: DVec3, width: f64) -> Sides {
     /// A plane that is seen edgewise would be met by an endless part.
     const STEEPEST: f64 = 1e-4;
+    /// Sine below which a view is along the normal.
+    const UPRIGHT: f64 = 1e-8;
     let cosine = normal.dot(towards).abs().max(STEEPEST);
-    let along = (towards - normal * normal.dot(towards)).try_normalize();
-    let along = along.unwrap_or_else(|| normal.any_orthonormal_vector());
+    let along = towards - normal * normal.dot(towards);
+    // Of a view along the normal only rounding errors are left.
+    let is_upright = along.length_squared() < UPRIGHT * UPRIGHT;
+    let along = if is_upright { normal.any_orthonormal_vector() } else { along.normalize() };
     [along * (width / cosine), normal.cross(along) * width]
 }
 
