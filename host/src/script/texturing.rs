@@ -51,7 +51,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             AT,
             UP,
         ],
-        example: "table.material(checker(0.8, [0.1, 0.05, 0.02], 0.125));",
+        example: "ball.material(checker(0.8, [0.1, 0.05, 0.02], 0.125));",
         action: |_, bound| {
             let solid = bound.flag("solid").unwrap_or(false);
             pattern(Motif::Checker, laying(bound, solid), paints(bound))
@@ -67,7 +67,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             parameter("octaves", Kind::Integer(1, 16), Is("5"), "how many frequencies, each twice the one before"),
             AT,
         ],
-        example: "wall.material(noise(0.6, 0.75, 0.3));",
+        example: "ball.material(noise(0.6, 0.75, 0.3));",
         action: |_, bound| {
             let octaves = bound.integer("octaves").and_then(|count| u32::try_from(count).ok()).unwrap_or(5);
             pattern(Motif::Noise { octaves }, laying(bound, true), paints(bound))
@@ -85,7 +85,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             AT,
             UP,
         ],
-        example: "slab.material(marble([0.85, 0.83, 0.8], [0.2, 0.22, 0.25], 0.5));",
+        example: "ball.material(marble([0.85, 0.83, 0.8], [0.2, 0.22, 0.25], 0.5));",
         action: |_, bound| {
             let turbulence = bound.number("turbulence").unwrap_or(0.8);
             let motif = Motif::Marble { turbulence, sharpness: bound.number("sharpness").unwrap_or(6.0) };
@@ -104,7 +104,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             AT,
             parameter("up", Kind::Vector, Is("[0, 1, 0]"), "the axis of the tree"),
         ],
-        example: "table.material(wood(#{ one: [0.55, 0.33, 0.16], two: [0.3, 0.15, 0.06], size: 0.08, up: [1, 0, 0] }));",
+        example: "ball.material(wood(#{ one: [0.55, 0.33, 0.16], two: [0.3, 0.15, 0.06], size: 0.08, up: [1, 0, 0] }));",
         action: |_, bound| {
             let turbulence = bound.number("turbulence").unwrap_or(0.6);
             let motif = Motif::Wood { turbulence, grain: bound.number("grain").unwrap_or(0.25) };
