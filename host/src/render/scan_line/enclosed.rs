@@ -128,7 +128,7 @@ impl<'a> Enclosed<'a> {
         if winds == 0 {
             return 0;
         }
-        let above = is_above((q - p).cross(away_p), p, point).unwrap_or_else(|| 0.5 * (away_p.z + away_q.z) > 0.0);
+        let above = is_above((q - p).cross(away_p), p, point).unwrap_or(away_p.z + away_q.z > 0.0);
         if above { winds * silhouette.weight } else { 0 }
     }
 

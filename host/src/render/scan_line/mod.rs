@@ -70,8 +70,6 @@ struct Lamp {
     source: usize,
     point: LightPoint,
     light: Light,
-    /// 1; what there is of it.
-    part: f64,
 }
 
 /// A scan-line renderer that holds a scene and which triangles are neighbours.
@@ -126,7 +124,7 @@ impl<'a> ScanLine<'a> {
         for (source, (_, light)) in appearance.sources.iter().enumerate() {
             for point in light.points(samples) {
                 let light = point.at.map_or(Light::Direction(point.towards), Light::Point);
-                lamps.push(Lamp { source, point, light, part: 1.0 });
+                lamps.push(Lamp { source, point, light });
             }
         }
         Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps })

@@ -497,7 +497,7 @@ impl<'a> Shader<'a> {
             let adds = (optics.value(Which::Continued, &sighting, light)
                 + optics.value(Which::Ended, &sighting, light))
                 * beam.irradiance
-                * (light.z.abs() * lamp.part);
+                * light.z.abs();
             if adds == Channels::ZERO || !adds.is_finite() {
                 continue;
             }
