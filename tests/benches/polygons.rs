@@ -92,9 +92,9 @@ struct Family {
 }
 
 const FAMILIES: [Family; 3] = [
-    Family { name: "star", sizes: &[1_000, 10_000, 100_000], make: star },
+    Family { name: "star", sizes: &[1_000, 10_000, 100_000, 320_000], make: star },
     Family { name: "plate", sizes: &[1_000, 10_000, 100_000, 320_000], make: plate },
-    Family { name: "comb", sizes: &[1_000, 10_000, 100_000], make: comb },
+    Family { name: "comb", sizes: &[1_000, 10_000, 100_000, 320_000], make: comb },
 ];
 
 /// Arms of random lengths around a middle.
