@@ -276,14 +276,8 @@ impl Triangles {
         (at, (b - a).cross(c - a).normalize_or_zero())
     }
 
-    fn draw(&self, point: DVec3, [x, y]: [f64; 2]) -> Option<(DVec3, f64, f64)> {
-        let index = self.below.partition_point(|part| *part <= x).min(self.below.len() - 1);
-        let from = if index == 0 { 0.0 } else { self.below[index - 1] };
-        let x = ((x - from) / (self.below[index] - from)).clamp(0.0, 1.0);
-        let [a, b, c] = self.corners[index];
-        let root = x.sqrt();
-        let at = a * (1.0 - root) + b * (root * (1.0 - y)) + c * (root * y);
-        let normal = (b - a).cross(c - a).try_normalize()?;
+    fn draw(&self, point: DVec3, uniform: [f64; 2]) -> Option<(DVec3, f64, f64)> {
+        let (at, normal) = self.point(uniform);
         let offset = at - point;
         let distance = offset.length();
         let towards = offset / distance;
