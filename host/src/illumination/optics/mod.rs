@@ -104,6 +104,11 @@ impl Optics {
         self.of(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
     }
 
+    /// As [`Optics::value`], of all lobes.
+    pub fn response(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))
+    }
+
     /// The density with which [`Optics::onward`] draws a direction, 1/sr.
     ///
     /// - `only_spread`: as there.

@@ -14,10 +14,12 @@
 
 mod casters;
 mod enclosed;
+mod reach;
 mod screen;
 mod shade;
 mod shadow;
 mod spans;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 mod visibility;
@@ -34,10 +36,12 @@ use casters::Casters;
 use enclosed::Enclosed;
 use glam::DVec3;
 use rayon::prelude::*;
+use reach::Reach;
 use screen::{Screen, Viewpoint};
-use shade::{Desk, Pixel, Shader};
+use shade::{Desk, Shader};
 use shadow::Shadow;
 use spans::{Lines, MOST_LINES, rooks};
+use surfaces::Pixel;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use visibility::{Facets, Strip};
@@ -92,6 +96,8 @@ struct Work<'a> {
     facets: &'a Facets<'a>,
     shadows: &'a [Shadow],
     offsets: &'a [f64],
+    /// Where the samples of a pixel lie in it.
+    places: Vec<[f64; 2]>,
     handed: i32,
     width: usize,
     /// Rows of pixels in a band.
@@ -148,12 +154,12 @@ impl<'a> ScanLine<'a> {
     }
 
     /// The shadow volumes of a lamp.
-    fn shadows(&self, screen: &Screen, facets: &Facets<'_>, bands: [usize; 2]) -> Vec<Shadow> {
+    fn shadows(&self, picture: (&Screen, &Facets<'_>, &Reach<'_>), bands: [usize; 2]) -> Vec<Shadow> {
         if !self.plan.needs(Stage::Shadows) {
             return Vec::new();
         }
         let groups = self.passing.len();
-        let shadow = |lamp: &Lamp| Shadow::new(&self.casters, lamp.light, (screen, facets), bands, groups);
+        let shadow = |lamp: &Lamp| Shadow::new(&self.casters, lamp.light, picture, bands, groups);
         self.lamps.par_iter().map(shadow).collect()
     }
 
@@ -176,7 +182,8 @@ impl<'a> ScanLine<'a> {
         let lines = rows * samples as usize;
         let bands = (order.height as usize).div_ceil(rows);
         let facets = Facets::new(prepared, (&self.triangles, &self.passable), &screen, lines, bands);
-        let shadows = self.shadows(&screen, &facets, [lines, bands]);
+        let reach = Reach::new(&prepared.bounds, &screen);
+        let shadows = self.shadows((&screen, &facets, &reach), [lines, bands]);
         let enclosed: Vec<Option<Enclosed<'_>>> = shadows
             .par_iter()
             .map(|shadow| {
@@ -202,7 +209,7 @@ impl<'a> ScanLine<'a> {
             enclosed: &enclosed,
             passing: &self.passing,
             eye: &eye,
-            offsets: &offsets,
+            is_plain: self.appearance.wavelengths.combs() == 1 && !has_surfaces && self.passing.len() == 1,
             matte: order.matte,
             has_surfaces,
             has_sky,
@@ -214,6 +221,7 @@ impl<'a> ScanLine<'a> {
             facets: &facets,
             shadows: &shadows,
             offsets: &offsets,
+            places: offsets.iter().zip(0..).map(|(x, line)| [*x, (f64::from(line) + 0.5) / f64::from(samples)]).collect(),
             handed: screen.handed(),
             width: order.width as usize,
             rows,
@@ -250,7 +258,7 @@ impl<'a> Work<'a> {
         counts.resize_with(self.shadows.len(), Vec::new);
         for begin in (first..last).step_by(MOST_LINES) {
             let range = begin..(begin + MOST_LINES).min(last);
-            let lines = Lines { range: range.clone(), width: self.width, offsets: self.offsets };
+            let lines = Lines::new(range.clone(), self.width, self.offsets);
             strip.spans = 0;
             self.facets.see(band, &lines, strip);
             drawn.surfaces += strip.spans;
@@ -260,14 +268,11 @@ impl<'a> Work<'a> {
             for row in range.start / samples..range.end.div_ceil(samples) {
                 let from = range.start.max(row * samples);
                 let to = range.end.min((row + 1) * samples);
+                let places = &self.places[from - row * samples..to - row * samples];
                 let tallies = &mut tallies[(row - band * self.rows) * self.width..][..self.width];
                 for (column, tally) in tallies.iter_mut().enumerate() {
-                    let pixel = Pixel {
-                        at: [column, row],
-                        first: (from - range.start) * self.width + column,
-                        stride: self.width,
-                        lines: from - row * samples..to - row * samples,
-                    };
+                    let first = (from - range.start) * self.width + column;
+                    let pixel = Pixel { at: [column, row], first, stride: self.width, places };
                     self.shader.shade(&pixel, strip, counts, desk, tally);
                 }
             }

@@ -166,6 +166,12 @@ impl Screen {
         self.rows.map(|row| row.truncate().dot(direction))
     }
 
+    /// A point, or a direction, whose last number is 0.
+    pub(super) fn homogeneous(&self, point: DVec4) -> Corner {
+        let point = (point.truncate() - self.base * point.w).extend(point.w);
+        self.rows.map(|row| row.dot(point))
+    }
+
     /// Beside which planes a corner lies: one bit for each.
     pub(super) fn outside(&self, corner: &Corner) -> u8 {
         (0..PLANES)

@@ -12,16 +12,27 @@ use super::Light;
 use super::casters::{Casters, Silhouette};
 use super::enclosed::Enclosed;
 use super::screen::{Corner, MOST_CORNERS, Outline, Point, Screen};
-use super::spans::{Lines, Nearness};
+use super::reach::Reach;
+use super::spans::{Lines, Nearness, Patch};
 use super::visibility::{Bands, Facets, Strip, lines_of};
 use glam::DVec3;
 
 /// A shadow polygon.
 struct Shade {
     outline: Outline,
+    /// Where it may stand before something.
+    within: Patch,
     /// How many volumes are entered where it is seen to turn clockwise.
     weight: i32,
     group: u8,
+}
+
+impl Shade {
+    /// Its first and last line.
+    fn lines(&self) -> [f64; 2] {
+        let [first, last] = lines_of(self.outline.corners());
+        [first.max(self.within.lines.start as f64), last.min(self.within.lines.end as f64)]
+    }
 }
 
 /// The shadow volumes of one light in the picture.
@@ -40,7 +51,7 @@ impl Shadow {
     pub(super) fn new(
         casters: &Casters<'_>,
         light: Light,
-        (screen, facets): (&Screen, &Facets<'_>),
+        (screen, facets, reach): (&Screen, &Facets<'_>, &Reach<'_>),
         [lines, bands]: [usize; 2],
         groups: usize,
     ) -> Shadow {
@@ -52,7 +63,7 @@ impl Shadow {
         });
         let mut polygons: Vec<Shade> = Vec::with_capacity(silhouettes.len());
         for silhouette in &silhouettes {
-            polygons.extend(side(casters, &light, screen, facets, silhouette));
+            polygons.extend(side(casters, &light, (screen, facets, reach), silhouette));
         }
         if screen.clips_near() {
             for &triangle in casters.triangles.iter().filter(|triangle| facing[**triangle as usize] != 0) {
@@ -63,11 +74,11 @@ impl Shadow {
                     let weight = -i32::from(facing[triangle as usize]) * screen.handed();
                     // Nearer than everything.
                     let outline = outline.brought_near();
-                    polygons.push(Shade { outline, weight, group: casters.group(triangle) });
+                    polygons.push(Shade { outline, within: Patch::ALL, weight, group: casters.group(triangle) });
                 }
             }
         }
-        let ranges: Vec<[f64; 2]> = polygons.iter().map(|polygon| lines_of(polygon.outline.corners())).collect();
+        let ranges: Vec<[f64; 2]> = polygons.iter().map(Shade::lines).collect();
         let bands = Bands::new(&ranges, lines, bands);
         Shadow { polygons, bands, start, facing, silhouettes, light }
     }
@@ -79,7 +90,7 @@ impl Shadow {
         &self,
         (casters, handed): (&Casters<'_>, i32),
         band: usize,
-        lines: &Lines<'_>,
+        lines: &Lines,
         strip: &Strip,
         counts: &mut Vec<i32>,
     ) -> u64 {
@@ -91,10 +102,10 @@ impl Shadow {
         let samples = strip.near.len();
         let mut spans = 0;
         for &number in self.bands.of(band) {
-            let Shade { outline, weight, group } = &self.polygons[number as usize];
+            let Shade { outline, within, weight, group } = &self.polygons[number as usize];
             let Some(nearness) = Nearness::new(outline.corners()) else { continue };
             let counts = &mut counts[usize::from(*group) * fragments..][..fragments];
-            lines.spans(outline.corners(), |span| {
+            lines.spans(outline.corners(), within, |span| {
                 spans += 1;
                 let (start, step, bounded) = nearness.along(&span, lines.offset(span.line));
                 let first = (span.line - lines.range.start) * lines.width + span.from;
@@ -152,8 +163,7 @@ impl Shadow {
 fn side(
     casters: &Casters<'_>,
     light: &Light,
-    screen: &Screen,
-    facets: &Facets<'_>,
+    (screen, facets, reach): (&Screen, &Facets<'_>, &Reach<'_>),
     silhouette: &Silhouette,
 ) -> Option<Shade> {
     let ends = silhouette.ends.map(|i| casters.prepared.vertices[i as usize]);
@@ -179,7 +189,8 @@ fn side(
     } else {
         screen.clip(corners, 0)?
     };
-    Some(Shade { outline, weight: silhouette.weight * screen.handed(), group: silhouette.group })
+    let within = reach.patch(ends, ends.map(|end| -light.from(end)))?;
+    Some(Shade { outline, within, weight: silhouette.weight * screen.handed(), group: silhouette.group })
 }
 
 /// The planes that clip shadow polygons: the window and the eye.

@@ -38,47 +38,68 @@ pub(super) struct Span {
 
 /// Lines that are drawn together.
 #[derive(Clone, Debug)]
-pub(super) struct Lines<'a> {
-    /// Which.
+pub(super) struct Lines {
+    /// Which, [`MOST_LINES`] at the most.
     pub(super) range: Range<usize>,
     /// Columns.
     pub(super) width: usize,
-    /// Where samples lie in their pixels, for each line of a row of pixels.
-    pub(super) offsets: &'a [f64],
+    /// Where the samples of each lie in their pixels.
+    offsets: [f64; MOST_LINES],
 }
 
-impl Lines<'_> {
+/// The part of the picture in which a polygon is wanted: columns, and lines.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Patch {
+    pub(super) columns: Range<usize>,
+    pub(super) lines: Range<usize>,
+}
+
+impl Patch {
+    /// All of it.
+    pub(super) const ALL: Patch = Patch { columns: 0..usize::MAX, lines: 0..usize::MAX };
+}
+
+impl Lines {
+    /// - `range`: which lines; `width`: how many columns. `offsets`: where samples lie in their pixels, for each line of a
+    ///   row of pixels.
+    pub(super) fn new(range: Range<usize>, width: usize, offsets: &[f64]) -> Lines {
+        let offset = |i: usize| offsets[(range.start + i) % offsets.len()];
+        Lines { offsets: std::array::from_fn(offset), range, width }
+    }
+
     /// Where the samples of a line lie in their pixels.
     #[inline]
     pub(super) fn offset(&self, line: usize) -> f64 {
-        self.offsets[line % self.offsets.len()]
+        self.offsets[line - self.range.start]
     }
 
-    /// Gives the spans of a convex polygon.
+    /// Gives the spans of a convex polygon within a part of the picture.
     ///
     /// Sides that two polygons share are crossed at the same place bit by bit: no sample between them is lost or found twice.
     #[inline]
-    pub(super) fn spans(&self, corners: &[Point], mut give: impl FnMut(Span)) {
+    pub(super) fn spans(&self, corners: &[Point], within: &Patch, mut give: impl FnMut(Span)) {
         if rises_once(corners) {
-            self.monotone(corners, &mut give);
+            self.monotone(corners, within, &mut give);
         } else {
             // Rounding has dented it: triangles cannot be dented, and what they share cancels out.
             for pair in corners[1..].windows(2) {
-                self.monotone(&[corners[0], pair[0], pair[1]], &mut give);
+                self.monotone(&[corners[0], pair[0], pair[1]], within, &mut give);
             }
         }
     }
 
     #[inline]
-    fn monotone(&self, corners: &[Point], give: &mut impl FnMut(Span)) {
+    fn monotone(&self, corners: &[Point], within: &Patch, give: &mut impl FnMut(Span)) {
+        let range = self.range.start.max(within.lines.start)..self.range.end.min(within.lines.end);
+        let columns = within.columns.start.min(self.width)..within.columns.end.min(self.width);
         let mut crossings = [[0.0; 2]; MOST_LINES];
         let (mut first, mut last) = (usize::MAX, 0);
         let mut from = corners[corners.len() - 1];
         for &to in corners {
             let falls = usize::from(to.y < from.y);
             let [low, high] = if falls == 1 { [to, from] } else { [from, to] };
-            let begin = up(low.y).max(self.range.start);
-            let end = up(high.y).min(self.range.end);
+            let begin = up(low.y).max(range.start);
+            let end = up(high.y).min(range.end);
             if begin < end {
                 let slope = (high.x - low.x) / (high.y - low.y);
                 for line in begin..end {
@@ -91,7 +112,7 @@ impl Lines<'_> {
         for line in first.min(last)..last {
             let [rising, falling] = crossings[line - self.range.start];
             let offset = self.offset(line);
-            let (a, b) = (up(rising - offset).min(self.width), up(falling - offset).min(self.width));
+            let [a, b] = [rising, falling].map(|x| up(x - offset).clamp(columns.start, columns.end));
             if a < b {
                 give(Span { line, from: a, to: b, turns: -1 });
             } else if b < a {

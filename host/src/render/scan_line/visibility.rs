@@ -1,7 +1,7 @@
 //! Which triangles the samples of a strip of the picture see.
 
 use super::screen::{Corner, Outline, Point, Screen};
-use super::spans::{Lines, Nearness, Span};
+use super::spans::{Lines, Nearness, Patch, Span};
 use crate::scene::Prepared;
 use rayon::prelude::*;
 
@@ -161,7 +161,7 @@ impl<'a> Facets<'a> {
     }
 
     /// Finds what the samples of some lines of a band see.
-    pub(super) fn see(&self, band: usize, lines: &Lines<'_>, strip: &mut Strip) {
+    pub(super) fn see(&self, band: usize, lines: &Lines, strip: &mut Strip) {
         let samples = lines.range.len() * lines.width;
         let Strip { near, seen, layers, begins, spans } = strip;
         near.clear();
@@ -173,7 +173,7 @@ impl<'a> Facets<'a> {
         let first = |span: &Span| (span.line - lines.range.start) * lines.width;
         self.each(band, false, |triangle, corners| {
             let Some(nearness) = Nearness::new(corners) else { return };
-            lines.spans(corners, |span| {
+            lines.spans(corners, &Patch::ALL, |span| {
                 *spans += 1;
                 let (start, step, bounded) = nearness.along(&span, lines.offset(span.line));
                 let range = first(&span) + span.from..first(&span) + span.to;
@@ -192,7 +192,7 @@ impl<'a> Facets<'a> {
         }
         self.each(band, true, |triangle, corners| {
             let Some(nearness) = Nearness::new(corners) else { return };
-            lines.spans(corners, |span| {
+            lines.spans(corners, &Patch::ALL, |span| {
                 *spans += 1;
                 let (start, step, _) = nearness.along(&span, lines.offset(span.line));
                 for i in 0..span.to - span.from {

@@ -1,0 +1,257 @@
+//! Surfaces in a pixel: which samples see them, and the element in the middle of what they see.
+
+use super::shade::{Desk, Shader};
+use super::visibility::{NONE, Strip};
+use crate::color::Channels;
+use crate::illumination::optics::Optics;
+use crate::numeric::ray::{Hit, Ray};
+use crate::render::element::Element;
+use crate::scene::footprint;
+use glam::DVec3;
+use std::ops::Range;
+
+/// Triangles of one curved object that share a pixel are lit as one if their normals differ by less (cosine).
+const SMOOTH: f64 = 0.94;
+/// And flat ones if they lie in one plane.
+const FLAT: f64 = 1.0 - 1e-12;
+/// And if their depths differ by less than this part of them.
+const BESIDE: f64 = 0.01;
+
+/// A pixel of a strip.
+pub(super) struct Pixel<'p> {
+    /// Column, row.
+    pub(super) at: [usize; 2],
+    /// Its first sample in the strip, and how far the next are apart.
+    pub(super) first: usize,
+    pub(super) stride: usize,
+    /// Where its samples lie in it.
+    pub(super) places: &'p [[f64; 2]],
+}
+
+impl Pixel<'_> {
+    /// How many samples it has.
+    pub(super) fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Its samples in the strip.
+    pub(super) fn samples(&self) -> impl Iterator<Item = usize> {
+        (0..self.places.len()).map(|i| self.first + i * self.stride)
+    }
+
+    /// Where a sample is in the picture.
+    pub(super) fn place(&self, i: usize) -> [f64; 2] {
+        [self.at[0] as f64 + self.places[i][0], self.at[1] as f64 + self.places[i][1]]
+    }
+}
+
+/// What a sample sees: which surface of the pixel, and where its counts are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) surface: usize,
+    pub(super) fragment: usize,
+    pub(super) triangle: u32,
+    pub(super) near: f64,
+    /// Which of the pixel's samples.
+    pub(super) sample: usize,
+}
+
+/// A surface in a pixel.
+pub(super) struct Surface<'a> {
+    /// The triangle that was seen first, and how near.
+    pub(super) triangle: u32,
+    pub(super) near: f64,
+    pub(super) curved: bool,
+    /// How many samples see it, the sum of their places in pixels, and whether all see the same triangle.
+    pub(super) count: u32,
+    pub(super) sum: [f64; 2],
+    pub(super) alone: bool,
+    /// Sums of their nearness and depth.
+    pub(super) nearness: [f64; 2],
+    pub(super) found: Option<Found<'a>>,
+    /// What it sends to the eye without lights.
+    pub(super) own: Channels,
+    /// Which of the lights that were found are its own.
+    pub(super) lit: Range<usize>,
+}
+
+impl Surface<'_> {
+    /// A surface of which no sample is known yet.
+    pub(super) fn new(triangle: u32, near: f64, curved: bool) -> Self {
+        let (own, lit) = (Channels::ZERO, 0..0);
+        Surface { triangle, near, curved, count: 0, sum: [0.0; 2], alone: true, nearness: [0.0; 2], found: None, own, lit }
+    }
+
+    /// Adds a sample.
+    ///
+    /// - `at`: its place in the picture. `nearness`: and its depth.
+    pub(super) fn add(&mut self, triangle: u32, at: [f64; 2], nearness: [f64; 2]) {
+        self.count += 1;
+        self.alone &= self.triangle == triangle;
+        for i in 0..2 {
+            self.sum[i] += at[i];
+            self.nearness[i] += nearness[i];
+        }
+    }
+}
+
+/// An element in a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Found<'a> {
+    pub(super) element: Element,
+    /// Of the sample from which it was found.
+    pub(super) near: f64,
+    pub(super) optics: &'a Optics,
+    pub(super) distance: f64,
+    pub(super) object: u32,
+    pub(super) material: u32,
+    pub(super) towards: DVec3,
+    pub(super) triangle: u32,
+    pub(super) weights: [f64; 3],
+    /// Sides of what it stands for.
+    pub(super) sides: [DVec3; 2],
+}
+
+impl<'a> Shader<'a> {
+    /// Finds the surfaces of a pixel, and which samples see them.
+    pub(super) fn gather(&self, pixel: &Pixel, strip: &Strip, desk: &mut Desk<'a>) {
+        let Desk { surfaces, parts, samples, .. } = desk;
+        surfaces.clear();
+        parts.clear();
+        samples.clear();
+        let opaque = strip.near.len();
+        for (i, sample) in pixel.samples().enumerate() {
+            samples.push((parts.len(), DVec3::ZERO));
+            let mut add = |triangle: u32, near: f64, fragment: usize| {
+                let surface = self.surface(surfaces, triangle, near, pixel.place(i));
+                parts.push(Part { surface, fragment, triangle, near, sample: i });
+            };
+            for index in strip.layers_of(sample) {
+                let layer = strip.layers[index];
+                add(layer.triangle, layer.near, opaque + index);
+            }
+            if strip.seen[sample] != NONE {
+                add(strip.seen[sample], strip.near[sample], sample);
+            }
+        }
+    }
+
+    /// The surface of a pixel to which a sample belongs.
+    fn surface(&self, surfaces: &mut Vec<Surface<'a>>, triangle: u32, near: f64, at: [f64; 2]) -> usize {
+        let prepared = self.appearance.prepared;
+        let curved = self.is_curved(triangle);
+        let object = prepared.object_of[triangle as usize];
+        let face = |triangle: u32| {
+            let [a, b, c] = prepared.corners(triangle);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        let least = if curved { SMOOTH } else { FLAT };
+        let same = |surface: &Surface<'_>| {
+            surface.curved == curved
+                && prepared.object_of[surface.triangle as usize] == object
+                && (surface.near - near).abs() <= BESIDE * near.abs()
+                && prepared.material_number(surface.triangle) == prepared.material_number(triangle)
+                && face(surface.triangle).dot(face(triangle)) > least
+        };
+        let known = surfaces.iter().position(|surface| surface.triangle == triangle);
+        let index = known.or_else(|| surfaces.iter().position(same)).unwrap_or_else(|| {
+            surfaces.push(Surface::new(triangle, near, curved));
+            surfaces.len() - 1
+        });
+        surfaces[index].add(triangle, at, [near, self.depth(near)]);
+        index
+    }
+
+    /// Whether a triangle stands for a curved surface.
+    pub(super) fn is_curved(&self, triangle: u32) -> bool {
+        self.appearance.curved && self.appearance.prepared.corner_normals(triangle).is_some()
+    }
+
+    /// The depth of a nearness.
+    pub(super) fn depth(&self, near: f64) -> f64 {
+        if self.is_parallel { -near } else { near.recip() }
+    }
+
+    /// The mean distance of what samples see of a surface, its normal, object and material.
+    pub(super) fn first(&self, surface: &Surface<'_>, found: &Found<'_>) -> (f64, DVec3, [u32; 2]) {
+        let [near, depth] = surface.nearness.map(|sum| sum / f64::from(surface.count));
+        // Nearness is linear over the picture, depth is not: far away, the mean is not that of the middle.
+        let middle = self.depth(if surface.alone { near } else { found.near });
+        let apart = if self.is_parallel { [1.0, depth - middle] } else { [depth / middle, 0.0] };
+        (found.distance * apart[0] + apart[1], found.element.normal, [found.object, found.material])
+    }
+
+    /// The element in the middle of what samples see of a surface.
+    pub(super) fn find<'p>(
+        &self,
+        surface: &Surface<'_>,
+        parts: impl Iterator<Item = &'p Part>,
+        pixel: &Pixel,
+        flat: &mut Option<Found<'a>>,
+    ) -> Option<Found<'a>> {
+        let part = f64::from(surface.count).recip();
+        let middle = surface.sum.map(|sum| sum * part);
+        let (at, triangle, near) = if surface.alone {
+            (middle, surface.triangle, surface.near)
+        } else {
+            // The mean of samples in several triangles may lie in none of them.
+            let away = |at: [f64; 2]| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
+            let places = parts.map(|part| (pixel.place(part.sample), part.triangle, part.near));
+            places.min_by(|(a, ..), (b, ..)| away(*a).total_cmp(&away(*b)))?
+        };
+        let sight = self.eye.ray(at, [0.5; 2])?;
+        let length = sight.ray.direction.length();
+        let towards = sight.ray.direction / length;
+        if let Some(found) = flat.filter(|found| found.triangle == triangle) {
+            let face = found.element.face;
+            let t = (found.element.position - sight.ray.origin).dot(face) / sight.ray.direction.dot(face);
+            if t.is_finite() {
+                let element = Element { position: sight.ray.at(t), ..found.element };
+                return Some(Found { element, near, distance: t * length, towards, ..found });
+            }
+        }
+        let prepared = self.appearance.prepared;
+        let hit = met(&sight.ray, prepared.corners(triangle), triangle)?;
+        let element = Element::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
+        let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let optics = self.appearance.optics(object, material);
+        let distance = hit.t * length;
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+        let mut found = Found {
+            near,
+            element,
+            optics,
+            distance,
+            object,
+            material,
+            towards,
+            triangle,
+            weights,
+            sides: Default::default(),
+        };
+        if optics.is_textured() {
+            let sides = footprint(element.face, towards, sight.cone.at(distance));
+            found.sides = sides;
+            let place = prepared.place(triangle, weights, sides);
+            found.element.tilt(-towards, |normal| optics.tilted(&place, normal));
+        } else if !surface.curved {
+            *flat = Some(found);
+        }
+        Some(found)
+    }
+}
+
+/// Where a line of sight meets the plane of a triangle, within the triangle.
+fn met(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32) -> Option<Hit> {
+    let (across, up, from) = (b - a, c - a, ray.origin - a);
+    let p = ray.direction.cross(up);
+    let scale = across.dot(p).recip();
+    let q = from.cross(across);
+    let (t, u, v) = (up.dot(q) * scale, from.dot(p) * scale, ray.direction.dot(q) * scale);
+    if !(t.is_finite() && u.is_finite() && v.is_finite()) {
+        return None;
+    }
+    let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+    let over = (u + v).max(1.0);
+    Some(Hit { t, triangle, u: u / over, v: v / over })
+}
