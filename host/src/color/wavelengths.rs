@@ -104,6 +104,9 @@ impl Wavelengths {
 
     /// What light looks like: linear sRGB. Its mean over all combs is exact.
     pub fn seen(&self, comb: usize, light: Channels) -> DVec3 {
+        if !self.spectral {
+            return DVec3::new(light.0[0], light.0[1], light.0[2]);
+        }
         let weights = &self.seen[comb.min(self.seen.len() - 1)];
         (0..LANES).map(|lane| weights[lane] * light.0[lane]).sum()
     }

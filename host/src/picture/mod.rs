@@ -45,7 +45,8 @@ impl Picture {
     /// # Errors
     /// [`PictureError::Size`] for an empty side or more than [`MAX_PIXELS`].
     pub fn new(width: u32, height: u32) -> Result<Picture, PictureError> {
-        Ok(Picture { width, height, pixels: vec![Pixel::default(); Picture::pixels_of(width, height)?] })
+        let pixels = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
+        Ok(Picture { width, height, pixels })
     }
 
     /// How many pixels a picture has.

@@ -20,7 +20,7 @@ pub struct Film {
 }
 
 /// What is known of a pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, bytemuck::Zeroable)]
 pub struct Tally {
     /// Sum of radiance, linear sRGB.
     pub sum: DVec3,
@@ -58,6 +58,7 @@ impl Tally {
     }
 
     /// Adds several samples that are the same.
+    #[inline]
     pub fn add_alike(&mut self, sample: &Sample, count: u32) {
         let radiance = if sample.radiance.is_finite() { sample.radiance } else { DVec3::ZERO };
         let times = f64::from(count);
@@ -78,6 +79,12 @@ impl Tally {
     /// Mean radiance; black without samples.
     pub fn mean(&self) -> DVec3 {
         self.sum / f64::from(self.count.max(1))
+    }
+
+    /// The pixel so far; black and uncovered without samples.
+    pub fn pixel(&self) -> Pixel {
+        let coverage = f64::from(self.covered) / f64::from(self.count.max(1));
+        Pixel { radiance: self.mean().as_vec3().to_array(), coverage: coverage as f32 }
     }
 
     /// Variance of the mean luminance, as if samples were independent: evenly spread ones are better.
@@ -102,9 +109,15 @@ impl Film {
     /// # Errors
     /// [`PictureError::Size`].
     pub fn new(width: u32, height: u32) -> Result<Film, PictureError> {
-        let count = Picture::pixels_of(width, height)?;
-        // In parallel: most of the time goes into getting the memory.
-        let tallies = (0..count).into_par_iter().with_min_len(1 << 14).map(|_| Tally::default()).collect();
+        let mut film = Film::untouched(width, height)?;
+        film.tallies.par_chunks_mut(1 << 14).for_each(|tallies| tallies.fill(Tally::default()));
+        Ok(film)
+    }
+
+    /// A film without samples whose memory is not got yet, for one who writes all of it before reading any: to read first
+    /// makes the system give each page twice.
+    pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
+        let tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
         Ok(Film { width, height, tallies })
     }
 
@@ -138,10 +151,7 @@ impl Film {
     pub fn picture(&self) -> Result<Picture, PictureError> {
         let mut picture = Picture::new(self.width, self.height)?;
         let pixels = picture.pixels_mut().par_iter_mut().with_min_len(1 << 14).zip(&self.tallies);
-        pixels.for_each(|(pixel, tally)| {
-            let coverage = f64::from(tally.covered) / f64::from(tally.count.max(1));
-            *pixel = Pixel { radiance: tally.mean().as_vec3().to_array(), coverage: coverage as f32 };
-        });
+        pixels.for_each(|(pixel, tally)| *pixel = tally.pixel());
         Ok(picture)
     }
 

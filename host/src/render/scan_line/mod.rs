@@ -30,6 +30,7 @@ use super::ready::Appearance;
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::LightPoint;
+use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use casters::Casters;
@@ -41,9 +42,9 @@ use screen::{Screen, Viewpoint};
 use shade::{Desk, Shader};
 use shadow::Shadow;
 use spans::{Lines, MOST_LINES, rooks};
-use surfaces::Pixel;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+use surfaces::Pixel;
 use visibility::{Facets, Strip};
 
 /// Most groups of casters that let different light through; what is beyond throws no shadow.
@@ -165,7 +166,7 @@ impl<'a> ScanLine<'a> {
 
     fn draw(
         &self,
-        film: &mut Film,
+        (film, picture): (&mut Film, &mut Picture),
         (view, order): (&View, &Order),
         stopped: &(dyn Fn() -> bool + Sync),
         watch: &Watch<'_>,
@@ -221,7 +222,11 @@ impl<'a> ScanLine<'a> {
             facets: &facets,
             shadows: &shadows,
             offsets: &offsets,
-            places: offsets.iter().zip(0..).map(|(x, line)| [*x, (f64::from(line) + 0.5) / f64::from(samples)]).collect(),
+            places: offsets
+                .iter()
+                .zip(0..)
+                .map(|(x, line)| [*x, (f64::from(line) + 0.5) / f64::from(samples)])
+                .collect(),
             handed: screen.handed(),
             width: order.width as usize,
             rows,
@@ -230,12 +235,14 @@ impl<'a> ScanLine<'a> {
         let drawn: Vec<Option<SpanCounts>> = film
             .tallies_mut()
             .par_chunks_mut(order.width as usize * rows)
+            .zip(picture.pixels_mut().par_chunks_mut(order.width as usize * rows))
             .enumerate()
-            .map_init(Tools::default, |tools, (band, tallies)| {
+            .map_init(Tools::default, |tools, (band, (tallies, pixels))| {
                 if stopped() {
                     return None;
                 }
                 let counts = work.band(self, band, tallies, tools);
+                pixels.iter_mut().zip(&*tallies).for_each(|(pixel, tally)| *pixel = tally.pixel());
                 let rows = (tallies.len() / work.width) as u64;
                 (watch.progress)(done.fetch_add(rows, Ordering::Relaxed) + rows, u64::from(order.height));
                 Some(counts)
@@ -255,6 +262,7 @@ impl<'a> Work<'a> {
         let mut drawn = SpanCounts::default();
         let Tools { strip, counts, desk } = tools;
         desk.clear();
+        tallies.fill(Tally::default());
         counts.resize_with(self.shadows.len(), Vec::new);
         for begin in (first..last).step_by(MOST_LINES) {
             let range = begin..(begin + MOST_LINES).min(last);
@@ -328,9 +336,10 @@ impl Renderer for ScanLine<'_> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
         let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
         let stopped = || watch.is_cancelled() || late();
-        let mut film = pool.install(|| Film::new(order.width, order.height))?;
-        let (spans, complete) = pool.install(|| self.draw(&mut film, (view, order), &stopped, watch))?;
-        let picture = pool.install(|| film.picture())?;
+        let mut film = Film::untouched(order.width, order.height)?;
+        let mut picture = Picture::new(order.width, order.height)?;
+        let (spans, complete) =
+            pool.install(|| self.draw((&mut film, &mut picture), (view, order), &stopped, watch))?;
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
         Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, seconds, threads })
     }

@@ -41,7 +41,12 @@ impl<'a> Reach<'a> {
     /// - `away`: from each end the direction in which light goes on, of any length.
     pub(super) fn patch(&self, ends: [DVec3; 2], away: [DVec3; 2]) -> Option<Patch> {
         let mut polygon = [DVec4::ZERO; MOST_CORNERS];
-        polygon[..4].copy_from_slice(&[ends[0].extend(1.0), ends[1].extend(1.0), away[1].extend(0.0), away[0].extend(0.0)]);
+        polygon[..4].copy_from_slice(&[
+            ends[0].extend(1.0),
+            ends[1].extend(1.0),
+            away[1].extend(0.0),
+            away[0].extend(0.0),
+        ]);
         let mut count = 4;
         for plane in &self.planes {
             let heights = polygon.map(|corner| plane.dot(corner));

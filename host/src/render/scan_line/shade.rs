@@ -6,9 +6,7 @@ use super::enclosed::Enclosed;
 use super::surfaces::{Found, Part, Pixel, Surface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
 use crate::illumination::optics::{Painting, Side, Sighting};
-use crate::render::element::Element;
 use crate::render::eye::{Eye, Sight};
 use crate::render::film::{Sample, Tally};
 use crate::render::ready::Appearance;
@@ -16,7 +14,7 @@ use glam::DVec3;
 
 /// What a lamp adds.
 #[derive(Clone, Copy, Debug)]
-struct Lit {
+pub(super) struct Lit {
     lamp: usize,
     adds: Channels,
     /// What to add to the count of the surface's own group: its light arrives on the other side.
@@ -56,14 +54,14 @@ pub(super) struct Desk<'a> {
     pub(super) lit: Vec<Lit>,
     /// For each sample of the pixel, where its parts begin, and the light that comes to it.
     pub(super) samples: Vec<(usize, DVec3)>,
-    /// The last element of a flat triangle without texture: neighbours differ in their place only.
-    pub(super) flat: Option<Found<'a>>,
+    /// The last element: its neighbours may differ in their place only.
+    pub(super) last: Option<Found<'a>>,
 }
 
 impl Desk<'_> {
     /// Forgets the last pixel, so that no picture depends on which thread made which part of it.
     pub(super) fn clear(&mut self) {
-        self.flat = None;
+        self.last = None;
     }
 }
 
@@ -79,13 +77,13 @@ impl<'a> Shader<'a> {
         desk: &mut Desk<'a>,
         tally: &mut Tally,
     ) {
-        if let Some(sample) = self.single(pixel, strip, counts, &mut desk.flat) {
+        if let Some(sample) = self.single(pixel, strip, counts, &mut desk.last) {
             return tally.add_alike(&sample, pixel.count() as u32);
         }
         self.gather(pixel, strip, desk);
-        let Desk { surfaces, parts, lit, samples, flat } = desk;
+        let Desk { surfaces, parts, lit, samples, last } = desk;
         for (index, surface) in surfaces.iter_mut().enumerate() {
-            surface.found = self.find(surface, parts.iter().filter(|part| part.surface == index), pixel, flat);
+            surface.found = self.find(surface, parts.iter().filter(|part| part.surface == index), pixel, last);
         }
         let combs = self.appearance.wavelengths.combs();
         for comb in 0..combs {
@@ -97,7 +95,7 @@ impl<'a> Shader<'a> {
                     let mut own = parts.iter().filter(|part| part.surface == index);
                     own.all(|part| self.is_shaded(lit, counts, (part.fragment, strip), found.triangle))
                 };
-                surface.own = self.light(found, surface.curved, comb, is_dark, |own| lit.push(own));
+                surface.own = self.light(found, comb, is_dark, |own| lit.push(own));
                 surface.lit = begin..lit.len();
             }
             if combs == 1
@@ -157,7 +155,7 @@ impl<'a> Shader<'a> {
         pixel: &Pixel<'_>,
         strip: &Strip,
         counts: &[Vec<i32>],
-        flat: &mut Option<Found<'a>>,
+        last: &mut Option<Found<'a>>,
     ) -> Option<Sample> {
         let triangle = strip.seen[pixel.first];
         let alike = |sample: usize| {
@@ -175,12 +173,17 @@ impl<'a> Shader<'a> {
             let near = strip.near[sample];
             surface.add(triangle, pixel.place(i), [near, self.depth(near)]);
         }
-        let found = self.find(&surface, std::iter::empty(), pixel, flat)?;
+        let part = (pixel.count() as f64).recip();
+        let sight = self.eye.ray(surface.sum.map(|sum| sum * part), [0.5; 2])?;
+        if !last.as_mut().is_some_and(|found| found.meet(triangle, &sight.ray, surface.near)) {
+            *last = Some(self.element(triangle, surface.near, &sight)?);
+        }
+        let found = last.as_ref()?;
         let mut sum = Channels::ZERO;
         let is_dark = |lit: &Lit| self.is_shaded(lit, counts, (pixel.first, strip), triangle);
-        let own = self.light(&found, surface.curved, 0, is_dark, |lit| sum += lit.adds);
+        let own = self.light(found, 0, is_dark, |lit| sum += lit.adds);
         let radiance = self.appearance.wavelengths.seen(0, own + sum);
-        Some(Sample { radiance, covered: true, first: Some(self.first(&surface, &found)) })
+        Some(Sample { radiance, covered: true, first: Some(self.first(&surface, found)) })
     }
 
     /// What all samples of a pixel get, if they see one surface by the light of the same lamps.
@@ -311,24 +314,19 @@ impl<'a> Shader<'a> {
 
     /// What an element sends to the eye without lamps; gives what each lamp adds.
     ///
-    /// - `curved`: whether its triangle stands for a curved surface. `is_dark`: whether no sample gets light of a lamp; what
-    ///   it adds is not yet known.
+    /// - `is_dark`: whether no sample gets light of a lamp; what it adds is not yet known.
     fn light(
         &self,
         found: &Found<'a>,
-        curved: bool,
         comb: usize,
         is_dark: impl Fn(&Lit) -> bool,
         mut give: impl FnMut(Lit),
     ) -> Channels {
-        let Found { element, optics, towards, .. } = found;
-        let emission = self.appearance.emission(found.object, found.material, comb);
-        let mut own = emission.map_or(Channels::ZERO, |(emission, _)| emission);
+        let Found { element, frame, optics, towards, .. } = found;
+        let mut own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(comb));
         let place = || self.appearance.prepared.place(found.triangle, found.weights, found.sides);
         let painting: Option<Painting> = optics.is_textured().then(|| optics.paint(&place(), comb));
         let painted = painting.as_ref().map_or(&[][..], |painting| painting.as_slice());
-        let normal = element.normal;
-        let frame = optics.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
         let index = optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
         let side = match element.outside {
             true => Side { before: Channels::ONE, behind: index },
@@ -342,7 +340,7 @@ impl<'a> Shader<'a> {
             return own;
         }
         for (number, lamp) in self.lamps.iter().enumerate() {
-            let mut lit = self.between(number, lamp, element, curved);
+            let mut lit = self.between(number, lamp, found);
             if is_dark(&lit) {
                 continue;
             }
@@ -358,14 +356,14 @@ impl<'a> Shader<'a> {
     }
 
     /// How shadows are counted that fall on an element by the light of a lamp.
-    fn between(&self, number: usize, lamp: &Lamp, element: &Element, curved: bool) -> Lit {
+    fn between(&self, number: usize, lamp: &Lamp, Found { element, curved, .. }: &Found<'a>) -> Lit {
         let towards = lamp.light.from(element.position);
         let is_before = towards.dot(element.face) > 0.0;
         let mut lit = Lit { lamp: number, adds: Channels::ZERO, turned: 0, known: None };
         if towards.dot(element.normal) < 0.0 {
             // The light arrives behind the triangle, which is one more in between, or one less.
             lit.turned = if is_before { 1 } else { -1 };
-        } else if !is_before && curved {
+        } else if !is_before && *curved {
             // The triangle turns away where the curved surface that it stands for does not.
             let enclosed = self.enclosed.get(number).and_then(Option::as_ref);
             lit.known = enclosed.map(|enclosed| enclosed.counts(element.leave_curved)[0] > 0);

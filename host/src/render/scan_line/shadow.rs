@@ -11,8 +11,8 @@
 use super::Light;
 use super::casters::{Casters, Silhouette};
 use super::enclosed::Enclosed;
-use super::screen::{Corner, MOST_CORNERS, Outline, Point, Screen};
 use super::reach::Reach;
+use super::screen::{Corner, MOST_CORNERS, Outline, Point, Screen};
 use super::spans::{Lines, Nearness, Patch};
 use super::visibility::{Bands, Facets, Strip, lines_of};
 use glam::DVec3;
@@ -104,8 +104,14 @@ impl Shadow {
         for &number in self.bands.of(band) {
             let Shade { outline, within, weight, group } = &self.polygons[number as usize];
             let Some(nearness) = Nearness::new(outline.corners()) else { continue };
+            let [low, high] = columns_of(outline.corners());
+            let columns = within.columns.start.max(low)..within.columns.end.min(high).min(lines.width);
+            let rows =
+                [lines.range.start.max(within.lines.start), lines.range.end.min(within.lines.end)].map(|y| y as f64);
+            let columns = strip.before(columns, |from, to| nearness.most([from, to], rows));
+            let within = Patch { columns, lines: within.lines.clone() };
             let counts = &mut counts[usize::from(*group) * fragments..][..fragments];
-            lines.spans(outline.corners(), within, |span| {
+            lines.spans(outline.corners(), &within, |span| {
                 spans += 1;
                 let (start, step, bounded) = nearness.along(&span, lines.offset(span.line));
                 let first = (span.line - lines.range.start) * lines.width + span.from;
@@ -157,6 +163,13 @@ impl Shadow {
             }
         }
     }
+}
+
+/// The columns of a polygon, the last one excluded.
+fn columns_of(corners: &[Point]) -> [usize; 2] {
+    let range = |[low, high]: [f64; 2], p: &Point| [low.min(p.x), high.max(p.x)];
+    let [low, high] = corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], range);
+    [low.max(0.0) as usize, (high.max(0.0) + 1.0) as usize]
 }
 
 /// The shadow polygon behind a silhouette, as far as it is in the picture.

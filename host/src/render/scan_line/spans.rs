@@ -23,6 +23,9 @@ pub(super) fn rooks(samples: u32) -> Vec<f64> {
     offsets
 }
 
+/// By how much nearness may be rounded where it is estimated, as a fraction.
+const ROUNDING: f64 = 1e-9;
+
 /// Samples of a line that a polygon covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Span {
@@ -92,6 +95,9 @@ impl Lines {
     fn monotone(&self, corners: &[Point], within: &Patch, give: &mut impl FnMut(Span)) {
         let range = self.range.start.max(within.lines.start)..self.range.end.min(within.lines.end);
         let columns = within.columns.start.min(self.width)..within.columns.end.min(self.width);
+        if columns.is_empty() {
+            return;
+        }
         let mut crossings = [[0.0; 2]; MOST_LINES];
         let (mut first, mut last) = (usize::MAX, 0);
         let mut from = corners[corners.len() - 1];
@@ -191,6 +197,15 @@ impl Nearness {
         let end = start + self.by_column * (span.to - 1 - span.from) as f64;
         let bounded = start.min(end) < self.least || start.max(end) > self.most;
         (start, self.by_column, bounded)
+    }
+
+    /// The greatest in a rectangle.
+    #[inline]
+    pub(super) fn most(&self, columns: [f64; 2], lines: [f64; 2]) -> f64 {
+        let along = |slope: f64, [from, to]: [f64; 2], at: f64| (slope * (from - at)).max(slope * (to - at));
+        let parts = [self.at.near, along(self.by_column, columns, self.at.x), along(self.by_line, lines, self.at.y)];
+        let error = ROUNDING * parts.iter().map(|part| part.abs()).sum::<f64>();
+        self.bound(parts.iter().sum::<f64>() + error)
     }
 
     /// Keeps a value within bounds.

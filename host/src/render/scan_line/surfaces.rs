@@ -3,9 +3,11 @@
 use super::shade::{Desk, Shader};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
+use crate::illumination::distribution::Frame;
 use crate::illumination::optics::Optics;
 use crate::numeric::ray::{Hit, Ray};
 use crate::render::element::Element;
+use crate::render::eye::Sight;
 use crate::scene::footprint;
 use glam::DVec3;
 use std::ops::Range;
@@ -79,7 +81,18 @@ impl Surface<'_> {
     /// A surface of which no sample is known yet.
     pub(super) fn new(triangle: u32, near: f64, curved: bool) -> Self {
         let (own, lit) = (Channels::ZERO, 0..0);
-        Surface { triangle, near, curved, count: 0, sum: [0.0; 2], alone: true, nearness: [0.0; 2], found: None, own, lit }
+        Surface {
+            triangle,
+            near,
+            curved,
+            count: 0,
+            sum: [0.0; 2],
+            alone: true,
+            nearness: [0.0; 2],
+            found: None,
+            own,
+            lit,
+        }
     }
 
     /// Adds a sample.
@@ -99,12 +112,18 @@ impl Surface<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct Found<'a> {
     pub(super) element: Element,
+    /// Whether its triangle stands for a curved surface.
+    pub(super) curved: bool,
+    /// Whether neighbours in its triangle differ in their place only.
+    pub(super) is_flat: bool,
     /// Of the sample from which it was found.
     pub(super) near: f64,
+    /// About its normal.
+    pub(super) frame: Frame,
     pub(super) optics: &'a Optics,
     pub(super) distance: f64,
-    pub(super) object: u32,
-    pub(super) material: u32,
+    /// Object and material.
+    pub(super) seen: [u32; 2],
     pub(super) towards: DVec3,
     pub(super) triangle: u32,
     pub(super) weights: [f64; 3],
@@ -138,28 +157,31 @@ impl<'a> Shader<'a> {
 
     /// The surface of a pixel to which a sample belongs.
     fn surface(&self, surfaces: &mut Vec<Surface<'a>>, triangle: u32, near: f64, at: [f64; 2]) -> usize {
-        let prepared = self.appearance.prepared;
-        let curved = self.is_curved(triangle);
-        let object = prepared.object_of[triangle as usize];
-        let face = |triangle: u32| {
-            let [a, b, c] = prepared.corners(triangle);
-            (b - a).cross(c - a).normalize_or_zero()
-        };
-        let least = if curved { SMOOTH } else { FLAT };
-        let same = |surface: &Surface<'_>| {
-            surface.curved == curved
-                && prepared.object_of[surface.triangle as usize] == object
-                && (surface.near - near).abs() <= BESIDE * near.abs()
-                && prepared.material_number(surface.triangle) == prepared.material_number(triangle)
-                && face(surface.triangle).dot(face(triangle)) > least
-        };
         let known = surfaces.iter().position(|surface| surface.triangle == triangle);
-        let index = known.or_else(|| surfaces.iter().position(same)).unwrap_or_else(|| {
-            surfaces.push(Surface::new(triangle, near, curved));
+        let index = known.or_else(|| self.alike(surfaces, triangle, near)).unwrap_or_else(|| {
+            surfaces.push(Surface::new(triangle, near, self.is_curved(triangle)));
             surfaces.len() - 1
         });
         surfaces[index].add(triangle, at, [near, self.depth(near)]);
         index
+    }
+
+    /// The surface of a pixel that goes on in a triangle.
+    fn alike(&self, surfaces: &[Surface<'a>], triangle: u32, near: f64) -> Option<usize> {
+        let prepared = self.appearance.prepared;
+        let curved = self.is_curved(triangle);
+        let least = if curved { SMOOTH } else { FLAT };
+        let face = |triangle: u32| {
+            let [a, b, c] = prepared.corners(triangle);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        surfaces.iter().position(|surface| {
+            surface.curved == curved
+                && prepared.object_of[surface.triangle as usize] == prepared.object_of[triangle as usize]
+                && (surface.near - near).abs() <= BESIDE * near.abs()
+                && prepared.material_number(surface.triangle) == prepared.material_number(triangle)
+                && face(surface.triangle).dot(face(triangle)) > least
+        })
     }
 
     /// Whether a triangle stands for a curved surface.
@@ -178,7 +200,7 @@ impl<'a> Shader<'a> {
         // Nearness is linear over the picture, depth is not: far away, the mean is not that of the middle.
         let middle = self.depth(if surface.alone { near } else { found.near });
         let apart = if self.is_parallel { [1.0, depth - middle] } else { [depth / middle, 0.0] };
-        (found.distance * apart[0] + apart[1], found.element.normal, [found.object, found.material])
+        (found.distance * apart[0] + apart[1], found.element.normal, found.seen)
     }
 
     /// The element in the middle of what samples see of a surface.
@@ -187,7 +209,7 @@ impl<'a> Shader<'a> {
         surface: &Surface<'_>,
         parts: impl Iterator<Item = &'p Part>,
         pixel: &Pixel,
-        flat: &mut Option<Found<'a>>,
+        last: &mut Option<Found<'a>>,
     ) -> Option<Found<'a>> {
         let part = f64::from(surface.count).recip();
         let middle = surface.sum.map(|sum| sum * part);
@@ -200,44 +222,56 @@ impl<'a> Shader<'a> {
             places.min_by(|(a, ..), (b, ..)| away(*a).total_cmp(&away(*b)))?
         };
         let sight = self.eye.ray(at, [0.5; 2])?;
-        let length = sight.ray.direction.length();
-        let towards = sight.ray.direction / length;
-        if let Some(found) = flat.filter(|found| found.triangle == triangle) {
-            let face = found.element.face;
-            let t = (found.element.position - sight.ray.origin).dot(face) / sight.ray.direction.dot(face);
-            if t.is_finite() {
-                let element = Element { position: sight.ray.at(t), ..found.element };
-                return Some(Found { element, near, distance: t * length, towards, ..found });
-            }
+        if let Some(found) = last
+            && found.meet(triangle, &sight.ray, near)
+        {
+            return Some(*found);
         }
+        let found = self.element(triangle, near, &sight)?;
+        if found.is_flat {
+            *last = Some(found);
+        }
+        Some(found)
+    }
+
+    /// The element that a line of sight meets in a triangle.
+    pub(super) fn element(&self, triangle: u32, near: f64, sight: &Sight) -> Option<Found<'a>> {
         let prepared = self.appearance.prepared;
+        let length = sight.ray.direction.length();
+        let towards = sight.ray.direction * length.recip();
         let hit = met(&sight.ray, prepared.corners(triangle), triangle)?;
-        let element = Element::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
+        let mut element = Element::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
         let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let optics = self.appearance.optics(object, material);
         let distance = hit.t * length;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let mut found = Found {
-            near,
-            element,
-            optics,
-            distance,
-            object,
-            material,
-            towards,
-            triangle,
-            weights,
-            sides: Default::default(),
-        };
+        let mut sides = Default::default();
         if optics.is_textured() {
-            let sides = footprint(element.face, towards, sight.cone.at(distance));
-            found.sides = sides;
+            sides = footprint(element.face, towards, sight.cone.at(distance));
             let place = prepared.place(triangle, weights, sides);
-            found.element.tilt(-towards, |normal| optics.tilted(&place, normal));
-        } else if !surface.curved {
-            *flat = Some(found);
+            element.tilt(-towards, |normal| optics.tilted(&place, normal));
         }
-        Some(found)
+        let normal = element.normal;
+        let frame = optics.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
+        let curved = self.is_curved(triangle);
+        let is_flat = !curved && !optics.is_textured();
+        let seen = [object, material];
+        Some(Found { near, element, curved, is_flat, frame, optics, distance, seen, towards, triangle, weights, sides })
+    }
+}
+
+impl Found<'_> {
+    /// Moves to where another line of sight meets a triangle, if it is the same, flat and without a texture.
+    pub(super) fn meet(&mut self, triangle: u32, ray: &Ray, near: f64) -> bool {
+        if !self.is_flat || triangle != self.triangle {
+            return false;
+        }
+        let face = self.element.face;
+        let t = (self.element.position - ray.origin).dot(face) / ray.direction.dot(face);
+        let length = ray.direction.length();
+        self.element.position = ray.at(t);
+        (self.near, self.distance, self.towards) = (near, t * length, ray.direction * length.recip());
+        self.distance.is_finite()
     }
 }
 

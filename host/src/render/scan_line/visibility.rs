@@ -4,6 +4,7 @@ use super::screen::{Corner, Outline, Point, Screen};
 use super::spans::{Lines, Nearness, Patch, Span};
 use crate::scene::Prepared;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// No triangle, and no outline.
 pub(super) const NONE: u32 = u32::MAX;
@@ -80,6 +81,9 @@ pub(super) struct Layer {
     pub(super) turns: i32,
 }
 
+/// Columns of a tile of a strip.
+const TILE: usize = 32;
+
 /// What the samples of a strip see.
 #[derive(Default)]
 pub(super) struct Strip {
@@ -87,6 +91,8 @@ pub(super) struct Strip {
     pub(super) near: Vec<f64>,
     /// Its triangle.
     pub(super) seen: Vec<u32>,
+    /// For each tile of columns, the least nearness of what its samples see, infinite where there is nothing.
+    farthest: Vec<f64>,
     /// Passable surfaces, sample by sample from the nearest.
     pub(super) layers: Vec<Layer>,
     /// Where the layers of each sample begin, if there are any at all.
@@ -163,7 +169,7 @@ impl<'a> Facets<'a> {
     /// Finds what the samples of some lines of a band see.
     pub(super) fn see(&self, band: usize, lines: &Lines, strip: &mut Strip) {
         let samples = lines.range.len() * lines.width;
-        let Strip { near, seen, layers, begins, spans } = strip;
+        let Strip { near, seen, farthest, layers, begins, spans } = strip;
         near.clear();
         near.resize(samples, f64::NEG_INFINITY);
         seen.clear();
@@ -187,6 +193,14 @@ impl<'a> Facets<'a> {
                 }
             });
         });
+        farthest.clear();
+        farthest.resize(lines.width.div_ceil(TILE), f64::INFINITY);
+        for line in near.chunks(lines.width) {
+            for (least, tile) in farthest.iter_mut().zip(line.chunks(TILE)) {
+                let seen = |near: &f64| if *near > f64::NEG_INFINITY { *near } else { f64::INFINITY };
+                *least = tile.iter().map(seen).fold(*least, f64::min);
+            }
+        }
         if self.passable.is_empty() {
             return;
         }
@@ -216,8 +230,19 @@ impl<'a> Facets<'a> {
 }
 
 impl Strip {
+    /// The columns among some in which a polygon may stand before something; layers only come nearer.
+    ///
+    /// - `most`: its greatest nearness between two columns.
+    pub(super) fn before(&self, columns: Range<usize>, most: impl Fn(f64, f64) -> f64) -> Range<usize> {
+        let stands = |tile: &usize| most((tile * TILE) as f64, ((tile + 1) * TILE) as f64) > self.farthest[*tile];
+        let mut tiles = columns.start / TILE..columns.end.div_ceil(TILE).min(self.farthest.len());
+        let Some(first) = tiles.find(stands) else { return 0..0 };
+        let last = tiles.rev().find(stands).unwrap_or(first);
+        columns.start.max(first * TILE)..columns.end.min((last + 1) * TILE)
+    }
+
     /// The layers of a sample, as a range of all of them.
-    pub(super) fn layers_of(&self, sample: usize) -> std::ops::Range<usize> {
+    pub(super) fn layers_of(&self, sample: usize) -> Range<usize> {
         match self.begins.get(sample..sample + 2) {
             Some(range) => range[0] as usize..range[1] as usize,
             None => 0..0,
