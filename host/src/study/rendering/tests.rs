@@ -1,0 +1,1 @@
+//! Facts about studies of renderers.
