@@ -32,6 +32,13 @@ pub enum Bend {
         /// The first such setting, by its number.
         from: usize,
     },
+    /// The error is least at a setting before the last, and grows beyond.
+    ///
+    /// Its square there is less than 0.6 of the last.
+    Least {
+        /// That setting, by its number.
+        at: usize,
+    },
 }
 
 /// Finds the bend in the errors of settings, from the coarsest to the finest.
@@ -47,6 +54,10 @@ pub(super) fn bend(measured: &[Measures], reference: f64) -> Option<Bend> {
         let from = measured.iter().rposition(|m| !(holds(m) && stays(m))).map_or(0, |index| index + 1);
         (from + 1 < measured.len()).then_some(from)
     };
+    let least = (0..measured.len()).min_by(|one, two| measured[*one].rmse.total_cmp(&measured[*two].rmse))?;
+    if measured[least].rmse.powi(2) < STAYS * last.rmse.powi(2) {
+        return Some(Bend::Least { at: least });
+    }
     let bias = first(&is_bias, &|m| last.bias_squared > STAYS * m.bias_squared);
     let chance = || first(&is_chance, &|m| excess(last) > STAYS * excess(m));
     bias.map(|from| Bend::Bias { from, causes: Vec::new() }).or_else(|| chance().map(|from| Bend::Chance { from }))
@@ -82,5 +93,11 @@ mod tests {
         let tolerance: Vec<Measures> = (0..6).map(|i| measures(0.1 / 3f64.powi(i), 0.0)).collect();
         assert_eq!(bend(&tolerance, 0.0), None);
         assert_eq!(bend(&[], 0.0), None);
+    }
+
+    #[test]
+    fn what_falls_and_grows_again_is_least_in_between() {
+        let filter: Vec<Measures> = [0.3, 0.2, 0.1, 0.4].iter().map(|bias| measures(*bias, 0.0)).collect();
+        assert_eq!(bend(&filter, 0.0), Some(Bend::Least { at: 2 }));
     }
 }

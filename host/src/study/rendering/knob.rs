@@ -15,7 +15,7 @@ const LARGEST_ANGLE: f64 = 90.0;
 /// Depths that are tried; the reference has twice the last one.
 const DEPTHS: [f64; 10] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0];
 /// Points of lights that the reference of scan line has for each of the finest setting.
-const MORE_POINTS: f64 = 4.0;
+const MORE_POINTS: f64 = 2.0;
 
 const BOTH: &[Technique] = &[Technique::RayTracing, Technique::ScanLine];
 const RAYS: &[Technique] = &[Technique::RayTracing];

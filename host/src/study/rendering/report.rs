@@ -29,6 +29,7 @@ pub(super) fn verdict(study: &KnobStudy, changes: bool, apart: Option<(f64, Vec<
         _ if !changes => "changes nothing: all settings give the same picture".to_owned(),
         None if study.rows.len() < 3 => String::new(),
         None => "the error still falls at the finest setting".to_owned(),
+        Some(Bend::Least { at: least }) => format!("the error is least at {}, and grows beyond", at(*least)),
         Some(Bend::Chance { from }) => {
             format!("from {} on the error is chance: more samples lower it, not {}", at(*from), study.name)
         }
