@@ -6,7 +6,7 @@ use crate::{
     production::{Production, Sent, difference, view_of_dials},
     render::{Order, Watch},
     scene::Scene,
-    study::{KNOBS, Options},
+    study::{Options, Technique, renderers},
     workstation::{Drawing, Emulator},
 };
 use clap::{Args, FromArgMatches};
@@ -279,22 +279,23 @@ impl Job<'_> {
     }
 
     fn study(&mut self, contents: &mut Contents<'_>) -> Result<(), Failure> {
-        let Some(knob) = KNOBS.iter().find(|k| k.name == "render") else { return Ok(()) };
-        let options = Options { samples: 256, settings: 6, threads: self.common.threads, ..knob.options };
+        let options = Options { width: 160, samples: 256, settings: 6, threads: self.common.threads };
         let progress = Progress::new("studying", self.common.json);
         let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
         let start = Instant::now();
-        let study = (knob.run)(&self.scene, &options, &watch);
+        let study = renderers(&self.scene, &[Technique::RayTracing], &["samples"], &options, &watch);
         progress.finish();
         let study = study?;
-        let (summary, seconds, table) = (knob.summary, start.elapsed().as_secs_f64(), study.table());
-        let text = format!("\nerror against run time: {summary} (studied in {seconds:.1} s)\n{}", table.trim_end());
+        let (seconds, table) = (start.elapsed().as_secs_f64(), study.table());
+        let text = format!("\nerror against run time (studied in {seconds:.1} s)\n{}", table.trim_end());
         self.note("study", serde_json::to_value(&study)?, format_args!("{text}"));
-        std::fs::write(contents.file("study-render.txt", "error against run time, as a table"), study.table())?;
+        std::fs::write(contents.file("study-render.txt", "error against run time, as a table"), table)?;
         std::fs::write(contents.file("study-render.csv", "the same for programs"), study.csv())?;
         contents.file("study-render.svg", "the same as a plot");
         contents.file("study-render.png", "the same plot in pixels");
-        study.plot(&format!("{}: {}", self.title, knob.summary)).write(contents.folder, "study-render")?;
+        for (_, plot) in study.plots(self.title) {
+            plot.write(contents.folder, "study-render")?;
+        }
         Ok(())
     }
 }

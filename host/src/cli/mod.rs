@@ -22,6 +22,7 @@ mod render;
 mod show;
 mod source;
 mod study;
+mod study_render;
 mod tessellate;
 
 pub use exit::{Exit, Failure};

@@ -1,7 +1,7 @@
 //! `peris study`: error against run time.
 
 use super::source::stem;
-use super::{Definitions, Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
+use super::{Definitions, Failure, Progress, Row, SCRIPT_HELP, load, study_render, watch_interrupts};
 use crate::render::Watch;
 use crate::study::{KNOBS, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -63,6 +63,7 @@ fn arguments(command: Command) -> Command {
             .about("Measures how light is distributed: every D over incidence and roughness, and what it costs.")
             .after_help(super::exit::table()),
     );
+    let command = command.subcommand(study_render::command());
     KNOBS.iter().fold(command, |command, knob| {
         command.subcommand(
             Arguments::augment_args(Command::new(knob.name))
@@ -76,6 +77,9 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let (name, matches) = matches.subcommand().ok_or_else(|| anyhow::anyhow!("no study is named"))?;
     if name == ILLUMINATION {
         return measure(&IlluminationArguments::from_arg_matches(matches)?);
+    }
+    if name == study_render::NAME {
+        return study_render::run(matches);
     }
     let knob = KNOBS.iter().find(|k| k.name == name).ok_or_else(|| anyhow::anyhow!("no study {name}"))?;
     sweep(knob, &Arguments::from_arg_matches(matches)?)

@@ -1,6 +1,8 @@
 //! Renderers: from a prepared scene and a view to a picture.
 
 mod element;
+#[cfg(test)]
+mod extreme_tests;
 mod eye;
 mod film;
 mod layers;

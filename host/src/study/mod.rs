@@ -1,6 +1,7 @@
 //! Error against run time: what a quality setting costs, and what it buys.
 //!
-//! A [`Knob`] is one quality setting that can be swept. [`KNOBS`] lists those that the program offers.
+//! A [`Knob`] is one quality setting that can be swept. [`KNOBS`] lists those that the program offers, but for the
+//! [`RENDER_KNOBS`] of the renderers, which are studied together.
 
 mod composite;
 mod division;
@@ -8,8 +9,8 @@ mod illumination;
 mod meeting;
 mod octree;
 mod plot;
+mod rendering;
 mod residual;
-mod samples;
 mod sweep;
 mod tessellation;
 
@@ -18,6 +19,9 @@ mod tests;
 
 pub use illumination::{IlluminationRow, IlluminationStudy, illumination};
 pub use plot::{Axis, Plot, PlotError, Point, Series};
+pub use rendering::{
+    Bend, KnobStudy, Measures, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, Technique, renderers,
+};
 pub use sweep::{Knob, Row, Study, Trial, sweep};
 
 use crate::illumination::distribution::DistributionError;
@@ -56,12 +60,6 @@ pub struct KnobRow {
 
 /// The studies that the program offers.
 pub const KNOBS: &[KnobRow] = &[
-    KnobRow {
-        name: "render",
-        summary: "samples per pixel against a reference of far more samples",
-        options: Options { width: 160, samples: 1024, settings: 7, threads: None },
-        run: samples::study,
-    },
     KnobRow {
         name: "tessellate",
         summary: "tessellation tolerance against a far finer tessellation and the exact surfaces",

@@ -1,0 +1,94 @@
+//! `peris study render`: error against run time of every knob of every renderer.
+
+use super::source::stem;
+use super::{Definitions, Exit, Failure, Progress, SCRIPT_HELP, load, watch_interrupts};
+use crate::render::Watch;
+use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, Technique, renderers};
+use clap::builder::PossibleValuesParser;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+/// Its name among the studies.
+pub(super) const NAME: &str = "render";
+
+#[derive(Args, Debug)]
+struct Arguments {
+    #[arg(help = SCRIPT_HELP, default_value = "corner", value_name = "SCRIPT")]
+    script: String,
+    #[command(flatten)]
+    definitions: Definitions,
+    /// Knobs to sweep, listed below [default: all that change something in the scene]
+    #[arg(short, long, value_name = "NAME,...", value_delimiter = ',', value_parser = PossibleValuesParser::new(RENDER_KNOBS.iter().map(|knob| knob.name)), hide_possible_values = true)]
+    knob: Vec<String>,
+    /// Who makes the pictures [default: all]
+    #[arg(long, value_name = "RENDERER", value_delimiter = ',', value_parser = PossibleValuesParser::new(Technique::ALL.map(Technique::option)))]
+    renderer: Vec<String>,
+    /// Folder for the table (.csv) and the plots (.svg and .png); it is made if need be
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    output: PathBuf,
+    /// Columns of the pictures; the rows follow
+    #[arg(long, value_name = "PIXELS", default_value_t = RENDER_OPTIONS.width, value_parser = clap::value_parser!(u32).range(1..=16384))]
+    width: u32,
+    /// Samples in each pixel of the reference, in two independent halves
+    #[arg(long, value_name = "COUNT", default_value_t = RENDER_OPTIONS.samples, value_parser = clap::value_parser!(u32).range(4..=i64::from(crate::scene::MAX_SAMPLES)))]
+    samples: u32,
+    /// About how many settings of each knob are tried
+    #[arg(long, value_name = "COUNT", default_value_t = RENDER_OPTIONS.settings, value_parser = clap::value_parser!(u32).range(2..=16))]
+    settings: u32,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    threads: Option<NonZeroUsize>,
+    /// Reports as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+/// The sub-command.
+pub(super) fn command() -> Command {
+    let line = |knob: &RenderKnob| {
+        let by: Vec<&str> = knob.techniques.iter().map(|technique| technique.word()).collect();
+        format!("\n  {:<16} {} ({})", knob.name, knob.sets, by.join(", "))
+    };
+    let knobs: String = RENDER_KNOBS.iter().map(line).collect();
+    Arguments::augment_args(Command::new(NAME))
+        .about("Sweeps the knobs of the renderers, each while the others stay as the scene has them.")
+        .after_help(format!("Knobs:{knobs}\n\n{}", super::exit::table()))
+}
+
+/// Runs it; what was finished before an interruption is kept.
+pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
+    let arguments = Arguments::from_arg_matches(matches)?;
+    let cancelled = watch_interrupts();
+    let scene = load(&arguments.script, &arguments.definitions)?.scene;
+    let Arguments { width, samples, settings, threads, .. } = arguments;
+    let options = Options { width, samples, settings, threads };
+    let is_chosen = |name: &str, chosen: &[String]| chosen.is_empty() || chosen.iter().any(|other| other == name);
+    let techniques = Technique::ALL.into_iter().filter(|t| is_chosen(t.option(), &arguments.renderer));
+    let names = RENDER_KNOBS.iter().map(|knob| knob.name).filter(|name| is_chosen(name, &arguments.knob));
+    let (techniques, names): (Vec<Technique>, Vec<&str>) = (techniques.collect(), names.collect());
+    std::fs::create_dir_all(&arguments.output)?;
+    let progress = Progress::new("studying", arguments.json);
+    let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
+    let study = renderers(&scene, &techniques, &names, &options, &watch);
+    progress.finish();
+    let study = study?;
+    let script = stem(&arguments.script);
+    let csv = arguments.output.join(format!("{script}-{NAME}.csv"));
+    std::fs::write(&csv, study.csv())?;
+    let mut written = vec![csv];
+    for (name, plot) in study.plots(script) {
+        written.extend(plot.write(&arguments.output, &format!("{script}-{NAME}{name}"))?);
+    }
+    if arguments.json {
+        say!("{}", serde_json::to_string_pretty(&study)?);
+    } else {
+        say!("{}", study.table());
+        let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+        say!("{}", names.join(", "));
+    }
+    match study.complete {
+        true => Ok(()),
+        false => Err(Failure::new(Exit::Interrupted, anyhow::anyhow!("interrupted; what was finished is kept"))),
+    }
+}

@@ -1,0 +1,212 @@
+//! The knobs of the renderers: one row each, from which the sweep, the help and the tables are derived.
+
+use super::setup::{Base, Setup, Technique};
+use crate::illumination::Light;
+use crate::plan::Stage;
+
+/// The coarsest tolerance, as a part of the diagonal of the largest curved object, and how much finer the next one is.
+const COARSEST: f64 = 1.0 / 60.0;
+const TOLERANCE_STEP: f64 = 4.0;
+/// The greatest relative error that is asked for, and the widest filter of textures.
+const LARGEST_ERROR: f64 = 0.5;
+const WIDEST_FILTER: f64 = 4.0;
+/// The largest turn of normals, degrees.
+const LARGEST_ANGLE: f64 = 90.0;
+/// Depths that are tried; the reference has twice the last one.
+const DEPTHS: [f64; 10] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0];
+/// Points of lights that the reference of scan line has for each of the finest setting.
+const MORE_POINTS: f64 = 2.0;
+
+const BOTH: &[Technique] = &[Technique::RayTracing, Technique::ScanLine];
+const RAYS: &[Technique] = &[Technique::RayTracing];
+
+/// A quality setting of a renderer.
+pub struct RenderKnob {
+    /// Its name, as the command line, scripts or both call it.
+    pub name: &'static str,
+    /// What it sets, with its unit.
+    pub sets: &'static str,
+    /// The renderers that have it.
+    pub techniques: &'static [Technique],
+    /// Whether it says which light counts, and not how well that is found: a reference is then only as good as the scene
+    /// asks for, unless this knob is what is studied.
+    pub is_model: bool,
+    /// Whether the triangles depend on it: the run time includes their making.
+    pub remodels: bool,
+    /// Why it changes nothing in a scene, where that is so.
+    pub(super) idle: fn(&Base) -> Option<&'static str>,
+    /// Settings to try, from the coarsest to the finest.
+    pub(super) values: fn(&Base) -> Vec<f64>,
+    /// The setting of a reference.
+    pub(super) best: fn(&Base, Technique) -> f64,
+    /// How it is set.
+    pub(super) get: fn(&Setup) -> f64,
+    /// Sets it.
+    pub(super) set: fn(&mut Setup, f64),
+}
+
+/// The knobs of the renderers.
+///
+/// Two are missing that one might look for: rays always carry eight wavelengths of 512, or three bands, and the octree of
+/// the renderer has one leaf size and depth, which change no hit (`peris study octree`, `peris study depth`).
+pub const RENDER_KNOBS: &[RenderKnob] = &[
+    RenderKnob {
+        name: "samples",
+        sets: "samples in each pixel",
+        techniques: BOTH,
+        is_model: false,
+        remodels: false,
+        idle: |_| None,
+        values: |base| doubled(base).filter(|n| *n <= f64::from(base.options.samples / 4).max(1.0)).collect(),
+        best: |base, _| f64::from(base.options.samples / 2).max(2.0),
+        get: |setup| f64::from(setup.settings.samples),
+        set: |setup, value| setup.settings.samples = value as u32,
+    },
+    RenderKnob {
+        name: "error",
+        sets: "relative error of the luminance at which a pixel has samples enough, of half as many as the reference has at the most",
+        techniques: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: |_| None,
+        values: |base| halved(base, LARGEST_ERROR).collect(),
+        best: |_, _| 0.0,
+        get: |setup| setup.target.unwrap_or(0.0),
+        set: |setup, value| setup.target = (value > 0.0).then_some(value),
+    },
+    RenderKnob {
+        name: "depth",
+        sets: "how often a ray may be reflected or refracted",
+        techniques: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: |base| base.lacks(Stage::Reflection, "nothing in the scene reflects, refracts or carries light on"),
+        values: |base| DEPTHS.into_iter().take(base.options.settings as usize + 1).collect(),
+        best: |base, _| {
+            let last = DEPTHS[(base.options.settings as usize).min(DEPTHS.len() - 1)];
+            f64::max(2.0 * last, f64::from(base.settings().reflection_depth))
+        },
+        get: |setup| f64::from(setup.settings.reflection_depth),
+        set: |setup, value| setup.settings.reflection_depth = value as u32,
+    },
+    RenderKnob {
+        name: "light_samples",
+        sets: "points of each light that has a size, for each element",
+        techniques: BOTH,
+        is_model: false,
+        remodels: false,
+        idle: |base| (!has_spread_light(base)).then_some("no light of the scene has a size"),
+        values: |base| doubled(base).take(6).collect(),
+        best: |base, technique| {
+            let own = f64::from(base.settings().light_samples);
+            match technique {
+                // Every sample of a pixel draws points of its own: their number makes no difference in the end.
+                Technique::RayTracing => own,
+                Technique::ScanLine => doubled(base).take(6).fold(own, f64::max) * MORE_POINTS,
+            }
+        },
+        get: |setup| f64::from(setup.settings.light_samples),
+        set: |setup, value| setup.settings.light_samples = value as u32,
+    },
+    RenderKnob {
+        name: "texture_filter",
+        sets: "over how much of what a sample stands for the mean of a texture is taken; 0 is a point",
+        techniques: BOTH,
+        is_model: false,
+        remodels: false,
+        idle: |base| base.lacks(Stage::Textures, "no material changes from place to place"),
+        values: |base| halved(base, WIDEST_FILTER).take(base.options.settings as usize - 1).chain([0.0]).collect(),
+        // Scan line finds light once for a pixel: there, a point instead of the mean is no better.
+        best: |_, technique| if technique == Technique::RayTracing { 0.0 } else { 1.0 },
+        get: |setup| setup.settings.texture_filter,
+        set: |setup, value| setup.settings.texture_filter = value,
+    },
+    RenderKnob {
+        name: "tolerance",
+        sets: "distance between exact surface and triangles, scene units; 0 stands for a part of each object's size",
+        techniques: BOTH,
+        is_model: false,
+        remodels: true,
+        idle: curved,
+        values: |base| tolerances(base).collect(),
+        best: |base, _| tolerances(base).last().unwrap_or(0.0) / TOLERANCE_STEP,
+        get: |setup| if setup.own_tolerances { 0.0 } else { setup.settings.tolerance.unwrap_or(0.0) },
+        set: |setup, value| (setup.settings.tolerance, setup.own_tolerances) = (Some(value), false),
+    },
+    RenderKnob {
+        name: "angle",
+        sets: "largest turn of the normal from vertex to vertex of an exact surface, degrees",
+        techniques: BOTH,
+        is_model: false,
+        remodels: true,
+        idle: curved,
+        values: |base| halved(base, LARGEST_ANGLE).take(6).collect(),
+        best: |base, _| halved(base, LARGEST_ANGLE).take(6).last().unwrap_or(LARGEST_ANGLE),
+        get: |setup| setup.settings.angle,
+        set: |setup, value| setup.settings.angle = value,
+    },
+    RenderKnob {
+        name: "spectral",
+        sets: "whether rays carry eight wavelengths (1) or three bands (0)",
+        techniques: BOTH,
+        is_model: true,
+        remodels: false,
+        idle: |base| base.lacks(Stage::Spectra, "no material and no light has a spectrum"),
+        values: |_| vec![0.0, 1.0],
+        best: |_, _| 1.0,
+        get: |setup| f64::from(u8::from(setup.settings.spectral != Some(false))),
+        set: |setup, value| setup.settings.spectral = Some(value > 0.0),
+    },
+    RenderKnob {
+        name: "interreflection",
+        sets: "whether diffuse light is carried on from surface to surface (1) or not (0)",
+        techniques: RAYS,
+        is_model: true,
+        remodels: false,
+        idle: |base| (base.settings().reflection_depth == 0).then_some("the depth of the scene is 0"),
+        values: |_| vec![0.0, 1.0],
+        best: |_, _| 1.0,
+        get: |setup| f64::from(u8::from(setup.settings.interreflection)),
+        set: |setup, value| setup.settings.interreflection = value > 0.0,
+    },
+    RenderKnob {
+        name: "caustics",
+        sets: "whether light counts that a mirror or glass throws from a lamp (1) or not (0)",
+        techniques: RAYS,
+        is_model: true,
+        remodels: false,
+        idle: |base| base.lacks(Stage::Reflection, "nothing in the scene reflects, refracts or carries light on"),
+        values: |_| vec![0.0, 1.0],
+        best: |_, _| 1.0,
+        get: |setup| f64::from(u8::from(setup.settings.caustics)),
+        set: |setup, value| setup.settings.caustics = value > 0.0,
+    },
+];
+
+/// 1, 2, 4, ..., as many as are to be tried.
+fn doubled(base: &Base) -> impl Iterator<Item = f64> + use<> {
+    (0..base.options.settings as i32).map(|i| 2f64.powi(i))
+}
+
+/// A value, its half, ..., as many as are to be tried.
+fn halved(base: &Base, from: f64) -> impl Iterator<Item = f64> + use<> {
+    (0..base.options.settings as i32).map(move |i| from / 2f64.powi(i))
+}
+
+/// Tolerances for the largest curved object.
+fn tolerances(base: &Base) -> impl Iterator<Item = f64> + use<> {
+    let coarsest = base.largest_curved * COARSEST;
+    // Triangles grow as the reciprocal: four settings and the reference span a factor of a thousand.
+    (0..base.options.settings.min(5) as i32).map(move |i| coarsest / TOLERANCE_STEP.powi(i))
+}
+
+fn curved(base: &Base) -> Option<&'static str> {
+    (base.largest_curved == 0.0).then_some("no object is tessellated from a curved surface")
+}
+
+/// Whether some light is no point and not parallel.
+fn has_spread_light(base: &Base) -> bool {
+    let is_spread = |light: &Light| matches!(light, Light::Area { .. } | Light::Sky { .. });
+    let emits = base.prepared.objects.iter().flat_map(|object| &object.materials);
+    base.prepared.lights.iter().any(is_spread) || emits.into_iter().any(|material| !material.emission.is_black())
+}

@@ -1,0 +1,221 @@
+//! What is rendered in a study: a scene, how each of its knobs is set, and the shots that are made of it.
+
+use super::knob::{RENDER_KNOBS, RenderKnob};
+use crate::picture::Picture;
+use crate::plan::{Plan, Stage};
+use crate::render::ray_tracing::RayTracer;
+use crate::render::scan_line::ScanLine;
+use crate::render::{Order, Renderer, Watch};
+use crate::scene::{Prepared, Scene, Settings};
+use crate::study::{Options, StudyError, resized};
+use serde::Serialize;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Added to the seed of a reference, so that its samples are independent of those under test.
+const REFERENCE_SEED: u64 = 0x5EED;
+
+/// A way to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Technique {
+    /// [`RayTracer`].
+    RayTracing,
+    /// [`ScanLine`].
+    ScanLine,
+}
+
+impl Technique {
+    /// All of them.
+    pub const ALL: [Technique; 2] = [Technique::RayTracing, Technique::ScanLine];
+
+    /// Its name in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Technique::RayTracing => "ray tracing",
+            Technique::ScanLine => "scan line",
+        }
+    }
+
+    /// Its name on the command line.
+    pub fn option(self) -> &'static str {
+        match self {
+            Technique::RayTracing => "ray-tracing",
+            Technique::ScanLine => "scan-line",
+        }
+    }
+
+    /// The knobs that it has.
+    pub fn knobs(self) -> impl Iterator<Item = &'static RenderKnob> {
+        RENDER_KNOBS.iter().filter(move |knob| knob.techniques.contains(&self))
+    }
+}
+
+/// How every knob is set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Setup {
+    pub(super) technique: Technique,
+    pub(super) settings: Settings,
+    /// Relative error at which a pixel has samples enough.
+    pub(super) target: Option<f64>,
+    /// Whether tolerances of single objects count.
+    pub(super) own_tolerances: bool,
+}
+
+/// The scene that is studied, as it was asked for.
+pub(super) struct Base {
+    scene: Scene,
+    pub(super) prepared: Prepared,
+    pub(super) options: Options,
+    /// What the scene would need if no knob held it back.
+    plan: Plan,
+    /// Diagonal of the largest object with a surface that is curved and known exactly, scene units; 0 without.
+    pub(super) largest_curved: f64,
+}
+
+/// One rendering.
+#[derive(Clone, Debug)]
+pub(super) struct Shot {
+    pub(super) picture: Picture,
+    /// From the scene to a renderer that has taken it up, seconds.
+    pub(super) build: f64,
+    /// For the picture, seconds.
+    pub(super) render: f64,
+}
+
+impl Base {
+    /// # Errors
+    /// [`StudyError::Scene`].
+    pub(super) fn new(scene: &Scene, options: &Options) -> Result<Base, StudyError> {
+        let options = Options { settings: options.settings.clamp(2, 16), ..*options };
+        let mut scene = resized(scene, &options);
+        let prepared = Prepared::new(&scene)?;
+        // The camera stays where it is, even if it was framed automatically.
+        scene.camera = Some(prepared.camera);
+        let curved = scene.objects.iter().zip(&prepared.objects).filter(|(o, _)| o.shape.is_exact_and_curved());
+        let largest_curved = curved.map(|(_, p)| p.bounds.diagonal()).fold(0.0, f64::max);
+        let mut free = prepared.clone();
+        free.settings.reflection_depth = free.settings.reflection_depth.max(1);
+        free.settings.spectral = free.settings.spectral.filter(|spectral| *spectral);
+        let plan = Plan::new(&free, &free.view());
+        Ok(Base { scene, prepared, options, plan, largest_curved })
+    }
+
+    pub(super) fn settings(&self) -> &Settings {
+        &self.scene.settings
+    }
+
+    /// The words, if the scene has no need of a stage.
+    pub(super) fn lacks(&self, stage: Stage, why: &'static str) -> Option<&'static str> {
+        (!self.plan.needs(stage)).then_some(why)
+    }
+
+    /// All knobs as the scene has them.
+    pub(super) fn own(&self, technique: Technique) -> Setup {
+        let mut settings = self.scene.settings;
+        // In words, so that setups that are the same are equal.
+        settings.spectral = Some(settings.spectral.unwrap_or(self.plan.needs(Stage::Spectra)));
+        Setup { technique, settings, target: None, own_tolerances: true }
+    }
+
+    /// Every knob at its best, but those that say which light counts: of these only the one that is studied.
+    pub(super) fn best(&self, technique: Technique, studied: &RenderKnob) -> Setup {
+        let mut setup = self.own(technique);
+        for knob in technique.knobs().filter(|knob| (knob.idle)(self).is_none()) {
+            if !knob.is_model || knob.name == studied.name {
+                (knob.set)(&mut setup, (knob.best)(self, technique));
+            }
+        }
+        setup
+    }
+
+    /// What scan line leaves out of the scene.
+    pub(super) fn left_out(&self) -> Result<Vec<&'static str>, StudyError> {
+        let view = self.prepared.view();
+        let plan = Plan::new(&self.prepared, &view);
+        Ok(ScanLine::new(&self.prepared, &plan)?.left_out(&view))
+    }
+
+    /// Renders the two halves of a reference, which know nothing of one another: by other seeds, and as scan line has none
+    /// by another grid of samples.
+    ///
+    /// # Errors
+    /// As [`Base::shoot`].
+    pub(super) fn halves(&self, setup: &Setup, watch: &Watch<'_>) -> Result<[Shot; 2], StudyError> {
+        let half = |half: u64, order: &mut Order| {
+            order.seed = order.seed.wrapping_add(REFERENCE_SEED + half);
+            if half == 1 && setup.technique == Technique::ScanLine {
+                order.samples -= order.samples / 8;
+            }
+        };
+        let shots = self.shoot(setup, &half, &|shots| shots.len() == 2, watch)?;
+        <[Shot; 2]>::try_from(shots).map_err(|_| StudyError::Interrupted)
+    }
+
+    /// Renders a setup again and again, each time with another seed.
+    ///
+    /// - `is_enough`: whether no more are needed.
+    ///
+    /// # Errors
+    /// [`StudyError`]; [`StudyError::Interrupted`] for a picture that is not complete.
+    pub(super) fn trials(
+        &self,
+        setup: &Setup,
+        is_enough: &dyn Fn(&[Shot]) -> bool,
+        watch: &Watch<'_>,
+    ) -> Result<Vec<Shot>, StudyError> {
+        self.shoot(setup, &|trial, order| order.seed = order.seed.wrapping_add(trial), is_enough, watch)
+    }
+
+    fn shoot(
+        &self,
+        setup: &Setup,
+        vary: &dyn Fn(u64, &mut Order),
+        is_enough: &dyn Fn(&[Shot]) -> bool,
+        watch: &Watch<'_>,
+    ) -> Result<Vec<Shot>, StudyError> {
+        let start = Instant::now();
+        let prepared = self.prepared_for(setup)?;
+        let view = prepared.view();
+        let plan = Plan::new(&prepared, &view);
+        let renderer: Box<dyn Renderer + '_> = match setup.technique {
+            Technique::RayTracing => Box::new(RayTracer::new(&prepared, &plan)?),
+            Technique::ScanLine => Box::new(ScanLine::new(&prepared, &plan)?),
+        };
+        let build = start.elapsed().as_secs_f64();
+        // With a target, as many samples as a half of the reference has, at the most.
+        let samples = match setup.target {
+            Some(_) => setup.settings.samples.max(self.options.samples / 2),
+            None => setup.settings.samples,
+        };
+        let order =
+            Order { samples, target: setup.target, threads: self.options.threads, ..Order::of(&setup.settings) };
+        let quiet = Watch { cancelled: watch.cancelled, progress: &|_, _| {} };
+        let mut shots = Vec::new();
+        while !is_enough(&shots) {
+            let mut order = order;
+            vary(shots.len() as u64, &mut order);
+            let rendering = renderer.render(&view, &order, &quiet)?;
+            if !rendering.complete || watch.cancelled.load(Ordering::Relaxed) {
+                return Err(StudyError::Interrupted);
+            }
+            shots.push(Shot { picture: rendering.picture, build, render: rendering.seconds });
+        }
+        Ok(shots)
+    }
+
+    fn prepared_for(&self, setup: &Setup) -> Result<Prepared, StudyError> {
+        let Setup { settings, own_tolerances, .. } = *setup;
+        let own = self.settings();
+        if own_tolerances && (settings.tolerance, settings.angle) == (own.tolerance, own.angle) {
+            let mut prepared = self.prepared.clone();
+            prepared.settings = settings;
+            return Ok(prepared);
+        }
+        let mut scene = Scene { settings, ..self.scene.clone() };
+        if !own_tolerances {
+            scene.objects.iter_mut().for_each(|object| object.tolerance = None);
+        }
+        Ok(Prepared::new(&scene)?)
+    }
+}

@@ -1,0 +1,233 @@
+//! Facts about studies of renderers: closed forms first, then every row of the table.
+
+use super::*;
+use crate::color::{Beyond, Color, Spectrum};
+use crate::illumination::light::Patch;
+use crate::illumination::material::{Classic, Material};
+use crate::illumination::texture::{Laying, Motif, Pattern};
+use crate::illumination::{Light, Paint};
+use crate::numeric::ray::Ray;
+use crate::scene::{Camera, Object, Settings, Shape};
+use crate::solid::Primitive;
+use glam::{DMat4, DVec3};
+use std::f64::consts::PI;
+use std::sync::atomic::AtomicBool;
+
+const SMALL: Options = Options { width: 20, samples: 256, settings: 5, threads: None };
+const RAYS: &[Technique] = &[Technique::RayTracing];
+
+fn object(shape: Shape, transform: DMat4, material: impl Into<Material>) -> Object {
+    Object { name: shape.word().into(), shape, transform, material: Some(material.into()), tolerance: None }
+}
+
+fn diffuse(k: f64) -> Classic {
+    Classic { diffuse: Paint::grey(k), ..Classic::default() }
+}
+
+fn mirror(k: f64) -> Classic {
+    Classic { mirror: Paint::grey(k), ..diffuse(0.0) }
+}
+
+fn camera(from: DVec3, at: DVec3, up: DVec3, field_of_view: f64) -> Camera {
+    Camera { from, at, up, field_of_view, near: 0.0, far: None, lens: None, parallel: None }
+}
+
+fn scene(objects: Vec<Object>, lights: Vec<Light>, camera: Camera) -> Scene {
+    let settings = Settings { width: 20, height: 20, ..Settings::default() };
+    Scene { objects, lights, camera: Some(camera), settings, ..Scene::default() }
+}
+
+/// A white ball under parallel light.
+fn ball() -> Scene {
+    let light = Light::Directional { direction: DVec3::new(-1.0, -1.0, -1.5), irradiance: Color::grey(3.0) };
+    let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(1.0));
+    scene(vec![ball], vec![light], camera(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, 30.0))
+}
+
+/// Every knob has something to do: a ball that mirrors, on tiles beside a colored wall, under a lamp with a spectrum.
+fn all_knobs() -> Scene {
+    let (paints, laying) =
+        (vec![Paint::grey(0.2), Paint::grey(0.8)], Laying { size: DVec3::splat(0.07), ..Laying::default() });
+    let tiles = Paint::Pattern(Box::new(Pattern { motif: Motif::Checker, laying, paints }));
+    let red = Paint::Plain(Color::Bands(DVec3::new(0.7, 0.15, 0.1)));
+    let wall = DMat4::from_translation(DVec3::new(-1.2, 1.0, 0.0));
+    let objects = vec![
+        object(Shape::Ground { size: 8.0 }, DMat4::IDENTITY, Classic { diffuse: tiles, ..Classic::default() }),
+        object(
+            Shape::Solid(Primitive::Box { size: DVec3::new(0.1, 2.0, 4.0) }),
+            wall,
+            Classic { diffuse: red, ..Classic::default() },
+        ),
+        object(Shape::Solid(Primitive::Sphere { radius: 0.6 }), DMat4::from_translation(DVec3::Y * 0.6), mirror(0.8)),
+        object(
+            Shape::Solid(Primitive::Sphere { radius: 0.4 }),
+            DMat4::from_translation(DVec3::new(1.0, 0.4, 0.3)),
+            diffuse(0.7),
+        ),
+    ];
+    let patch = Patch::Rectangle { corner: DVec3::new(-0.5, 2.5, 0.0), across: DVec3::X, up: DVec3::Z };
+    let steep = Spectrum::regular(400.0, 100.0, vec![0.0, 0.2, 1.0, 0.1], Beyond::Held).expect("a spectrum");
+    let radiance = Color::light_of(&steep, 12.0).expect("a light");
+    let eye = camera(DVec3::new(0.8, 1.4, 4.0), DVec3::new(0.0, 0.5, 0.0), DVec3::Y, 34.0);
+    let mut scene = scene(objects, vec![Light::Area { patch, radiance }], eye);
+    scene.settings.interreflection = true;
+    scene
+}
+
+/// The ball as its closed form has it: the means of many points in each pixel.
+fn exact_ball(width: u32) -> Picture {
+    const STEPS: u32 = 64;
+    let scene = ball();
+    let eye = scene.camera.expect("set");
+    let [right, up, forward] = eye.axes().expect("a view");
+    let towards = DVec3::new(1.0, 1.0, 1.5).normalize();
+    let mut picture = Picture::new(width, width).expect("small");
+    for (index, pixel) in picture.pixels_mut().iter_mut().enumerate() {
+        let at = |pixel: u32, step: u32| {
+            let part = (f64::from(pixel) + (f64::from(step) + 0.5) / f64::from(STEPS)) / f64::from(width);
+            (2.0 * part - 1.0) * eye.half_tangent()
+        };
+        let mut sum = 0.0;
+        for step in 0..STEPS * STEPS {
+            let (x, y) = (at(index as u32 % width, step % STEPS), at(index as u32 / width, step / STEPS));
+            let ray = Ray { origin: eye.from, direction: (forward + right * x - up * y).normalize() };
+            let b = ray.origin.dot(ray.direction);
+            let root = b * b - ray.origin.length_squared() + 1.0;
+            if root > 0.0 {
+                sum += 3.0 / PI * ray.at(-b - root.sqrt()).dot(towards).max(0.0);
+            }
+        }
+        pixel.radiance = [(sum / f64::from(STEPS * STEPS)) as f32; 3];
+    }
+    picture
+}
+
+fn study(scene: &Scene, names: &[&str], options: Options) -> Vec<KnobStudy> {
+    let study = renderers(scene, RAYS, names, &options, &Watch::NOBODY).expect("a study");
+    assert!(study.complete);
+    study.knobs
+}
+
+#[test]
+fn a_reference_is_as_near_to_the_closed_form_as_it_says() {
+    let base = Base::new(&ball(), &SMALL).expect("a scene");
+    let samples = RENDER_KNOBS.iter().find(|knob| knob.name == "samples").expect("a knob");
+    let best = base.best(Technique::RayTracing, samples);
+    let reference = Reference::new(base.halves(&best, &Watch::NOBODY).expect("pictures")).expect("a reference");
+    let exact = base.trials(&best, &|shots| shots.len() == 1, &Watch::NOBODY).expect("a picture").remove(0);
+    let exact = Shot { picture: exact_ball(20), ..exact };
+    let found = reference.measure(&[exact.clone(), exact]).expect("measured").rmse;
+    // The sum of 64 x 64 points at the edge is off by a little, too.
+    assert!(found < 2.0 * reference.error + 5e-4, "{found}, stated {}", reference.error);
+    assert!(reference.error < 5e-3, "{}", reference.error);
+}
+
+#[test]
+fn errors_of_samples_and_tolerance_fall_towards_the_closed_form() {
+    let studies = study(&ball(), &["samples", "error", "tolerance"], SMALL);
+    let rmse = |name: &str| {
+        let study = studies.iter().find(|study| study.name == name).expect("a knob");
+        study.rows.iter().map(|row| row.measures.rmse).collect::<Vec<f64>>()
+    };
+    let samples = rmse("samples");
+    // Stratified: faster than n^-1/2, at which 16 times the samples have a fourth of the error.
+    assert!(samples[0] / samples[4] > 5.0, "{samples:?}");
+    let (error, tolerance) = (rmse("error"), rmse("tolerance"));
+    assert!(error[0] > error[4], "{error:?}");
+    assert!(tolerance[0] > 3.0 * tolerance[2], "{tolerance:?}");
+}
+
+#[test]
+fn the_error_of_a_depth_is_what_is_left_of_the_geometric_series() {
+    let plate = |height: f64, material: Material| {
+        object(Shape::Ground { size: 50.0 }, DMat4::from_translation(DVec3::Y * height), material)
+    };
+    let glowing = Material { emission: Color::grey(1.0), ..Material::from(mirror(0.9)) };
+    let eye = camera(DVec3::Y, DVec3::ZERO, DVec3::Z, 1e-3);
+    let scene = scene(vec![plate(0.0, glowing), plate(2.0, mirror(0.8).into())], vec![], eye);
+    let [found] = study(&scene, &["depth"], SMALL).try_into().expect("one knob");
+    assert_eq!(found.best, 12.0);
+    for row in &found.rows {
+        let rest: f64 = (row.setting as i32 / 2 + 1..=6).map(|power| 0.72f64.powi(power)).sum();
+        assert!((row.measures.rmse - rest).abs() < 1e-5, "{row:?}, not {rest}");
+        assert!((row.measures.bias() - row.measures.rmse).abs() < 1e-6, "there is no chance: {row:?}");
+    }
+}
+
+#[test]
+fn a_coarse_tessellation_bends_the_curve_of_the_samples_and_is_named() {
+    let mut scene = ball();
+    scene.settings.tolerance = Some(0.08);
+    let [found] = study(&scene, &["samples"], Options { settings: 7, ..SMALL }).try_into().expect("one knob");
+    let Some(Bend::Bias { from, causes }) = &found.bend else { panic!("{}", found.table()) };
+    assert!(*from < 4 && causes[0].0 == "tolerance" && causes[0].1 > 0.9, "{}", found.table());
+    assert!(found.verdict.contains("the error is bias") && found.table().contains("tolerance ("), "{}", found.verdict);
+}
+
+#[test]
+fn every_knob_changes_the_picture_or_says_why_not() {
+    let options = Options { width: 12, samples: 64, settings: 4, ..SMALL };
+    let names: Vec<&str> = RENDER_KNOBS.iter().map(|knob| knob.name).collect();
+    let found = renderers(&all_knobs(), &Technique::ALL, &names, &options, &Watch::NOBODY).expect("a study");
+    let expected = RENDER_KNOBS.iter().map(|knob| knob.techniques.len()).sum::<usize>();
+    assert_eq!(found.knobs.len(), expected);
+    for study in &found.knobs {
+        let is_model = RENDER_KNOBS.iter().any(|knob| knob.name == study.name && knob.is_model);
+        let measured: Vec<Measures> = study.rows.iter().map(|row| row.measures).collect();
+        // The tolerance alone turns normals far enough.
+        let idle = study.name == "angle";
+        assert!(idle || !study.verdict.contains("changes nothing"), "{}", study.table());
+        // What says which light counts may bring more chance, but no more bias; what says how well it is found, no more error.
+        let (first, last) = (measured[0], measured[measured.len() - 1]);
+        let doubt = 4.0 * last.bias_squared_error.hypot(first.bias_squared_error);
+        let least = measured.iter().fold(f64::INFINITY, |least, m| least.min(m.rmse));
+        match is_model {
+            true => assert!(last.bias_squared <= first.bias_squared + doubt, "{}", study.table()),
+            false => assert!(idle || least < first.rmse, "{}", study.table()),
+        }
+        assert!(study.rows.iter().all(|row| row.seconds > 0.0 && row.measures.rmse.is_finite()));
+    }
+    // Nothing but a flat, black and sharply lit plane: most knobs say why they change nothing.
+    let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) };
+    let eye = camera(DVec3::new(0.0, 2.0, 3.0), DVec3::ZERO, DVec3::Y, 30.0);
+    let plain = scene(vec![object(Shape::Ground { size: 1.0 }, DMat4::IDENTITY, diffuse(0.5))], vec![light], eye);
+    for study in study(&plain, &names, options) {
+        let works = ["samples", "error"].contains(&study.name);
+        assert_eq!(works, !study.verdict.contains("changes nothing: "), "{}", study.table());
+    }
+}
+
+#[test]
+fn scan_line_is_held_against_ray_tracing_where_it_leaves_nothing_out() {
+    let study = |scene: &Scene, options: &Options| {
+        let study = renderers(scene, &[Technique::ScanLine], &["samples"], options, &Watch::NOBODY);
+        study.expect("a study").knobs.remove(0)
+    };
+    let whole = study(&ball(), &SMALL);
+    assert!(whole.reference.contains("ray tracing") && whole.rows.iter().all(|row| row.measures.noise == 0.0));
+    assert!(whole.rows[0].measures.rmse > 3.0 * whole.rows[4].measures.rmse, "{}", whole.table());
+    let part = study(&all_knobs(), &Options { width: 12, samples: 64, settings: 3, ..SMALL });
+    assert!(part.reference.contains("scan line") && part.verdict.contains("from ray tracing, as"), "{}", part.table());
+}
+
+#[test]
+fn what_was_finished_before_an_interruption_is_kept() {
+    let cancelled = AtomicBool::new(false);
+    let progress = |done: u64, _: u64| cancelled.store(done >= 2, std::sync::atomic::Ordering::Relaxed);
+    let watch = Watch { cancelled: &cancelled, progress: &progress };
+    let found = renderers(&ball(), RAYS, &["samples", "error"], &SMALL, &watch).expect("a part");
+    assert!(!found.complete && found.knobs.len() == 1 && found.knobs[0].rows.len() == 2, "{found:?}");
+    assert_eq!(found.csv().lines().count(), 3);
+}
+
+#[test]
+fn plots_show_curves_of_all_knobs_and_each_alone() {
+    let studies = study(&ball(), &["samples", "tolerance"], SMALL);
+    let found = RenderStudy { knobs: studies, complete: true };
+    let plots = found.plots("ball");
+    assert_eq!(plots.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["", "-samples", "-tolerance"]);
+    for (_, plot) in &plots {
+        assert!(plot.svg().expect("drawn").contains("ray tracing"));
+    }
+    assert!(found.csv().starts_with("renderer,knob,setting,time (s),build (s),RMSE,chance,bias,"));
+}
