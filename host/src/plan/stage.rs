@@ -12,6 +12,8 @@ pub enum Stage {
     Octree,
     /// Normals interpolated between the corners.
     Normals,
+    /// Positions and normals of the exact surfaces behind triangles, where rays meet them.
+    ExactSurfaces,
     /// Spectra in place of three bands.
     Spectra,
     /// Patterns and reliefs.
@@ -126,9 +128,10 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 10] = [
+    pub const ALL: [Stage; 11] = [
         Stage::Octree,
         Stage::Normals,
+        Stage::ExactSurfaces,
         Stage::Spectra,
         Stage::Textures,
         Stage::Diffuse,
@@ -144,6 +147,7 @@ impl Stage {
         match self {
             Stage::Octree => "octree",
             Stage::Normals => "interpolated normals",
+            Stage::ExactSurfaces => "exact surfaces",
             Stage::Spectra => "spectra",
             Stage::Textures => "textures",
             Stage::Diffuse => "Lambert's term",
@@ -164,6 +168,7 @@ impl Stage {
         match self {
             Stage::Octree => octree(facts),
             Stage::Normals => normals(facts),
+            Stage::ExactSurfaces => exact_surfaces(facts),
             Stage::Spectra => spectra(facts),
             Stage::Textures => textures(facts),
             Stage::Diffuse => direct(facts, "diffuse part", has_diffuse),
@@ -190,6 +195,14 @@ fn normals(facts: &Facts<'_>) -> Decision {
     match facts.kept().filter(|o| o.is_curved()).count() {
         0 => Decision::new(false, "every object has flat faces"),
         n => Decision::new(true, format!("{} with curved surfaces", counted(n, "object"))),
+    }
+}
+
+fn exact_surfaces(facts: &Facts<'_>) -> Decision {
+    match facts.kept().filter(|o| o.is_exact()).count() {
+        0 if !facts.prepared.settings.exact_surfaces => Decision::new(false, "the scene asks for triangles"),
+        0 => Decision::new(false, "no curved surface is known but by its triangles"),
+        n => Decision::new(true, format!("{}, where rays meet them", counted(n, "object"))),
     }
 }
 
