@@ -2,7 +2,8 @@
 
 use super::Decision;
 use crate::illumination::Material;
-use crate::illumination::material::{Body, Classic, Coated, Shaped};
+use crate::illumination::distribution::TableError;
+use crate::illumination::material::{Body, Classic, Coated, Form, Shaped};
 use crate::scene::{Prepared, PreparedObject};
 
 /// A stage of rendering that can be left out.
@@ -172,7 +173,7 @@ impl Stage {
             Stage::Spectra => spectra(facts),
             Stage::Textures => textures(facts),
             Stage::Diffuse => direct(facts, "diffuse part", has_diffuse),
-            Stage::Specular => direct(facts, "highlight", has_highlight),
+            Stage::Specular => highlights(facts),
             Stage::Ambient => ambient(facts),
             Stage::Shadows => facts.shadows(),
             Stage::Reflection => facts.reflection(),
@@ -237,6 +238,23 @@ fn direct(facts: &Facts<'_>, what: &str, has: impl Fn(&Material) -> bool) -> Dec
     } else {
         Decision::new(true, format!("{} with a {what}", counted(count, "object")))
     }
+}
+
+fn highlights(facts: &Facts<'_>) -> Decision {
+    let mut decision = direct(facts, "highlight", has_highlight);
+    let mut told = Vec::new();
+    for material in facts.kept().flat_map(|object| &object.materials) {
+        let Body::Shaped(Shaped { form: Form::Facets(table), .. }) = &material.body else { continue };
+        let TableError { greatest, mean, values } = table.error();
+        let words = format!(
+            "; a user's distribution in {values} values: error {greatest:.1e} of a value at most, {mean:.1e} of the area"
+        );
+        if !told.contains(&words) {
+            decision.reason.push_str(&words);
+            told.push(words);
+        }
+    }
+    decision
 }
 
 fn ambient(facts: &Facts<'_>) -> Decision {
