@@ -1,6 +1,6 @@
 //! Of what a surface is: what a scene says of it, before it is made ready for rendering.
 
-use super::distribution::{DistributionError, FAMILY, Tabulated};
+use super::distribution::{DistributionError, FAMILY, FacetTable, Tabulated};
 use super::fresnel::{Conductor, Dielectric, IndexError};
 use super::texture::{Paint, Relief, TextureError};
 use crate::color::{Color, ColorError, Glass, Spectrum};
@@ -70,8 +70,10 @@ pub enum Form {
         /// Its roughness m, 1e-8..=1000.
         roughness: f64,
     },
-    /// One that the user defined.
+    /// One that the user defined, of the directions of light and viewer.
     Table(Tabulated),
+    /// Facets that the user defined, by their angle.
+    Facets(FacetTable),
 }
 
 /// A metal.
@@ -297,7 +299,7 @@ impl Material {
                 fraction("reflectance", &shaped.reflectance)?;
                 match &shaped.form {
                     Form::Member { name, roughness } => member(name, *roughness),
-                    Form::Table(_) => Ok(()),
+                    Form::Table(_) | Form::Facets(_) => Ok(()),
                 }
             }
             Body::Metal(metal) => {

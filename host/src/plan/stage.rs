@@ -2,7 +2,8 @@
 
 use super::Decision;
 use crate::illumination::Material;
-use crate::illumination::material::{Body, Classic, Coated, Shaped};
+use crate::illumination::distribution::TableError;
+use crate::illumination::material::{Body, Classic, Coated, Form, Shaped};
 use crate::scene::{Prepared, PreparedObject};
 
 /// A stage of rendering that can be left out.
@@ -12,6 +13,8 @@ pub enum Stage {
     Octree,
     /// Normals interpolated between the corners.
     Normals,
+    /// Positions and normals of the exact surfaces behind triangles, where rays meet them.
+    ExactSurfaces,
     /// Spectra in place of three bands.
     Spectra,
     /// Patterns and reliefs.
@@ -126,9 +129,10 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 10] = [
+    pub const ALL: [Stage; 11] = [
         Stage::Octree,
         Stage::Normals,
+        Stage::ExactSurfaces,
         Stage::Spectra,
         Stage::Textures,
         Stage::Diffuse,
@@ -144,6 +148,7 @@ impl Stage {
         match self {
             Stage::Octree => "octree",
             Stage::Normals => "interpolated normals",
+            Stage::ExactSurfaces => "exact surfaces",
             Stage::Spectra => "spectra",
             Stage::Textures => "textures",
             Stage::Diffuse => "Lambert's term",
@@ -164,10 +169,11 @@ impl Stage {
         match self {
             Stage::Octree => octree(facts),
             Stage::Normals => normals(facts),
+            Stage::ExactSurfaces => exact_surfaces(facts),
             Stage::Spectra => spectra(facts),
             Stage::Textures => textures(facts),
             Stage::Diffuse => direct(facts, "diffuse part", has_diffuse),
-            Stage::Specular => direct(facts, "highlight", has_highlight),
+            Stage::Specular => highlights(facts),
             Stage::Ambient => ambient(facts),
             Stage::Shadows => facts.shadows(),
             Stage::Reflection => facts.reflection(),
@@ -190,6 +196,14 @@ fn normals(facts: &Facts<'_>) -> Decision {
     match facts.kept().filter(|o| o.is_curved()).count() {
         0 => Decision::new(false, "every object has flat faces"),
         n => Decision::new(true, format!("{} with curved surfaces", counted(n, "object"))),
+    }
+}
+
+fn exact_surfaces(facts: &Facts<'_>) -> Decision {
+    match facts.kept().filter(|o| o.is_exact()).count() {
+        0 if !facts.prepared.settings.exact_surfaces => Decision::new(false, "the scene asks for triangles"),
+        0 => Decision::new(false, "no curved surface is known but by its triangles"),
+        n => Decision::new(true, format!("{}, where rays meet them", counted(n, "object"))),
     }
 }
 
@@ -224,6 +238,23 @@ fn direct(facts: &Facts<'_>, what: &str, has: impl Fn(&Material) -> bool) -> Dec
     } else {
         Decision::new(true, format!("{} with a {what}", counted(count, "object")))
     }
+}
+
+fn highlights(facts: &Facts<'_>) -> Decision {
+    let mut decision = direct(facts, "highlight", has_highlight);
+    let mut told = Vec::new();
+    for material in facts.kept().flat_map(|object| &object.materials) {
+        let Body::Shaped(Shaped { form: Form::Facets(table), .. }) = &material.body else { continue };
+        let TableError { greatest, mean, values } = table.error();
+        let words = format!(
+            "; a user's distribution in {values} values: error {greatest:.1e} of a value at most, {mean:.1e} of the area"
+        );
+        if !told.contains(&words) {
+            decision.reason.push_str(&words);
+            told.push(words);
+        }
+    }
+    decision
 }
 
 fn ambient(facts: &Facts<'_>) -> Decision {

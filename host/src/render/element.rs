@@ -1,7 +1,7 @@
 //! The surface element at a hit: position, normals, and where rays may leave from.
 
 use crate::numeric::ray::{Hit, Ray};
-use crate::scene::Prepared;
+use crate::scene::{OnSurface, Prepared};
 use glam::DVec3;
 
 /// Rounding errors in units of the last place of the triangle's largest coordinate that a leaving ray keeps clear of.
@@ -14,17 +14,19 @@ const CLEARANCE_ULPS: f64 = 32.0;
 /// What is known where a ray hits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element {
-    /// On the triangle, with the rounding errors of its coordinates.
+    /// On the triangle, with the rounding errors of its coordinates, or on the exact surface behind it.
     pub(super) position: DVec3,
     /// Unit normal of the triangle, on the side of the viewer.
     pub(super) face: DVec3,
     /// Unit normal for shading, on the side of the viewer.
     pub(super) normal: DVec3,
+    /// Unit normal of what rays leave on the side of the viewer: of the triangle, or of the exact surface before it.
+    pub(super) horizon: DVec3,
     /// Whether the viewer is on the outer side of the triangle.
     pub(super) outside: bool,
-    /// Where a ray that leaves on the side of the viewer begins.
+    /// Where a ray that leaves on the side of the viewer begins: on the triangle, or on the exact surface before it.
     pub(super) leave: DVec3,
-    /// Where a ray that goes through begins.
+    /// Where a ray that goes through begins: always on the triangle.
     pub(super) through: DVec3,
     /// Where a ray towards a light begins: on the curved surface that the triangle stands for, if it bulges out.
     pub(super) leave_curved: DVec3,
@@ -44,7 +46,16 @@ impl Element {
         let clearance = face * (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
         let leave = position + clearance;
         let through = position - clearance;
-        let flat = Element { position, face, normal: face, outside: side > 0.0, leave, through, leave_curved: leave };
+        let flat = Element {
+            position,
+            face,
+            normal: face,
+            horizon: face,
+            outside: side > 0.0,
+            leave,
+            through,
+            leave_curved: leave,
+        };
         let corner_normals = if curved { prepared.corner_normals(triangle) } else { None };
         let Some(corner_normals) = corner_normals else { return Some(flat) };
         let normals = corner_normals.map(|n| {
@@ -57,6 +68,29 @@ impl Element {
         Some(Element { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
     }
 
+    /// Moves it along the ray to the exact surface. Whether it did: not to where the ray is not yet, which begins `before`
+    /// the triangle.
+    ///
+    /// A surface before the triangle is on a part of the ray that meets nothing: rays may leave from there, and whatever
+    /// bulges as it does, does not stand in their way. Behind the triangle they would begin below other triangles, and
+    /// from there they go on from the triangle.
+    ///
+    /// - `before`: in lengths of the direction.
+    pub(super) fn settle(&mut self, direction: DVec3, before: f64, on: &OnSurface) -> bool {
+        if on.beyond <= -before {
+            return false;
+        }
+        let way = direction * on.beyond;
+        self.position += way;
+        self.normal = on.normal;
+        self.leave_curved = self.leave;
+        if on.beyond < 0.0 {
+            (self.leave, self.leave_curved) = (self.leave + way, self.leave + way);
+            self.horizon = on.normal;
+        }
+        true
+    }
+
     /// Gives it another normal for shading.
     ///
     /// - `view`: towards the viewer. `tilted`: from a normal outwards to another.
@@ -65,14 +99,20 @@ impl Element {
         self.normal = towards_viewer(tilted(self.normal * side) * side, view);
     }
 
-    /// A direction that the shading normal sends to the wrong side of the triangle, at its plane.
+    /// A direction that the shading normal sends to the wrong side, at the plane of the triangle or its surface.
     ///
     /// Where it just grazes the plane, both agree.
     ///
     /// - `above`: whether it should be on the side of the viewer.
     pub(super) fn righted(&self, direction: DVec3, above: bool) -> DVec3 {
-        let height = direction.dot(self.face);
-        if (height < 0.0) == above { direction - self.face * (2.0 * height) } else { direction }
+        let plane = self.plane(above);
+        let height = direction.dot(plane);
+        if (height < 0.0) == above { direction - plane * (2.0 * height) } else { direction }
+    }
+
+    /// The normal of the plane that bounds the directions in which rays leave.
+    pub(super) fn plane(&self, above: bool) -> DVec3 {
+        if above { self.horizon } else { self.face }
     }
 }
 
@@ -124,8 +164,16 @@ mod tests {
         for tilt in [-0.6f64, -0.2, 0.0, 0.2, 0.6] {
             let normal = DVec3::new(tilt.sin(), tilt.cos(), 0.0);
             let zero = DVec3::ZERO;
-            let element =
-                Element { position: zero, face, normal, outside: true, leave: face, through: zero, leave_curved: face };
+            let element = Element {
+                position: zero,
+                face,
+                normal,
+                horizon: face,
+                outside: true,
+                leave: face,
+                through: zero,
+                leave_curved: face,
+            };
             for angle in [0.1f64, 0.5, 1.0, 1.5] {
                 let direction = DVec3::new(angle.cos(), -angle.sin(), 0.0);
                 let out = element.righted(direction - normal * (2.0 * direction.dot(normal)), true);

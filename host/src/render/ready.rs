@@ -27,6 +27,8 @@ pub(super) struct Appearance<'a> {
     pub(super) ambient: Option<Curve>,
     /// Whether normals are interpolated.
     pub(super) curved: bool,
+    /// Whether rays are led on to exact surfaces.
+    pub(super) exact: bool,
     /// Whether something lets light straight through.
     pub(super) passing: bool,
 }
@@ -47,6 +49,7 @@ impl<'a> Appearance<'a> {
             background: wavelengths.light(&prepared.background.into()),
             ambient: plan.needs(Stage::Ambient).then(|| wavelengths.light(&prepared.ambient.into())),
             curved: plan.needs(Stage::Normals),
+            exact: plan.needs(Stage::ExactSurfaces),
             passing: false,
             wavelengths,
         };

@@ -5,6 +5,7 @@
 mod cage;
 mod composite;
 mod error;
+mod exact;
 mod meeting;
 mod placing;
 mod prepared;
@@ -16,6 +17,7 @@ mod view;
 pub use cage::{Cage, Sharp, Sharpening};
 pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
+pub use exact::OnSurface;
 pub use meeting::{Meeting, meetings};
 pub use placing::{Sides, footprint};
 pub use prepared::{Prepared, PreparedObject};
@@ -94,6 +96,8 @@ pub struct Settings {
     pub caustics: bool,
     /// Whether rays carry spectra; without a word, where a material or a light has one.
     pub spectral: Option<bool>,
+    /// Whether rays are led on to the exact surfaces behind the triangles that they meet, for position and normal.
+    pub exact_surfaces: bool,
     /// Over how much of what a sample stands for the mean of a texture is taken: 1 is all of it, 0 a point.
     pub texture_filter: f64,
     /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
@@ -116,6 +120,7 @@ impl Default for Settings {
             interreflection: false,
             caustics: false,
             spectral: None,
+            exact_surfaces: true,
             texture_filter: 1.0,
             tolerance: None,
             angle: 45.0,

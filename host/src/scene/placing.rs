@@ -35,21 +35,21 @@ pub(super) fn parameters(mesh: &Mesh, surfaces: &[Option<Arc<dyn Surface>>], mir
     let of = |triangle: usize| {
         let surface =
             mesh.surfaces.get(triangle).and_then(|surface| surfaces.get(*surface as usize)).and_then(Option::as_ref);
-        let corners = mesh.corners(triangle);
-        let laid = match (mesh.corner_parameters.get(triangle), surface) {
-            (Some(parameters), Some(surface)) => {
-                let [low, high] = surface.domain();
-                parameters.map(|uv| (uv - low) / (high - low))
-            }
-            (Some(parameters), None) => *parameters,
-            (None, _) => along_axes(corners),
-        };
-        let [a, b, c] = laid;
-        let usable = laid.iter().all(|uv| uv.is_finite()) && (b - a).perp_dot(c - a).abs() > NO_AREA;
-        let [a, b, c] = if usable { laid } else { along_axes(corners) };
+        let [a, b, c] = laid(mesh, triangle, surface).unwrap_or_else(|| along_axes(mesh.corners(triangle)));
         if mirrored { [a, c, b] } else { [a, b, c] }
     };
     (0..mesh.triangles.len()).map(of).collect()
+}
+
+/// The parameters of the corners of a triangle that its mesh has, if they are worth anything.
+pub(super) fn laid(mesh: &Mesh, triangle: usize, surface: Option<&Arc<dyn Surface>>) -> Option<[DVec2; 3]> {
+    let parameters = mesh.corner_parameters.get(triangle)?;
+    let laid = surface.map_or(*parameters, |surface| {
+        let [low, high] = surface.domain();
+        parameters.map(|uv| (uv - low) / (high - low))
+    });
+    let [a, b, c] = laid;
+    (laid.iter().all(|uv| uv.is_finite()) && (b - a).perp_dot(c - a).abs() > NO_AREA).then_some(laid)
 }
 
 /// The two coordinates of points across the axis to which their triangle is most upright.

@@ -1,5 +1,6 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
+use super::exact::Exact;
 use super::placing;
 use super::{Camera, Made, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
@@ -13,7 +14,7 @@ pub const MAX_TRIANGLES: u64 = 1 << 30;
 /// Tolerance of an object for which none is given, as a fraction of the diagonal of its bounds.
 const RELATIVE_TOLERANCE: f64 = 1.0 / 2000.0;
 /// Normals of a file or surface that are this close to the plane's count as flat (sine of the angle).
-const FLAT_SINE: f64 = 1e-6;
+pub(super) const FLAT_SINE: f64 = 1e-6;
 
 /// A scene ready for a renderer.
 #[derive(Clone, Debug)]
@@ -26,8 +27,10 @@ pub struct Prepared {
     pub object_of: Vec<u32>,
     /// Unit normals at the corners, for the triangles of curved objects only; see [`Prepared::corner_normals`].
     normals: Vec<[Vec3; 3]>,
-    /// Parameters of the corners, for the triangles of objects whose textures need them.
+    /// Parameters of the corners, for the triangles of objects whose textures or exact surfaces need them.
     parameters: Vec<[DVec2; 3]>,
+    /// The exact surfaces of the triangles of curved objects, as far as they are known.
+    pub(super) exact: Exact,
     /// For the triangles of objects of several materials, which of them.
     material_of: Vec<u32>,
     /// The objects, in the order of the scene.
@@ -69,6 +72,10 @@ pub struct PreparedObject {
     parameters_from: Option<u32>,
     /// From scene coordinates to its own.
     pub to_own: DMat4,
+    /// From its own normals to those of the scene, of some length.
+    pub(super) normals_to_scene: DMat3,
+    /// Where the numbers of its exact surfaces begin; none for an object without any that is curved.
+    pub(super) surfaces_from: Option<u32>,
     /// Where its numbers of materials begin; none for an object of one material.
     materials_from: Option<u32>,
 }
@@ -77,6 +84,11 @@ impl PreparedObject {
     /// Whether it has normals other than those of its faces.
     pub fn is_curved(&self) -> bool {
         self.normals_from.is_some()
+    }
+
+    /// Whether it has curved surfaces that are known exactly, and that the scene asks for.
+    pub fn is_exact(&self) -> bool {
+        self.surfaces_from.is_some()
     }
 }
 
@@ -93,6 +105,7 @@ impl Prepared {
             object_of: Vec::new(),
             normals: Vec::new(),
             parameters: Vec::new(),
+            exact: Exact::default(),
             material_of: Vec::new(),
             objects: Vec::new(),
             lights: scene.lights.clone(),
@@ -135,7 +148,10 @@ impl Prepared {
         }));
         self.object_of.resize(self.triangles.len(), self.objects.len() as u32);
         let normals_from = self.add_normals(&mesh, &object.transform, mirrored);
-        let parameters_from = object.needs_parameters(&operand_of).then_some(self.parameters.len() as u32);
+        let is_wanted = self.settings.exact_surfaces && normals_from.is_some();
+        let surfaces_from = if is_wanted { self.exact.add(&mesh, &surfaces) } else { None };
+        let needs_parameters = surfaces_from.is_some() || object.needs_parameters(&operand_of);
+        let parameters_from = needs_parameters.then_some(self.parameters.len() as u32);
         if parameters_from.is_some() {
             self.parameters.extend(placing::parameters(&mesh, &surfaces, mirrored));
         }
@@ -152,6 +168,8 @@ impl Prepared {
             normals_from,
             parameters_from,
             to_own: object.transform.inverse(),
+            normals_to_scene: cofactors(&DMat3::from_mat4(object.transform)),
+            surfaces_from,
             materials_from,
         });
         Ok(())
@@ -213,7 +231,7 @@ impl Prepared {
         object.normals_from.map(|from| &self.normals[(from + triangle - object.first) as usize])
     }
 
-    /// The parameters of the corners of a triangle, where a texture needs them: 0..1 over the domain of its exact surface.
+    /// The parameters of the corners of a triangle, where a texture or its exact surface needs them: 0..1 over the domain of its exact surface.
     pub fn parameters(&self, triangle: u32) -> Option<&[DVec2; 3]> {
         let object = self.object(triangle);
         object.parameters_from.map(|from| &self.parameters[(from + triangle - object.first) as usize])
@@ -232,6 +250,7 @@ impl Prepared {
             + size_of_val(&self.normals[..])
             + size_of_val(&self.parameters[..])
             + size_of_val(&self.material_of[..])
+            + self.exact.bytes()
     }
 }
 

@@ -8,6 +8,7 @@ use crate::color::Color;
 use crate::curve::SplineCurve;
 use crate::database::Library;
 use crate::illumination::Paint;
+use crate::illumination::distribution::FacetTable;
 use crate::solid::primitive::path;
 use crate::surface::SurfaceSide;
 use glam::DVec3;
@@ -22,6 +23,7 @@ enum Argument {
     Vector(DVec3),
     Text(String),
     Paint(Paint),
+    Facets(FacetTable),
     Flag(bool),
     Scalar(Dynamic),
     Contours(Vec<Vec<DVec3>>),
@@ -149,6 +151,7 @@ values! {
     integer: Integer -> i64,
     vector: Vector -> DVec3,
     paint: Paint -> Paint,
+    facets: Facets -> FacetTable,
     scalar: Scalar -> Dynamic,
     flag: Flag -> bool,
     numbers: Numbers -> Vec<Vec<f64>>,
@@ -187,6 +190,12 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
             let bands = || vector_or_number(value).filter(|v| within(*v, 0.0, 1.0)).map(Color::Bands);
             let paint = value.read_lock::<Paint>().map(|paint| paint.clone());
             paint.or_else(|| bands().map(Paint::Plain)).map(Argument::Paint)
+        }
+        // What was a function was sampled before the call: see the engine.
+        Kind::Function => value.read_lock::<FacetTable>().map(|table| Argument::Facets(table.clone())),
+        Kind::Distribution => {
+            let table = value.read_lock::<FacetTable>().map(|table| Argument::Facets(table.clone()));
+            table.or_else(|| check(Kind::Text, value))
         }
         Kind::Powers => vector_or_number(value).filter(|v| within(*v, 0.0, f64::MAX)).map(Argument::Vector),
         Kind::Axis => {
@@ -231,6 +240,7 @@ fn shown(value: &Dynamic) -> String {
         (value.is::<SplineCurve>(), "a curve"),
         (value.is::<ControlMeaning>(), "a kind of spline"),
         (value.is::<Paint>(), "a pattern"),
+        (value.is::<FacetTable>(), "a distribution"),
     ] {
         if is_one {
             return words.into();

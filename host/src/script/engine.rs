@@ -4,13 +4,14 @@ use super::argument::Bound;
 use super::builder::{Builder, Handle};
 use super::definition::Definition;
 use super::error::{self, ScriptError};
-use super::function::Function;
+use super::function::{Function, Kind};
 use super::spline::ControlMeaning;
 use super::{Evaluated, functions};
 use crate::curve::SplineCurve;
 use crate::illumination::Paint;
+use crate::illumination::distribution::{FacetError, FacetTable};
 use rhai::module_resolvers::DummyModuleResolver;
-use rhai::{Dynamic, Engine, EvalAltResult, NativeCallContext};
+use rhai::{Dynamic, Engine, EvalAltResult, FnPtr, Map, NativeCallContext};
 use std::cell::RefCell;
 use std::io::Read;
 use std::path::Path;
@@ -68,6 +69,7 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definitio
     engine.register_type_with_name::<ControlMeaning>("spline");
     engine.register_type_with_name::<SplineCurve>("curve");
     engine.register_type_with_name::<Paint>("pattern");
+    engine.register_type_with_name::<FacetTable>("distribution");
     for function in functions() {
         bind(&mut engine, function, &state);
         if let Some((symbol, _)) = OPERATORS.iter().find(|(_, name)| *name == function.name) {
@@ -148,6 +150,40 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
         let message = format!("{}: {problem}", function.name);
         Box::new(EvalAltResult::ErrorRuntime(message.into(), context.call_position()))
     };
+    // Functions of the script run before the scene is taken hold of: they may build, too.
+    let takes_functions = function.parameters.iter().any(|parameter| parameter.kind == Kind::Function);
+    let sampled: Vec<Dynamic>;
+    let values = if takes_functions {
+        sampled = values.iter().map(|value| sample(function, context, value)).collect::<Result<_, _>>()?;
+        &sampled
+    } else {
+        values
+    };
     let bound = Bound::new(function, values, &state.borrow().library).map_err(failed)?;
     (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)
+}
+
+/// A function of a script as a table, also in a map of values; other values as they are.
+fn sample(function: &Function, context: &NativeCallContext<'_>, value: &Dynamic) -> Answer {
+    if let Some(map) = value.read_lock::<Map>() {
+        let sampled = map.iter().map(|(name, value)| Ok((name.clone(), sample(function, context, value)?)));
+        return Ok(Dynamic::from_map(sampled.collect::<Result<Map, Box<EvalAltResult>>>()?));
+    }
+    let Some(of_angle) = value.read_lock::<FnPtr>() else { return Ok(value.clone()) };
+    let at = |angle: f64| -> Result<f64, Box<EvalAltResult>> {
+        let found: Dynamic = of_angle.call_within_context(context, (angle,))?;
+        let number = found.as_float().or_else(|_| found.as_int().map(|whole| whole as f64));
+        number.map_err(|kind| format!("it is no number but a value of type {kind}").into())
+    };
+    FacetTable::new("user's", at).map(Dynamic::from).map_err(|problem| {
+        let (message, inside) = match &problem {
+            FacetError::Function { angle, source } => {
+                let (message, position) = error::describe(source);
+                (format!("at an angle of {angle}: {message}"), position)
+            }
+            other => (other.to_string(), rhai::Position::NONE),
+        };
+        let position = if inside.is_none() { context.call_position() } else { inside };
+        Box::new(EvalAltResult::ErrorRuntime(format!("{}: {message}", function.name).into(), position))
+    })
 }

@@ -88,7 +88,7 @@ pub(super) fn place(error: &EvalAltResult, script: &str, file: &str) -> ScriptEr
     ScriptError::Place(Box::new(Place { file: file.to_owned(), line, column, message, text }))
 }
 
-fn describe(error: &EvalAltResult) -> (String, Position) {
+pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {
     use EvalAltResult as E;
     let position = error.position();
     let message = match error {

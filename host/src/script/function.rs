@@ -62,6 +62,10 @@ pub enum Kind {
     Lengths,
     /// Reflected fractions 0 to 1: `[red, green, blue]`, or one number for all.
     Fractions,
+    /// A function of one number.
+    Function,
+    /// The name of a distribution, or one of the user's.
+    Distribution,
     /// What is reflected: fractions, the name of a spectrum, or a pattern.
     Reflectance,
     /// Powers 0 and more: `[red, green, blue]`, or one number for all.
@@ -133,6 +137,8 @@ impl Kind {
             Kind::Powers => "a number not below 0, or three [red, green, blue]".into(),
             Kind::Axis => "\"x\", \"y\", \"z\" or a vector [x, y, z]".into(),
             Kind::Text => "a string".into(),
+            Kind::Function => "a function |x| ... of a number".into(),
+            Kind::Distribution => "a name, or what user_distribution() returned".into(),
             Kind::Flag => "true or false".into(),
             Kind::Scalar => "a number, true or false, or a string".into(),
             Kind::Points => "a list of points [[x, y], ...], with a third number where it is used".into(),

@@ -9,6 +9,7 @@ use crate::color::{Color, shipped};
 use crate::illumination::Paint;
 use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
 use glam::DVec2;
+use rhai::Dynamic;
 
 /// A roughness; 0 is polished.
 const ROUGHNESS: Parameter = parameter(
@@ -107,18 +108,34 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[
             OBJECT,
             parameter("reflectance", Kind::Reflectance, Required, "the reflected fraction K"),
-            parameter("distribution", Kind::Text, Required, "its name, as peris study illumination lists it"),
-            parameter("roughness", Kind::Number(1e-8, 1000.0), Is("0.3"), "its roughness m"),
+            parameter("distribution", Kind::Distribution, Required, "its name, as peris study illumination lists it"),
+            parameter("roughness", Kind::Number(1e-8, 1000.0), Is("0.3"), "its roughness m; not of one of the user's"),
         ],
         example: "pot.shaped(#{ reflectance: 0.6, distribution: \"Blinn\", roughness: 0.2 });",
         action: |builder, bound| {
-            let form = Form::Member {
-                name: bound.text("distribution").unwrap_or_default().to_owned(),
-                roughness: bound.number("roughness").unwrap_or(0.3),
+            let form = match (bound.facets("distribution"), bound.number("roughness")) {
+                (Some(_), Some(_)) => return Err("a distribution of the user's has no roughness".into()),
+                (Some(table), None) => Form::Facets(table),
+                (None, roughness) => Form::Member {
+                    name: bound.text("distribution").unwrap_or_default().to_owned(),
+                    roughness: roughness.unwrap_or(0.3),
+                },
             };
             let reflectance = bound.paint("reflectance").unwrap_or(Paint::grey(0.0));
             give(builder, bound, Body::Shaped(Shaped { reflectance, form }))
         },
+    },
+    Function {
+        name: "user_distribution",
+        summary: "Makes a distribution for shaped() of the area of facets per solid angle of their normals, a function of the angle between facet and surface. It is scaled to a whole surface, masked after Smith, and sampled to a table; peris plan tells how well the table stands for it.",
+        parameters: &[parameter(
+            "area",
+            Kind::Function,
+            Required,
+            "of the angle in radians, 0 to pi/2; finite, not negative, of any unit",
+        )],
+        example: "pot.shaped(0.8, user_distribution(|angle| exp(-angle * angle / 0.09)));",
+        action: |_, bound| Ok(bound.facets("area").map_or(Dynamic::UNIT, Dynamic::from)),
     },
     Function {
         name: "emits",

@@ -246,6 +246,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
+        name: "exact_surfaces",
+        summary: "Leads rays on from triangles to the exact surfaces that they stand for; without them normals are interpolated between corners.",
+        parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does; scenes do without a word")],
+        example: "exact_surfaces(false);",
+        action: |builder, bound| {
+            builder.scene.settings.exact_surfaces = bound.flag("on").unwrap_or(true);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
         name: "spectral",
         summary: "Lets rays carry spectra, or three bands only, whatever the scene needs.",
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether they do")],

@@ -57,6 +57,7 @@ impl<'a> Library<'a> {
                 let shape = match form {
                     Form::Member { name, roughness } => self.shape(name, *roughness)?,
                     Form::Table(table) => Shape::Once(Arc::new(table.clone())),
+                    Form::Facets(table) => Shape::Once(Arc::new(table.clone())),
                 };
                 let distribution: Arc<dyn Distribution> = match shape {
                     Shape::Once(distribution) => distribution,

@@ -12,6 +12,8 @@ mod tracer;
 mod world;
 
 #[cfg(test)]
+mod exact_tests;
+#[cfg(test)]
 mod light_tests;
 #[cfg(test)]
 mod texture_tests;

@@ -160,8 +160,8 @@ impl<'a> Tracer<'a> {
                 }
                 Met::Element(found) => {
                     if leg.depth == 0 {
-                        let Found { distance, object, material, .. } = found;
-                        seen.first = Some(First { distance, normal: found.element.normal, object, material });
+                        let Found { depth, object, material, .. } = found;
+                        seen.first = Some(First { distance: depth, normal: found.element.normal, object, material });
                     }
                     seen.covered = true;
                     let counting = &mut Counting { counts, log: &mut log };
@@ -269,8 +269,8 @@ impl<'a> Tracer<'a> {
         let passed = survived(passed, number, draws)?;
         let element = &found.element;
         let direction = frame.world(onward.light);
-        // Of a spread lobe, what falls on the wrong side of the triangle is lost.
-        if onward.density.is_some() && (direction.dot(element.face) < 0.0) != through {
+        // Of a spread lobe, what falls on the wrong side of the triangle or its surface is lost.
+        if onward.density.is_some() && (direction.dot(element.plane(!through)) < 0.0) != through {
             return None;
         }
         let direction = element.righted(direction, !through);

@@ -58,8 +58,10 @@ pub(super) struct Found<'a> {
     pub(super) object: u32,
     /// Which of the object's materials.
     pub(super) material: u32,
-    /// From where the ray began.
+    /// From where the ray began to the triangle.
     pub(super) distance: f64,
+    /// The same to the exact surface behind the triangle, if that is known.
+    pub(super) depth: f64,
     /// The same in lengths of the ray's direction.
     pub(super) t: f64,
     /// What the patterns of the material give; none for a material that has none.
@@ -101,14 +103,24 @@ impl<'a> World<'a> {
         let optics = self.appearance.optics(object, material);
         let length = sight.ray.direction.length();
         let distance = hit.t * length;
+        let exact = if self.appearance.exact {
+            let on = prepared.on_surface(triangle, &sight.ray, weights(&hit), (element.position, element.outside));
+            on.filter(|on| element.settle(sight.ray.direction, hit.t - sight.t_min, on))
+        } else {
+            None
+        };
+        let depth = distance + exact.map_or(0.0, |on| on.beyond * length);
         let painting = optics.is_textured().then(|| {
             let towards = sight.ray.direction / length;
             let sides = footprint(element.face, towards, sight.cone.at(distance));
-            let place = prepared.place(triangle, weights(&hit), sides);
+            let mut place = prepared.place(triangle, weights(&hit), sides);
+            if let Some(on) = exact {
+                (place.uv, place.own) = (on.uv, on.own);
+            }
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
             Box::new(optics.paint(&place, comb))
         });
-        Met::Element(Found { element, optics, triangle, object, material, distance, t: hit.t, painting })
+        Met::Element(Found { element, optics, triangle, object, material, distance, depth, t: hit.t, painting })
     }
 
     /// The light that an element emits, and the density with which its light would have drawn it.
