@@ -103,6 +103,7 @@ impl Wavelengths {
     }
 
     /// What light looks like: linear sRGB. Its mean over all combs is exact.
+    #[inline]
     pub fn seen(&self, comb: usize, light: Channels) -> DVec3 {
         if !self.spectral {
             return DVec3::new(light.0[0], light.0[1], light.0[2]);

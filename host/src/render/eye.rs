@@ -77,6 +77,7 @@ impl Eye {
     /// The ray through a point of the picture in pixels from the left upper corner; none if nothing is seen there.
     ///
     /// - `through`: a point of the unit square, which chooses the point of the lens.
+    #[inline]
     pub(super) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
         let sight = self.line(at, through)?;
         if self.part == 0.0 {
@@ -91,6 +92,7 @@ impl Eye {
     }
 
     /// The ray without its cone.
+    #[inline]
     fn line(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
         let [x, y] = [0, 1].map(|i| self.corner[i] + at[i] * self.step[i]);
         match &self.kind {

@@ -358,7 +358,8 @@ mod tests {
 
     #[test]
     fn no_furnace_is_brighter_than_white_whatever_the_facets() {
-        let functions: [(&str, Box<dyn Fn(f64) -> f64>); 5] = [
+        type Function = Box<dyn Fn(f64) -> f64>;
+        let functions: [(&str, Function); 5] = [
             ("Beckmann", Box::new(beckmann(0.3))),
             ("GGX", Box::new(|angle: f64| (angle.cos().powi(2) + (angle.sin() / 0.4).powi(2)).powi(-2))),
             ("even", Box::new(|_| 1.0)),

@@ -10,6 +10,7 @@ pub struct Frame {
 
 impl Frame {
     /// A frame about a normal, unit length; x is any direction along the surface.
+    #[inline]
     pub fn about(normal: DVec3) -> Frame {
         let (x, y) = normal.any_orthonormal_pair();
         Frame { axes: DMat3::from_cols(x, y, normal) }
@@ -26,11 +27,13 @@ impl Frame {
     }
 
     /// A direction of the world in the frame.
+    #[inline]
     pub fn local(&self, direction: DVec3) -> DVec3 {
         DVec3::new(self.axes.x_axis.dot(direction), self.axes.y_axis.dot(direction), self.axes.z_axis.dot(direction))
     }
 
     /// A direction of the frame in the world.
+    #[inline]
     pub fn world(&self, direction: DVec3) -> DVec3 {
         self.axes * direction
     }

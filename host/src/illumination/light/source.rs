@@ -198,6 +198,7 @@ impl Source {
     }
 
     /// Light that arrives from one of [`Source::points`] if nothing stands between.
+    #[inline]
     pub fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
         let (Some((area, normal, sides)), Some(at)) = (from.surface, from.at) else {
             return self.beam(point, None, [0.5; 2], comb);
@@ -254,6 +255,7 @@ impl Source {
     }
 }
 
+#[inline]
 fn from_point(offset: DVec3, intensity: Channels) -> Option<Beam> {
     let distance = offset.length();
     (distance > 0.0 && distance.is_finite()).then(|| Beam {

@@ -105,6 +105,7 @@ impl Optics {
     }
 
     /// As [`Optics::value`], of all lobes.
+    #[inline]
     pub fn response(&self, sighting: &Sighting, light: DVec3) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))
     }

@@ -277,10 +277,12 @@ impl<'a> Work<'a> {
                 let from = range.start.max(row * samples);
                 let to = range.end.min((row + 1) * samples);
                 let places = &self.places[from - row * samples..to - row * samples];
+                let part = (places.len() as f64).recip();
+                let mean = [0, 1].map(|i| places.iter().map(|place| place[i]).sum::<f64>() * part);
                 let tallies = &mut tallies[(row - band * self.rows) * self.width..][..self.width];
                 for (column, tally) in tallies.iter_mut().enumerate() {
                     let first = (from - range.start) * self.width + column;
-                    let pixel = Pixel { at: [column, row], first, stride: self.width, places };
+                    let pixel = Pixel { at: [column, row], first, stride: self.width, places, mean, part };
                     self.shader.shade(&pixel, strip, counts, desk, tally);
                 }
             }

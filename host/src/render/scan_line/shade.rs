@@ -48,8 +48,10 @@ pub(super) struct Shader<'a> {
 /// What a thread keeps from pixel to pixel.
 #[derive(Default)]
 pub(super) struct Desk<'a> {
-    pub(super) surfaces: Vec<Surface<'a>>,
+    pub(super) surfaces: Vec<Surface>,
     pub(super) parts: Vec<Part>,
+    /// Elements of the surfaces.
+    founds: Vec<Found<'a>>,
     /// What lamps add, surface by surface.
     pub(super) lit: Vec<Lit>,
     /// For each sample of the pixel, where its parts begin, and the light that comes to it.
@@ -81,15 +83,17 @@ impl<'a> Shader<'a> {
             return tally.add_alike(&sample, pixel.count() as u32);
         }
         self.gather(pixel, strip, desk);
-        let Desk { surfaces, parts, lit, samples, last } = desk;
+        let Desk { surfaces, parts, founds, lit, samples, last } = desk;
+        founds.clear();
         for (index, surface) in surfaces.iter_mut().enumerate() {
-            surface.found = self.find(surface, parts.iter().filter(|part| part.surface == index), pixel, last);
+            let own = parts.iter().filter(|part| part.surface == index);
+            surface.found = self.find(surface, own, pixel, (founds, last));
         }
         let combs = self.appearance.wavelengths.combs();
         for comb in 0..combs {
             lit.clear();
             for (index, surface) in surfaces.iter_mut().enumerate() {
-                let Some(found) = &surface.found else { continue };
+                let Some(found) = surface.found.map(|found| &founds[found]) else { continue };
                 let begin = lit.len();
                 let is_dark = |lit: &Lit| {
                     let mut own = parts.iter().filter(|part| part.surface == index);
@@ -99,7 +103,7 @@ impl<'a> Shader<'a> {
                 surface.lit = begin..lit.len();
             }
             if combs == 1
-                && let Some(sample) = self.all_alike((surfaces, parts, lit), (strip, counts), pixel)
+                && let Some(sample) = self.all_alike((surfaces, founds, lit), parts, (strip, counts), pixel)
             {
                 return tally.add_alike(&sample, pixel.count() as u32);
             }
@@ -111,7 +115,7 @@ impl<'a> Shader<'a> {
                         seen
                     }
                     _ => {
-                        let sum = self.sample((surfaces, lit), own, (strip, counts), (pixel, i), comb);
+                        let sum = self.sample((surfaces, founds, lit), own, (strip, counts), (pixel, i), comb);
                         self.appearance.wavelengths.seen(comb, sum)
                     }
                 };
@@ -124,12 +128,12 @@ impl<'a> Shader<'a> {
 
     /// Adds up what was found sample by sample.
     fn add_samples(&self, pixel: &Pixel<'_>, desk: &Desk<'a>, tally: &mut Tally) {
-        let Desk { surfaces, parts, samples, .. } = desk;
+        let Desk { surfaces, parts, founds, samples, .. } = desk;
         let scale = (self.appearance.wavelengths.combs() as f64).recip();
         let mut last: Option<(Sample, u32)> = None;
         for i in 0..pixel.count() {
             let first = seen_by(samples, parts, i).first().map(|part| &surfaces[part.surface]);
-            let first = first.and_then(|seen| seen.found.as_ref().map(|found| self.first(seen, found)));
+            let first = first.and_then(|seen| seen.found.map(|found| self.first(seen, &founds[found])));
             let glows = self.glows(pixel, i, first.map(|(distance, ..)| (distance, 0))).is_some();
             let first = first.filter(|_| !glows);
             let covered = first.is_some() || glows;
@@ -168,28 +172,30 @@ impl<'a> Shader<'a> {
             let radiance = if self.matte { DVec3::ZERO } else { self.background? };
             return Some(Sample { radiance, covered: false, first: None });
         }
-        let mut surface = Surface::new(triangle, strip.near[pixel.first], self.is_curved(triangle));
-        for (i, sample) in pixel.samples().enumerate() {
-            let near = strip.near[sample];
-            surface.add(triangle, pixel.place(i), [near, self.depth(near)]);
-        }
-        let part = (pixel.count() as f64).recip();
-        let sight = self.eye.ray(surface.sum.map(|sum| sum * part), [0.5; 2])?;
-        if !last.as_mut().is_some_and(|found| found.meet(triangle, &sight.ray, surface.near)) {
-            *last = Some(self.element(triangle, surface.near, &sight)?);
+        let near = strip.near[pixel.first];
+        let sight = self.eye.ray(pixel.middle(), [0.5; 2])?;
+        if !last.as_mut().is_some_and(|found| found.meet(triangle, &sight.ray, near)) {
+            *last = Some(self.element(triangle, near, &sight)?);
         }
         let found = last.as_ref()?;
         let mut sum = Channels::ZERO;
         let is_dark = |lit: &Lit| self.is_shaded(lit, counts, (pixel.first, strip), triangle);
         let own = self.light(found, 0, is_dark, |lit| sum += lit.adds);
         let radiance = self.appearance.wavelengths.seen(0, own + sum);
-        Some(Sample { radiance, covered: true, first: Some(self.first(&surface, found)) })
+        let mut nearness = [0.0; 2];
+        for near in pixel.samples().map(|sample| strip.near[sample]) {
+            nearness = [nearness[0] + near, nearness[1] + self.depth(near)];
+        }
+        let [mean, depth] = nearness.map(|sum| sum * pixel.part);
+        let distance = self.distance(found.distance, self.depth(mean), depth);
+        Some(Sample { radiance, covered: true, first: Some((distance, found.element.normal, found.seen)) })
     }
 
     /// What all samples of a pixel get, if they see one surface by the light of the same lamps.
     fn all_alike(
         &self,
-        (surfaces, parts, lit): (&[Surface<'a>], &[Part], &[Lit]),
+        (surfaces, founds, lit): (&[Surface], &[Found<'a>], &[Lit]),
+        parts: &[Part],
         (strip, counts): (&Strip, &[Vec<i32>]),
         pixel: &Pixel<'_>,
     ) -> Option<Sample> {
@@ -200,14 +206,14 @@ impl<'a> Shader<'a> {
             return None;
         }
         let seen = &surfaces[one.surface];
-        let found = seen.found.as_ref()?;
-        let sum = self.sample((surfaces, lit), &parts[..1], (strip, counts), (pixel, 0), 0);
+        let found = &founds[seen.found?];
+        let sum = self.sample((surfaces, founds, lit), &parts[..1], (strip, counts), (pixel, 0), 0);
         let radiance = self.appearance.wavelengths.seen(0, sum);
         Some(Sample { radiance, covered: true, first: Some(self.first(seen, found)) })
     }
 
     /// Whether two samples of a pixel surely get the same light.
-    fn is_alike(&self, (surfaces, lit): (&[Surface<'_>], &[Lit]), parts: [&[Part]; 2], counts: &[Vec<i32>]) -> bool {
+    fn is_alike(&self, (surfaces, lit): (&[Surface], &[Lit]), parts: [&[Part]; 2], counts: &[Vec<i32>]) -> bool {
         if self.has_surfaces || self.passing.len() > 1 {
             return false;
         }
@@ -229,7 +235,7 @@ impl<'a> Shader<'a> {
     /// The light that comes to one sample.
     fn sample(
         &self,
-        (surfaces, lit): (&[Surface<'a>], &[Lit]),
+        (surfaces, founds, lit): (&[Surface], &[Found<'a>], &[Lit]),
         parts: &[Part],
         (strip, counts): (&Strip, &[Vec<i32>]),
         (pixel, i): (&Pixel<'_>, usize),
@@ -239,7 +245,7 @@ impl<'a> Shader<'a> {
         let mut passed = Channels::ONE;
         for (order, part) in parts.iter().enumerate() {
             let surface = &surfaces[part.surface];
-            let Some(found) = &surface.found else { continue };
+            let Some(found) = surface.found.map(|found| &founds[found]) else { continue };
             if order == 0
                 && let Some(glow) = self.glows(pixel, i, Some((found.distance, comb)))
             {

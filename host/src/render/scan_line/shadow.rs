@@ -16,6 +16,7 @@ use super::screen::{Corner, MOST_CORNERS, Outline, Point, Screen};
 use super::spans::{Lines, Nearness, Patch};
 use super::visibility::{Bands, Facets, Strip, lines_of};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// A shadow polygon.
 struct Shade {
@@ -61,10 +62,8 @@ impl Shadow {
         let start = start.map_or(vec![0; groups], |start| {
             Enclosed::new(casters, light, &facing, &silhouettes, groups).counts(start)
         });
-        let mut polygons: Vec<Shade> = Vec::with_capacity(silhouettes.len());
-        for silhouette in &silhouettes {
-            polygons.extend(side(casters, &light, (screen, facets, reach), silhouette));
-        }
+        let behind = |silhouette: &Silhouette| side(casters, &light, (screen, facets, reach), silhouette);
+        let mut polygons: Vec<Shade> = silhouettes.par_iter().with_min_len(1 << 8).filter_map(behind).collect();
         if screen.clips_near() {
             for &triangle in casters.triangles.iter().filter(|triangle| facing[**triangle as usize] != 0) {
                 let corners = casters.prepared.corners(triangle).map(|corner| screen.corner(corner));

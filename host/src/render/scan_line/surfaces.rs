@@ -28,6 +28,9 @@ pub(super) struct Pixel<'p> {
     pub(super) stride: usize,
     /// Where its samples lie in it.
     pub(super) places: &'p [[f64; 2]],
+    /// Where they lie in the mean, and what part of all each of them is.
+    pub(super) mean: [f64; 2],
+    pub(super) part: f64,
 }
 
 impl Pixel<'_> {
@@ -39,6 +42,11 @@ impl Pixel<'_> {
     /// Its samples in the strip.
     pub(super) fn samples(&self) -> impl Iterator<Item = usize> {
         (0..self.places.len()).map(|i| self.first + i * self.stride)
+    }
+
+    /// The middle of its samples in the picture.
+    pub(super) fn middle(&self) -> [f64; 2] {
+        [self.at[0] as f64 + self.mean[0], self.at[1] as f64 + self.mean[1]]
     }
 
     /// Where a sample is in the picture.
@@ -59,40 +67,35 @@ pub(super) struct Part {
 }
 
 /// A surface in a pixel.
-pub(super) struct Surface<'a> {
-    /// The triangle that was seen first, and how near.
+pub(super) struct Surface {
+    /// The triangle that was seen first, its normal, and how near it was.
     pub(super) triangle: u32,
+    face: DVec3,
     pub(super) near: f64,
-    pub(super) curved: bool,
+    curved: bool,
+    /// Its object and material.
+    seen: [u32; 2],
     /// How many samples see it, the sum of their places in pixels, and whether all see the same triangle.
     pub(super) count: u32,
     pub(super) sum: [f64; 2],
     pub(super) alone: bool,
     /// Sums of their nearness and depth.
     pub(super) nearness: [f64; 2],
-    pub(super) found: Option<Found<'a>>,
+    /// Which of the elements that were found is its own.
+    pub(super) found: Option<usize>,
     /// What it sends to the eye without lights.
     pub(super) own: Channels,
     /// Which of the lights that were found are its own.
     pub(super) lit: Range<usize>,
 }
 
-impl Surface<'_> {
-    /// A surface of which no sample is known yet.
-    pub(super) fn new(triangle: u32, near: f64, curved: bool) -> Self {
-        let (own, lit) = (Channels::ZERO, 0..0);
-        Surface {
-            triangle,
-            near,
-            curved,
-            count: 0,
-            sum: [0.0; 2],
-            alone: true,
-            nearness: [0.0; 2],
-            found: None,
-            own,
-            lit,
-        }
+impl Surface {
+    /// Whether two triangles are lit as one.
+    fn goes_on_in(&self, other: &Surface) -> bool {
+        self.curved == other.curved
+            && self.seen == other.seen
+            && (self.near - other.near).abs() <= BESIDE * self.near.abs()
+            && self.face.dot(other.face) > if self.curved { SMOOTH } else { FLAT }
     }
 
     /// Adds a sample.
@@ -142,7 +145,9 @@ impl<'a> Shader<'a> {
         for (i, sample) in pixel.samples().enumerate() {
             samples.push((parts.len(), DVec3::ZERO));
             let mut add = |triangle: u32, near: f64, fragment: usize| {
-                let surface = self.surface(surfaces, triangle, near, pixel.place(i));
+                let before = parts.iter().rfind(|part| part.triangle == triangle).map(|part| part.surface);
+                let surface = before.unwrap_or_else(|| self.surface(surfaces, triangle, near));
+                surfaces[surface].add(triangle, pixel.place(i), [near, self.depth(near)]);
                 parts.push(Part { surface, fragment, triangle, near, sample: i });
             };
             for index in strip.layers_of(sample) {
@@ -155,62 +160,72 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// The surface of a pixel to which a sample belongs.
-    fn surface(&self, surfaces: &mut Vec<Surface<'a>>, triangle: u32, near: f64, at: [f64; 2]) -> usize {
-        let known = surfaces.iter().position(|surface| surface.triangle == triangle);
-        let index = known.or_else(|| self.alike(surfaces, triangle, near)).unwrap_or_else(|| {
-            surfaces.push(Surface::new(triangle, near, self.is_curved(triangle)));
+    /// The surface of a pixel to which a triangle belongs.
+    fn surface(&self, surfaces: &mut Vec<Surface>, triangle: u32, near: f64) -> usize {
+        let surface = self.begun(triangle, near);
+        surfaces.iter().position(|other| surface.goes_on_in(other)).unwrap_or_else(|| {
+            surfaces.push(surface);
             surfaces.len() - 1
-        });
-        surfaces[index].add(triangle, at, [near, self.depth(near)]);
-        index
-    }
-
-    /// The surface of a pixel that goes on in a triangle.
-    fn alike(&self, surfaces: &[Surface<'a>], triangle: u32, near: f64) -> Option<usize> {
-        let prepared = self.appearance.prepared;
-        let curved = self.is_curved(triangle);
-        let least = if curved { SMOOTH } else { FLAT };
-        let face = |triangle: u32| {
-            let [a, b, c] = prepared.corners(triangle);
-            (b - a).cross(c - a).normalize_or_zero()
-        };
-        surfaces.iter().position(|surface| {
-            surface.curved == curved
-                && prepared.object_of[surface.triangle as usize] == prepared.object_of[triangle as usize]
-                && (surface.near - near).abs() <= BESIDE * near.abs()
-                && prepared.material_number(surface.triangle) == prepared.material_number(triangle)
-                && face(surface.triangle).dot(face(triangle)) > least
         })
     }
 
+    /// A surface of which no sample is known yet.
+    fn begun(&self, triangle: u32, near: f64) -> Surface {
+        let prepared = self.appearance.prepared;
+        let [a, b, c] = prepared.corners(triangle);
+        Surface {
+            triangle,
+            face: (b - a).cross(c - a).normalize_or_zero(),
+            near,
+            curved: self.is_curved(triangle),
+            seen: [prepared.object_of[triangle as usize], prepared.material_number(triangle)],
+            count: 0,
+            sum: [0.0; 2],
+            alone: true,
+            nearness: [0.0; 2],
+            found: None,
+            own: Channels::ZERO,
+            lit: 0..0,
+        }
+    }
+
     /// Whether a triangle stands for a curved surface.
+    #[inline]
     pub(super) fn is_curved(&self, triangle: u32) -> bool {
         self.appearance.curved && self.appearance.prepared.corner_normals(triangle).is_some()
     }
 
     /// The depth of a nearness.
+    #[inline]
     pub(super) fn depth(&self, near: f64) -> f64 {
         if self.is_parallel { -near } else { near.recip() }
     }
 
     /// The mean distance of what samples see of a surface, its normal, object and material.
-    pub(super) fn first(&self, surface: &Surface<'_>, found: &Found<'_>) -> (f64, DVec3, [u32; 2]) {
+    pub(super) fn first(&self, surface: &Surface, found: &Found<'_>) -> (f64, DVec3, [u32; 2]) {
         let [near, depth] = surface.nearness.map(|sum| sum / f64::from(surface.count));
-        // Nearness is linear over the picture, depth is not: far away, the mean is not that of the middle.
         let middle = self.depth(if surface.alone { near } else { found.near });
-        let apart = if self.is_parallel { [1.0, depth - middle] } else { [depth / middle, 0.0] };
-        (found.distance * apart[0] + apart[1], found.element.normal, found.seen)
+        (self.distance(found.distance, middle, depth), found.element.normal, found.seen)
     }
 
-    /// The element in the middle of what samples see of a surface.
+    /// The mean distance of some samples.
+    ///
+    /// Nearness is linear over the picture, depth is not: far away, the mean is not that of the middle.
+    ///
+    /// - `distance`, `middle`: distance and depth of the middle; `depth`: the mean depth.
+    #[inline]
+    pub(super) fn distance(&self, distance: f64, middle: f64, depth: f64) -> f64 {
+        if self.is_parallel { distance + (depth - middle) } else { distance * (depth / middle) }
+    }
+
+    /// Finds the element in the middle of what samples see of a surface, and tells its number.
     pub(super) fn find<'p>(
         &self,
-        surface: &Surface<'_>,
+        surface: &Surface,
         parts: impl Iterator<Item = &'p Part>,
         pixel: &Pixel,
-        last: &mut Option<Found<'a>>,
-    ) -> Option<Found<'a>> {
+        (founds, last): (&mut Vec<Found<'a>>, &mut Option<Found<'a>>),
+    ) -> Option<usize> {
         let part = f64::from(surface.count).recip();
         let middle = surface.sum.map(|sum| sum * part);
         let (at, triangle, near) = if surface.alone {
@@ -225,13 +240,15 @@ impl<'a> Shader<'a> {
         if let Some(found) = last
             && found.meet(triangle, &sight.ray, near)
         {
-            return Some(*found);
+            founds.push(*found);
+        } else {
+            let found = self.element(triangle, near, &sight)?;
+            founds.push(found);
+            if found.is_flat {
+                *last = Some(found);
+            }
         }
-        let found = self.element(triangle, near, &sight)?;
-        if found.is_flat {
-            *last = Some(found);
-        }
-        Some(found)
+        Some(founds.len() - 1)
     }
 
     /// The element that a line of sight meets in a triangle.
@@ -262,6 +279,7 @@ impl<'a> Shader<'a> {
 
 impl Found<'_> {
     /// Moves to where another line of sight meets a triangle, if it is the same, flat and without a texture.
+    #[inline]
     pub(super) fn meet(&mut self, triangle: u32, ray: &Ray, near: f64) -> bool {
         if !self.is_flat || triangle != self.triangle {
             return false;

@@ -118,30 +118,29 @@ impl<'a> Facets<'a> {
         };
         let (points, outside): (Vec<Point>, Vec<u8>) =
             prepared.vertices.par_iter().with_min_len(1 << 12).map(place).unzip();
-        let mut facets = Vec::with_capacity(triangles.len());
-        let mut ranges = Vec::with_capacity(triangles.len());
-        let mut outlines = Vec::new();
-        for &triangle in triangles {
+        let placed = |&triangle: &u32| -> Option<([f64; 2], u32, Option<Box<Outline>>)> {
             let [a, b, c] = prepared.triangles[triangle as usize].map(|i| i as usize);
             let beside = [outside[a], outside[b], outside[c]];
             if beside[0] & beside[1] & beside[2] != 0 {
-                continue;
+                return None;
             }
             if beside == [0; 3] {
                 let range = lines_of(&[points[a], points[b], points[c]]);
                 // Between two lines of samples there is nothing to draw.
-                if range[0].ceil() < range[1].ceil() {
-                    ranges.push(range);
-                    facets.push(Facet { triangle, outline: NONE });
-                }
-                continue;
+                return (range[0].ceil() < range[1].ceil()).then_some((range, triangle, None));
             }
             let corners: [Corner; 3] = prepared.corners(triangle).map(|corner| screen.corner(corner));
-            if let Some(outline) = screen.clip(&corners, 1) {
-                ranges.push(lines_of(outline.corners()));
-                facets.push(Facet { triangle, outline: outlines.len() as u32 });
-                outlines.push(outline);
-            }
+            let outline = screen.clip(&corners, 1)?;
+            Some((lines_of(outline.corners()), triangle, Some(Box::new(outline))))
+        };
+        let placed: Vec<_> = triangles.par_iter().with_min_len(1 << 12).filter_map(placed).collect();
+        let (mut ranges, mut facets) = (Vec::with_capacity(placed.len()), Vec::with_capacity(placed.len()));
+        let mut outlines = Vec::new();
+        for (range, triangle, clipped) in placed {
+            let outline = if clipped.is_some() { outlines.len() as u32 } else { NONE };
+            outlines.extend(clipped.map(|outline| *outline));
+            ranges.push(range);
+            facets.push(Facet { triangle, outline });
         }
         let bands = Bands::new(&ranges, lines, bands);
         Facets { prepared, points, facets, outlines, bands, passable }
@@ -193,14 +192,15 @@ impl<'a> Facets<'a> {
                 }
             });
         });
-        farthest.clear();
-        farthest.resize(lines.width.div_ceil(TILE), f64::INFINITY);
+        let mut least = vec![f64::INFINITY; lines.width];
         for line in near.chunks(lines.width) {
-            for (least, tile) in farthest.iter_mut().zip(line.chunks(TILE)) {
-                let seen = |near: &f64| if *near > f64::NEG_INFINITY { *near } else { f64::INFINITY };
-                *least = tile.iter().map(seen).fold(*least, f64::min);
+            for (least, near) in least.iter_mut().zip(line) {
+                let seen = if *near == f64::NEG_INFINITY { f64::INFINITY } else { *near };
+                *least = if seen < *least { seen } else { *least };
             }
         }
+        farthest.clear();
+        farthest.extend(least.chunks(TILE).map(|tile| tile.iter().copied().fold(f64::INFINITY, f64::min)));
         if self.passable.is_empty() {
             return;
         }

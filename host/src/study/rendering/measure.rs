@@ -122,7 +122,7 @@ impl Reference {
             bias_squared: mean,
             bias_squared_error: error,
             relative_mse: mean_of(|found| found.relative_mse),
-            flip: f64::from(flip(&runs[0].picture, &self.mean, PIXELS_PER_DEGREE)?.mean),
+            flip: flip(&runs[0].picture, &self.mean, PIXELS_PER_DEGREE)?.mean,
         })
     }
 }

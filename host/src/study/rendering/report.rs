@@ -129,15 +129,14 @@ impl KnobStudy {
     /// RMSE, chance and bias.
     fn series(&self) -> Vec<Series> {
         let word = self.technique.word();
-        let curves: [(&str, fn(&RenderRow) -> f64); 3] = [
+        type Curve = (&'static str, fn(&RenderRow) -> f64);
+        let curves: [Curve; 3] = [
             ("RMSE", |row| row.measures.rmse),
             ("chance", |row| row.measures.noise),
             ("bias", |row| row.measures.bias()),
         ];
-        let curve = |(name, of): (&str, fn(&RenderRow) -> f64)| Series {
-            name: format!("{word}: {name}"),
-            points: self.points(of, name == "RMSE"),
-        };
+        let curve =
+            |(name, of): Curve| Series { name: format!("{word}: {name}"), points: self.points(of, name == "RMSE") };
         curves.into_iter().map(curve).filter(|series| series.points.iter().any(|point| point.y > 0.0)).collect()
     }
 
