@@ -61,7 +61,8 @@ fn at_angle(degrees: f64) -> Camera {
 /// Sees a square around the origin of the plane y = 0 straight from above.
 fn from_above(from: f64, height: f64) -> Camera {
     let parallel = Some(Parallel { height, oblique: DVec2::ZERO });
-    Camera { parallel, ..camera(DVec3::Y * from, DVec3::ZERO, DVec3::Z, 30.0) }
+    // Without a near depth, a parallel view begins before all there is.
+    Camera { parallel, near: from * 1e-3, ..camera(DVec3::Y * from, DVec3::ZERO, DVec3::Z, 30.0) }
 }
 
 fn scene(objects: Vec<Object>, lights: Vec<Light>, camera: Camera, side: u32, samples: u32) -> Scene {
@@ -122,8 +123,10 @@ fn polished_surfaces_reflect_what_fresnel_says_up_to_grazing() {
                 let (found, error) = red(&render(&scene, true));
                 let expected = fresnel(n, degrees.to_radians().cos());
                 let off = (found - expected).abs();
-                // Of what is faint, some samples see all and most see nothing.
-                assert!(off < 5.0 * error + 1e-6 * expected + 1e-4, "{n} {degrees}: {found} {error} {expected}");
+                // Of what is faint, some samples see much and most see nothing: perhaps all of them.
+                let faint = expected.min(1.0 - expected);
+                let unseen = if faint < 1.0 / 64.0 { 5.0 * faint.min(4e-4) } else { 0.0 };
+                assert!(off < 5.0 * error + unseen + 1e-6, "{n} {degrees}: {found} {error} {expected}");
             }
         }
     }
