@@ -9,7 +9,7 @@ use crate::illumination::material::{Body, Classic, Coated, Finish, Index, Materi
 use crate::illumination::{Bands, Light, Paint};
 use crate::picture::difference;
 use crate::plan::Plan;
-use crate::scene::{Camera, Object, Parallel, Prepared, Scene, Settings, Shape};
+use crate::scene::{Camera, Object, Parallel, Prepared, Scene, Settings, Shape, View};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
@@ -135,7 +135,7 @@ fn polished_surfaces_reflect_what_fresnel_says_up_to_grazing() {
 #[test]
 fn no_roughness_and_no_angle_creates_light() {
     let coated = |roughness| Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness }).into();
-    for roughness in [1e-6, 1e-3, 0.1, 1.0, 10.0] {
+    for roughness in [1e-6, 0.1, 10.0] {
         let lossless = |name| metal(0.0, 3.0, rough(name, roughness));
         let materials: [(Material, f64); 5] = [
             (lossless("GGX, all"), 1e-2),
@@ -146,13 +146,18 @@ fn no_roughness_and_no_angle_creates_light() {
             (coated(roughness), 1.0),
         ];
         for (material, loss) in materials {
+            let sky = Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 };
+            let word = material.word();
+            let mut scene = scene(vec![ground(1e3, DMat4::IDENTITY, material)], vec![sky], at_angle(0.0), 1, 256);
+            scene.settings.interreflection = true;
+            let prepared = Prepared::new(&scene).expect("a scene");
+            let plan = Plan::new(&prepared, &prepared.view());
+            let tracer = RayTracer::new(&prepared, &plan).expect("ready");
             for degrees in [0.0, 60.0, 89.0, 89.9999] {
-                let sky = Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 };
-                let floor = ground(1e3, DMat4::IDENTITY, material.clone());
-                let mut scene = scene(vec![floor], vec![sky], at_angle(degrees), 1, 256);
-                scene.settings.interreflection = true;
-                let (found, error) = red(&render(&scene, true));
-                let place = format!("{} {roughness} {degrees}: {found} {error}", material.word());
+                let view = View::Camera(at_angle(degrees));
+                let rendering = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture");
+                let (found, error) = red(&rendering);
+                let place = format!("{word} {roughness} {degrees}: {found} {error}");
                 assert!(found < 1.0 + 5.0 * error + 1e-3 && found > 1.0 - loss - 5.0 * error, "{place}");
             }
         }

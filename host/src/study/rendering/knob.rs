@@ -9,7 +9,7 @@ const COARSEST: f64 = 1.0 / 60.0;
 const TOLERANCE_STEP: f64 = 4.0;
 /// The greatest relative error that is asked for, and the widest filter of textures.
 const LARGEST_ERROR: f64 = 0.5;
-const WIDEST_FILTER: f64 = 4.0;
+const WIDEST_FILTER: f64 = 2.0;
 /// The largest turn of normals, degrees.
 const LARGEST_ANGLE: f64 = 90.0;
 /// Depths that are tried; the reference has twice the last one.
