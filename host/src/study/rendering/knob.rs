@@ -146,6 +146,18 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         set: |setup, value| setup.settings.angle = value,
     },
     RenderKnob {
+        name: "exact_surfaces",
+        sets: "whether rays are led on from triangles to the exact surfaces behind them (1) or not (0)",
+        techniques: RAYS,
+        is_model: false,
+        remodels: true,
+        idle: curved,
+        values: |_| vec![0.0, 1.0],
+        best: |_, _| 1.0,
+        get: |setup| f64::from(u8::from(setup.settings.exact_surfaces)),
+        set: |setup, value| setup.settings.exact_surfaces = value > 0.0,
+    },
+    RenderKnob {
         name: "spectral",
         sets: "whether rays carry eight wavelengths (1) or three bands (0)",
         techniques: BOTH,
