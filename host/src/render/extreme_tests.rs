@@ -9,7 +9,7 @@ use crate::illumination::material::{Body, Classic, Coated, Finish, Index, Materi
 use crate::illumination::{Bands, Light, Paint};
 use crate::picture::difference;
 use crate::plan::Plan;
-use crate::scene::{Camera, Object, Parallel, Prepared, Scene, Settings, Shape};
+use crate::scene::{Camera, Object, Parallel, Prepared, Scene, Settings, Shape, View};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
@@ -61,7 +61,8 @@ fn at_angle(degrees: f64) -> Camera {
 /// Sees a square around the origin of the plane y = 0 straight from above.
 fn from_above(from: f64, height: f64) -> Camera {
     let parallel = Some(Parallel { height, oblique: DVec2::ZERO });
-    Camera { parallel, ..camera(DVec3::Y * from, DVec3::ZERO, DVec3::Z, 30.0) }
+    // Without a near depth, a parallel view begins before all there is.
+    Camera { parallel, near: from * 1e-3, ..camera(DVec3::Y * from, DVec3::ZERO, DVec3::Z, 30.0) }
 }
 
 fn scene(objects: Vec<Object>, lights: Vec<Light>, camera: Camera, side: u32, samples: u32) -> Scene {
@@ -122,8 +123,10 @@ fn polished_surfaces_reflect_what_fresnel_says_up_to_grazing() {
                 let (found, error) = red(&render(&scene, true));
                 let expected = fresnel(n, degrees.to_radians().cos());
                 let off = (found - expected).abs();
-                // Of what is faint, some samples see all and most see nothing.
-                assert!(off < 5.0 * error + 1e-6 * expected + 1e-4, "{n} {degrees}: {found} {error} {expected}");
+                // Of what is faint, some samples see much and most see nothing: perhaps all of them.
+                let faint = expected.min(1.0 - expected);
+                let unseen = if faint < 1.0 / 64.0 { 5.0 * faint.min(4e-4) } else { 0.0 };
+                assert!(off < 5.0 * error + unseen + 1e-6, "{n} {degrees}: {found} {error} {expected}");
             }
         }
     }
@@ -132,7 +135,7 @@ fn polished_surfaces_reflect_what_fresnel_says_up_to_grazing() {
 #[test]
 fn no_roughness_and_no_angle_creates_light() {
     let coated = |roughness| Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness }).into();
-    for roughness in [1e-6, 1e-3, 0.1, 1.0, 10.0] {
+    for roughness in [1e-6, 0.1, 10.0] {
         let lossless = |name| metal(0.0, 3.0, rough(name, roughness));
         let materials: [(Material, f64); 5] = [
             (lossless("GGX, all"), 1e-2),
@@ -143,13 +146,18 @@ fn no_roughness_and_no_angle_creates_light() {
             (coated(roughness), 1.0),
         ];
         for (material, loss) in materials {
+            let sky = Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 };
+            let word = material.word();
+            let mut scene = scene(vec![ground(1e3, DMat4::IDENTITY, material)], vec![sky], at_angle(0.0), 1, 256);
+            scene.settings.interreflection = true;
+            let prepared = Prepared::new(&scene).expect("a scene");
+            let plan = Plan::new(&prepared, &prepared.view());
+            let tracer = RayTracer::new(&prepared, &plan).expect("ready");
             for degrees in [0.0, 60.0, 89.0, 89.9999] {
-                let sky = Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 };
-                let floor = ground(1e3, DMat4::IDENTITY, material.clone());
-                let mut scene = scene(vec![floor], vec![sky], at_angle(degrees), 1, 256);
-                scene.settings.interreflection = true;
-                let (found, error) = red(&render(&scene, true));
-                let place = format!("{} {roughness} {degrees}: {found} {error}", material.word());
+                let view = View::Camera(at_angle(degrees));
+                let rendering = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture");
+                let (found, error) = red(&rendering);
+                let place = format!("{word} {roughness} {degrees}: {found} {error}");
                 assert!(found < 1.0 + 5.0 * error + 1e-3 && found > 1.0 - loss - 5.0 * error, "{place}");
             }
         }

@@ -6,6 +6,9 @@ use crate::numeric::sampling::disk;
 use crate::scene::{Camera, Lens, Projection, View};
 use glam::{DMat3, DVec3, DVec4};
 
+/// Rounding errors of the largest coordinate within which an eye is on a surface: it sees what is beyond.
+const ON_SURFACE_ULPS: f64 = 32.0;
+
 /// A ray with the part of it in which something can be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sight {
@@ -62,7 +65,7 @@ impl Eye {
                 camera.check().ok()?;
                 Kind::of_matrix(&camera.projection()?, bounds)?
             }
-            View::Camera(camera) => Kind::of_camera(camera)?,
+            View::Camera(camera) => Kind::of_camera(camera, bounds)?,
             View::Projection(projection) => Kind::of_matrix(projection, bounds)?,
         };
         let step = [(x_max - x_min) / f64::from(width), (y_min - y_max) / f64::from(height)];
@@ -119,11 +122,14 @@ impl Eye {
 }
 
 impl Kind {
-    fn of_camera(camera: &Camera) -> Option<Kind> {
+    fn of_camera(camera: &Camera, bounds: &Bounds) -> Option<Kind> {
         camera.check().ok()?;
         let [right, up, forward] = camera.axes()?;
         let t = camera.half_tangent();
-        let (near, far) = (camera.near, camera.far.unwrap_or(f64::INFINITY));
+        let places = [bounds.min, bounds.max, camera.from].map(|place| place.abs().max_element());
+        let largest = places.into_iter().filter(|place| place.is_finite()).fold(0.0, f64::max);
+        let near = camera.near.max(ON_SURFACE_ULPS * f64::EPSILON * largest);
+        let far = camera.far.unwrap_or(f64::INFINITY);
         Some(Kind::Camera { from: camera.from, right: right * t, up: up * t, forward, near, far, lens: camera.lens })
     }
 

@@ -9,6 +9,11 @@ use crate::illumination::distribution::Facets;
 use crate::illumination::fresnel::Dielectric;
 use glam::{DVec2, DVec3};
 
+/// The least chance that is given to what is reflected or to what goes through.
+const LEAST_CHANCE: f64 = 0.05;
+/// The chance of what there is little of is no greater than so many times its part: nothing at all takes no samples.
+const MOST_CHANCE: f64 = 4.0;
+
 /// A smooth interface.
 #[derive(Clone, Debug)]
 pub(super) struct Smooth;
@@ -18,6 +23,16 @@ pub(super) struct Smooth;
 pub(super) struct Rough {
     pub(super) facets: Facets,
     pub(super) roughness: DVec2,
+}
+
+/// The chance that what is reflected is followed and not what goes through.
+///
+/// Neither is left to chances too small for what it may bring, unless there is next to nothing of it.
+///
+/// - `reflected`, `through`: the parts of light, 0..=1; the greatest of all lanes, if these differ.
+fn chance_of(reflected: f64, through: f64) -> f64 {
+    let least = |part: f64| f64::min(LEAST_CHANCE, MOST_CHANCE * part);
+    reflected.clamp(least(reflected), 1.0 - least(through))
 }
 
 /// The interface for one lane.
@@ -56,8 +71,8 @@ impl Smooth {
     pub(super) fn sample(&self, sighting: &Sighting, choice: f64) -> Option<Onward> {
         let [reflection, refraction] = self.mirrored(sighting);
         let (Some(reflection), Some(refraction)) = (reflection, refraction) else { return reflection.or(refraction) };
-        // Neither is left to chances too small for what it may bring.
-        let chance = reflection.weight.max().clamp(0.05, 0.95);
+        let least = reflection.weight.0.into_iter().fold(1.0, f64::min);
+        let chance = chance_of(reflection.weight.max(), 1.0 - least);
         Some(if choice < chance {
             Onward { weight: reflection.weight * chance.recip(), ..reflection }
         } else {
@@ -70,7 +85,7 @@ impl Rough {
     /// The chance that a facet is taken to reflect.
     fn chance(&self, sighting: &Sighting, cosine: f64) -> f64 {
         let fraction = interface(sighting, sighting.lane).map_or(1.0, |surface| surface.reflectance(cosine).mean());
-        if fraction >= 1.0 { 1.0 } else { fraction.clamp(0.05, 0.95) }
+        chance_of(fraction, 1.0 - fraction)
     }
 
     /// Draws a facet as the viewer sees it, and reflects or refracts there.

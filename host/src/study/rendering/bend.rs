@@ -41,11 +41,11 @@ pub enum Bend {
     },
 }
 
-/// Finds the bend in the errors of settings, from the coarsest to the finest.
+/// Finds the bend in the errors of settings, from the coarsest to the finest; two are no curve.
 ///
 /// - `reference`: root mean squared error of the reference, which is in all of them.
 pub(super) fn bend(measured: &[Measures], reference: f64) -> Option<Bend> {
-    let last = measured.last()?;
+    let last = measured.last().filter(|_| measured.len() > 2)?;
     let excess = |m: &Measures| (m.rmse * m.rmse - reference * reference).max(0.0);
     let is_bias = |m: &Measures| m.is_clear() && m.bias_squared > MOST * excess(m);
     let is_chance =

@@ -9,7 +9,7 @@ const COARSEST: f64 = 1.0 / 60.0;
 const TOLERANCE_STEP: f64 = 4.0;
 /// The greatest relative error that is asked for, and the widest filter of textures.
 const LARGEST_ERROR: f64 = 0.5;
-const WIDEST_FILTER: f64 = 4.0;
+const WIDEST_FILTER: f64 = 2.0;
 /// The largest turn of normals, degrees.
 const LARGEST_ANGLE: f64 = 90.0;
 /// Depths that are tried; the reference has twice the last one.
@@ -144,6 +144,18 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         best: |base, _| halved(base, LARGEST_ANGLE).take(6).last().unwrap_or(LARGEST_ANGLE),
         get: |setup| setup.settings.angle,
         set: |setup, value| setup.settings.angle = value,
+    },
+    RenderKnob {
+        name: "exact_surfaces",
+        sets: "whether rays are led on from triangles to the exact surfaces behind them (1) or not (0)",
+        techniques: RAYS,
+        is_model: false,
+        remodels: true,
+        idle: curved,
+        values: |_| vec![0.0, 1.0],
+        best: |_, _| 1.0,
+        get: |setup| f64::from(u8::from(setup.settings.exact_surfaces)),
+        set: |setup, value| setup.settings.exact_surfaces = value > 0.0,
     },
     RenderKnob {
         name: "spectral",

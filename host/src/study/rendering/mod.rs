@@ -33,7 +33,7 @@ const MOST_TRIALS: usize = 5;
 const CAUSE: f64 = 0.05;
 
 /// Options that give useful curves of all knobs within a few minutes.
-pub const RENDER_OPTIONS: Options = Options { width: 80, samples: 256, settings: 6, threads: None };
+pub const RENDER_OPTIONS: Options = Options { width: 64, samples: 256, settings: 5, threads: None };
 
 /// Error against run time of renderers.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -207,7 +207,8 @@ impl Base {
     fn prepared_for(&self, setup: &Setup) -> Result<Prepared, StudyError> {
         let Setup { settings, own_tolerances, .. } = *setup;
         let own = self.settings();
-        if own_tolerances && (settings.tolerance, settings.angle) == (own.tolerance, own.angle) {
+        let modelled = |s: &Settings| (s.tolerance, s.angle, s.exact_surfaces);
+        if own_tolerances && modelled(&settings) == modelled(own) {
             let mut prepared = self.prepared.clone();
             prepared.settings = settings;
             return Ok(prepared);
