@@ -64,7 +64,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 11] = [
+pub const EMBEDDED: [Embedded; 12] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -119,6 +119,11 @@ pub const EMBEDDED: [Embedded; 11] = [
         name: "vases",
         summary: "a copper vase under daylight by three forms of Cook and Torrance's idea, side by side",
         text: include_str!("../../scenes/vases.rhai"),
+    },
+    Embedded {
+        name: "motion",
+        summary: "a wheel that rolls, a ball that falls and a propeller, while the shutter is open",
+        text: include_str!("../../scenes/motion.rhai"),
     },
 ];
 
