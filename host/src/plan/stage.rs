@@ -29,6 +29,8 @@ pub enum Stage {
     Shadows,
     /// Rays from mirrors, through glass, and from rough surfaces.
     Reflection,
+    /// A time for each sample, at which it sees what moves.
+    Motion,
     /// More than one sample in a pixel.
     AntiAliasing,
 }
@@ -129,7 +131,7 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 11] = [
+    pub const ALL: [Stage; 12] = [
         Stage::Octree,
         Stage::Normals,
         Stage::ExactSurfaces,
@@ -140,6 +142,7 @@ impl Stage {
         Stage::Ambient,
         Stage::Shadows,
         Stage::Reflection,
+        Stage::Motion,
         Stage::AntiAliasing,
     ];
 
@@ -156,6 +159,7 @@ impl Stage {
             Stage::Ambient => "ambient term",
             Stage::Shadows => "shadows",
             Stage::Reflection => "reflected and refracted rays",
+            Stage::Motion => "motion",
             Stage::AntiAliasing => "anti-aliasing",
         }
     }
@@ -177,11 +181,19 @@ impl Stage {
             Stage::Ambient => ambient(facts),
             Stage::Shadows => facts.shadows(),
             Stage::Reflection => facts.reflection(),
+            Stage::Motion => motion(facts),
             Stage::AntiAliasing => match facts.prepared.settings.samples {
                 1 => Decision::new(false, "one sample: the centre of each pixel"),
                 n => Decision::new(true, format!("{n} samples in each pixel")),
             },
         }
+    }
+}
+
+fn motion(facts: &Facts<'_>) -> Decision {
+    match facts.kept().filter(|o| o.motion.is_some()).count() {
+        0 => Decision::new(false, "nothing moves while the shutter is open"),
+        n => Decision::new(true, format!("{} in motion", counted(n, "object"))),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The surface element at a hit: position, normals, and where rays may leave from.
 
 use crate::numeric::ray::{Hit, Ray};
-use crate::scene::{OnSurface, Prepared};
+use crate::scene::{Moved, OnSurface, Prepared};
 use glam::DVec3;
 
 /// Rounding errors in units of the last place of the triangle's largest coordinate that a leaving ray keeps clear of.
@@ -89,6 +89,22 @@ impl Element {
             self.horizon = on.normal;
         }
         true
+    }
+
+    /// Takes it along with what moves.
+    pub(super) fn carry(&mut self, moved: &Moved) {
+        for point in [&mut self.position, &mut self.leave, &mut self.through, &mut self.leave_curved] {
+            *point = moved.point(*point);
+        }
+        for vector in [&mut self.face, &mut self.normal, &mut self.horizon] {
+            *vector = moved.vector(*vector);
+        }
+        // There and back, points are rounded again.
+        let largest = self.position.abs().max_element() + moved.largest();
+        let clearance = self.face * (CLEARANCE_ULPS * f64::EPSILON * largest);
+        self.leave += clearance;
+        self.leave_curved += clearance;
+        self.through -= clearance;
     }
 
     /// Gives it another normal for shading.

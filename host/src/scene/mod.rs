@@ -7,6 +7,7 @@ mod composite;
 mod error;
 mod exact;
 mod meeting;
+mod motion;
 mod placing;
 mod prepared;
 mod sculpture;
@@ -19,6 +20,7 @@ pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
 pub use exact::OnSurface;
 pub use meeting::{Meeting, meetings};
+pub use motion::{Motion, Moved};
 pub use placing::{Sides, footprint};
 pub use prepared::{Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, Sheet};
@@ -44,6 +46,9 @@ pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
 pub struct Scene {
     /// What stands in it.
     pub objects: Vec<Object>,
+    /// Objects that move, by their place in `objects`, which says where they are in the middle of the time in which the
+    /// shutter is open: that is the time 0 of their motions.
+    pub motions: Vec<(u32, Motion)>,
     /// What lights it.
     pub lights: Vec<Light>,
     /// Radiance that arrives from everywhere, W/(m² sr); only diffuse reflection answers it.
@@ -98,6 +103,8 @@ pub struct Settings {
     pub spectral: Option<bool>,
     /// Whether rays are led on to the exact surfaces behind the triangles that they meet, for position and normal.
     pub exact_surfaces: bool,
+    /// How long the shutter is open, in the unit of time of motions.
+    pub shutter: f64,
     /// Over how much of what a sample stands for the mean of a texture is taken: 1 is all of it, 0 a point.
     pub texture_filter: f64,
     /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
@@ -121,6 +128,7 @@ impl Default for Settings {
             caustics: false,
             spectral: None,
             exact_surfaces: true,
+            shutter: 1.0,
             texture_filter: 1.0,
             tolerance: None,
             angle: 45.0,
@@ -141,6 +149,7 @@ impl Scene {
             return Err(SceneError::Limit { what: "lights", limit: MAX_LIGHTS as u64 });
         }
         self.objects.iter().try_for_each(Object::check)?;
+        self.check_motions()?;
         for (index, light) in self.lights.iter().enumerate() {
             light.check().map_err(|problem| SceneError::Light { number: index + 1, problem: problem.to_string() })?;
         }
@@ -154,6 +163,27 @@ impl Scene {
 }
 
 impl Scene {
+    /// How an object moves, if it does while the shutter is open.
+    pub fn motion(&self, object: usize) -> Option<Motion> {
+        let motion = self.motions.iter().find(|(moving, _)| *moving as usize == object).map(|(_, motion)| *motion);
+        motion.filter(|_| self.settings.shutter > 0.0)
+    }
+
+    fn check_motions(&self) -> Result<(), SceneError> {
+        let mut known = vec![false; self.objects.len()];
+        for (index, motion) in &self.motions {
+            let Some(object) = self.objects.get(*index as usize) else {
+                return Err(SceneError::Setting(format!("there is no object {index} that could move")));
+            };
+            let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
+            if std::mem::replace(&mut known[*index as usize], true) {
+                return Err(failed("it has two motions".into()));
+            }
+            motion.check().map_err(failed)?;
+        }
+        Ok(())
+    }
+
     /// Largest distance between the exact surfaces and the triangles that stand for them, scene units.
     ///
     /// It is measured, not the tolerance that was asked for; 0 without curved surfaces.
@@ -256,6 +286,10 @@ impl Settings {
         }
         if !(self.angle > 0.0 && self.angle <= 180.0) {
             return Err(SceneError::Setting(format!("angle {} is not within 0 to 180 degrees", self.angle)));
+        }
+        if !(self.shutter >= 0.0 && self.shutter.is_finite()) {
+            let problem = format!("a shutter that is open for {} is no shutter", self.shutter);
+            return Err(SceneError::Setting(problem));
         }
         self.tolerance.map_or(Ok(()), check_tolerance).map_err(SceneError::Setting)
     }

@@ -2,7 +2,7 @@
 
 use super::exact::Exact;
 use super::placing;
-use super::{Camera, Made, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
+use super::{Camera, Made, Motion, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
@@ -62,8 +62,10 @@ pub struct PreparedObject {
     pub first: u32,
     /// How many triangles it has.
     pub count: u32,
-    /// A box around it.
+    /// A box around it, wherever it moves.
     pub bounds: Bounds,
+    /// How it moves while the shutter is open; its triangles are where it is in the middle of that time.
+    pub motion: Option<Motion>,
     /// Distance between surface and triangles that was asked for, scene units.
     pub tolerance: f64,
     /// Where its corner normals begin; none for an object with flat faces.
@@ -115,14 +117,14 @@ impl Prepared {
             settings: scene.settings,
             bounds: Bounds::EMPTY,
         };
-        for object in &scene.objects {
-            prepared.add(object)?;
+        for (index, object) in scene.objects.iter().enumerate() {
+            prepared.add(object, scene.motion(index))?;
         }
         prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.bounds));
         Ok(prepared)
     }
 
-    fn add(&mut self, object: &Object) -> Result<(), SceneError> {
+    fn add(&mut self, object: &Object, motion: Option<Motion>) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
         let (Made { mesh, surfaces, operand_of, lines }, tolerance) =
             object.made(self.settings.tolerance, self.settings.angle)?;
@@ -140,7 +142,9 @@ impl Prepared {
             return Err(failed(format!("a vertex is placed at {v}")));
         }
         let lines = lines.points.iter().map(|point| object.transform.transform_point3(*point));
-        let bounds = Bounds::of(placed.iter().copied().chain(lines));
+        let still = Bounds::of(placed.iter().copied().chain(lines));
+        let half = 0.5 * self.settings.shutter;
+        let bounds = motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
         let first = self.triangles.len() as u32;
         self.triangles.extend(mesh.triangles.iter().map(|&[a, b, c]| {
             let [b, c] = if mirrored { [c, b] } else { [b, c] };
@@ -156,6 +160,9 @@ impl Prepared {
             self.parameters.extend(placing::parameters(&mesh, &surfaces, mirrored));
         }
         let (materials, materials_from) = self.add_materials(object, &operand_of);
+        if motion.is_some() && materials.iter().any(|material| !material.emission.is_black()) {
+            return Err(failed("it emits light, and what emits light cannot move".into()));
+        }
         self.bounds = self.bounds.union(bounds);
         self.objects.push(PreparedObject {
             name: object.name.clone(),
@@ -164,6 +171,7 @@ impl Prepared {
             first,
             count: mesh.triangles.len() as u32,
             bounds,
+            motion,
             tolerance,
             normals_from,
             parameters_from,

@@ -3,7 +3,7 @@
 use super::definition::{Definition, Definitions};
 use super::function::Done;
 use crate::database::Library;
-use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Object, Operation, Scene, Shape};
+use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Scene, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
 use std::path::PathBuf;
@@ -17,6 +17,10 @@ pub(super) struct Builder {
     pub(super) scene: Scene,
     /// Objects by handle; none where one became part of another.
     objects: Vec<Option<Object>>,
+    /// How objects move, by handle.
+    motions: Vec<Option<Motion>>,
+    /// When the shutter opens and closes.
+    pub(super) shutter: [f64; 2],
     /// Where relative paths begin.
     pub(super) folder: PathBuf,
     /// Values of parameters.
@@ -31,6 +35,8 @@ impl Builder {
         Builder {
             scene: Scene::default(),
             objects: Vec::new(),
+            motions: Vec::new(),
+            shutter: [0.0, 1.0],
             folder,
             definitions: Definitions::new(given),
             library: Library::default(),
@@ -39,7 +45,35 @@ impl Builder {
 
     /// The scene as it stands.
     pub(super) fn finish(&self) -> Scene {
-        Scene { objects: self.objects.iter().flatten().cloned().collect(), ..self.scene.clone() }
+        let [open, close] = self.shutter;
+        let middle = 0.5 * (open + close);
+        let mut scene = self.scene.clone();
+        scene.settings.shutter = close - open;
+        for (object, motion) in self.objects.iter().zip(&self.motions) {
+            let Some(mut object) = object.clone() else { continue };
+            if let Some(motion) = motion {
+                object.transform = motion.at(middle).matrix() * object.transform;
+                scene.motions.push((scene.objects.len() as u32, motion.since(middle)));
+            }
+            scene.objects.push(object);
+        }
+        scene
+    }
+
+    /// Lets an object move.
+    pub(super) fn let_move(&mut self, handle: Option<Handle>, motion: Motion) -> Done {
+        self.object(handle)?;
+        if let Some(slot) = handle.and_then(|handle| self.motions.get_mut(handle.0)) {
+            *slot = Some(motion);
+        }
+        Ok(value(handle))
+    }
+
+    /// Refuses an object that moves where only what is still can be used.
+    pub(super) fn check_still(&mut self, handle: Option<Handle>) -> Result<(), String> {
+        let moves = handle.and_then(|handle| self.motions.get(handle.0)).is_some_and(Option::is_some);
+        let name = self.object(handle)?.name.clone();
+        if moves { Err(format!("{name} moves; let the whole move that it becomes part of")) } else { Ok(()) }
     }
 
     /// Adds an object of default material, named after its kind and number.
@@ -54,6 +88,7 @@ impl Builder {
             n => format!("{} {}", shape.word(), n + 1),
         };
         self.objects.push(Some(Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance }));
+        self.motions.push(None);
         Ok(Handle(index))
     }
 
@@ -66,7 +101,9 @@ impl Builder {
     /// Adds a copy of an object.
     pub(super) fn copy(&mut self, handle: Option<Handle>) -> Result<Handle, String> {
         let Object { shape, transform, material, tolerance, .. } = self.object(handle)?.clone();
+        let motion = handle.and_then(|handle| self.motions.get(handle.0).copied().flatten());
         let copy = self.add(shape, tolerance)?;
+        self.motions[copy.0] = motion;
         let object = self.object(Some(copy))?;
         (object.transform, object.material) = (transform, material);
         Ok(copy)
@@ -77,7 +114,7 @@ impl Builder {
         if one == two {
             return Err("an object cannot be combined with itself; copy() it before".into());
         }
-        self.object(two)?;
+        self.check_still(one).and(self.check_still(two))?;
         let first = self.object(one)?.clone();
         let second = self.object(two)?.clone();
         check_bounding(&first).and(check_bounding(&second))?;
@@ -113,6 +150,7 @@ impl Builder {
     /// Divides a solid by the plane through `at`: what is behind stays, what is in front, where `normal` points, becomes
     /// another object.
     pub(super) fn split(&mut self, handle: Option<Handle>, normal: DVec3, at: DVec3) -> Done {
+        self.check_still(handle)?;
         let whole = self.object(handle)?.clone();
         check_bounding(&whole)?;
         let half = Object {

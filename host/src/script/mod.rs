@@ -64,7 +64,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 12] = [
+pub const EMBEDDED: [Embedded; 13] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -124,6 +124,11 @@ pub const EMBEDDED: [Embedded; 12] = [
         name: "corner",
         summary: "a corner of a room where every knob of the renderers has something to do, for studies",
         text: include_str!("../../scenes/corner.rhai"),
+    },
+    Embedded {
+        name: "motion",
+        summary: "a wheel that rolls, a ball that falls and a propeller, while the shutter is open",
+        text: include_str!("../../scenes/motion.rhai"),
     },
 ];
 

@@ -174,6 +174,7 @@ impl Builder {
         if closed {
             sculpture.check_closed().map_err(|error| error.to_string())?;
         }
+        handles.iter().try_for_each(|handle| self.check_still(Some(*handle)))?;
         handles.iter().for_each(|handle| self.use_up(*handle));
         let whole = self.add(Shape::Sculpture(Box::new(sculpture)), tolerance)?;
         self.object(Some(whole))?.material = material;

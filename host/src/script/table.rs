@@ -5,7 +5,7 @@ use super::builder::{Builder, value};
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
 use crate::picture::MAX_PIXELS;
-use crate::scene::{Camera, Lens, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Parallel, Shape};
+use crate::scene::{Camera, Lens, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel, Shape};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use rhai::Dynamic;
 
@@ -78,6 +78,44 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let axis = bound.vector("axis").unwrap_or(DVec3::Y);
             let angle = bound.number("angle").unwrap_or_default().to_radians();
             builder.transform(bound.object("object"), DMat4::from_axis_angle(axis, angle))
+        },
+    },
+    Function {
+        name: "moving",
+        summary: "Lets an object move while the shutter is open: from where it is placed at the time 0 it moves on evenly, and turns about an axis that moves with it.",
+        parameters: &[
+            OBJECT,
+            parameter("by", Kind::Vector, Is("[0, 0, 0]"), "how far it moves until the time 1"),
+            parameter("axis", Kind::Axis, Is("\"y\""), "what it turns about"),
+            parameter("angle", ANY, Is("0"), "how far it turns until the time 1, degrees"),
+            parameter("through", Kind::Vector, Is("[0, 0, 0]"), "a point of the axis at the time 0"),
+        ],
+        example: "pot.moving(#{ by: [0.5, 0, 0], axis: \"y\", angle: 20, through: [0, 0, 0] });",
+        action: |builder, bound| {
+            let motion = Motion {
+                by: bound.vector("by").unwrap_or_default(),
+                through: bound.vector("through").unwrap_or_default(),
+                axis: bound.vector("axis").unwrap_or(DVec3::Y),
+                angle: bound.number("angle").unwrap_or_default().to_radians(),
+            };
+            builder.let_move(bound.object("object"), motion)
+        },
+    },
+    Function {
+        name: "shutter",
+        summary: "Sets when the shutter opens and closes: samples of ray tracing see what moves at times between. Other pictures show the middle.",
+        parameters: &[
+            parameter("open", ANY, Required, "when it opens"),
+            parameter("close", ANY, Required, "when it closes; not before"),
+        ],
+        example: "shutter(0, 0.5);",
+        action: |builder, bound| {
+            let (open, close) = (bound.number("open").unwrap_or(0.0), bound.number("close").unwrap_or(1.0));
+            if close < open {
+                return Err(format!("it closes at {close}, before it opens at {open}"));
+            }
+            builder.shutter = [open, close];
+            Ok(Dynamic::UNIT)
         },
     },
     Function {

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::color::Color;
-use crate::illumination::Light;
+use crate::illumination::material::{Body, Form, Shaped};
+use crate::illumination::{Light, Material};
 use crate::scene::Shape;
 use crate::solid::Primitive;
 use crate::surface::Tolerance;
@@ -42,6 +43,74 @@ fn a_script_builds_what_it_says() {
     assert_eq!(scene.settings.width, 32);
     assert_eq!((scene.settings.samples, scene.settings.seed, scene.settings.reflection_depth), (4, 9, 2));
     assert_eq!(made.printed, ["made 2"]);
+}
+
+#[test]
+fn what_moves_stands_where_it_is_in_the_middle_of_the_shutter() {
+    let made = run("
+        let wheel = torus(1, 0.2).translate(0, 1, 0);
+        wheel.moving(#{ by: [4, 0, 0], axis: \"z\", angle: -180, through: [0, 1, 0] });
+        wheel.copy().translate(0, 0, 5);
+        cube(1);
+        shutter(0, 0.5);
+    ");
+    let scene = &made.scene;
+    assert_eq!(scene.settings.shutter, 0.5);
+    assert_eq!(scene.motions.iter().map(|(object, _)| *object).collect::<Vec<_>>(), [0, 1]);
+    let placed = scene.objects[0].transform;
+    assert!((placed.transform_point3(DVec3::ZERO) - DVec3::new(1.0, 1.0, 0.0)).length() < 1e-15);
+    let turned = placed.transform_vector3(DVec3::Y);
+    assert!((turned - DVec3::new(1.0, 1.0, 0.0).normalize()).length() < 1e-15, "{turned}");
+    // At the time 0 it is where it was placed.
+    let begun = scene.motions[0].1.at(-0.25).point(placed.transform_point3(DVec3::X));
+    assert!((begun - DVec3::new(1.0, 1.0, 0.0)).length() < 1e-15, "{begun}");
+    for (script, problem) in [
+        ("shutter(1, 0);", "closes at 0, before it opens at 1"),
+        ("let a = cube(1).moving([1, 0, 0]); a + cube(2);", "box moves"),
+        ("cube(1).moving(#{ axis: [0, 0, 0] });", "axis must be"),
+        ("cube(1).emits(3).moving([1, 0, 0]);", ""),
+    ] {
+        let result = evaluate(script, "a", Path::new(""), &[]);
+        let message = result.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(message.contains(problem), "{message}");
+    }
+}
+
+#[test]
+fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
+    let made = run("
+        let m = 0.3;
+        let own = user_distribution(|angle| { let t = tan(angle) / m; exp(-t * t) / cos(angle) ** 4 });
+        sphere(1).shaped(#{ reflectance: 0.5, distribution: own });
+        sphere(1).shaped(0.5, user_distribution(#{ area: |angle| 1 }));
+    ");
+    for object in &made.scene.objects {
+        let Some(Material { body: Body::Shaped(Shaped { form: Form::Facets(table), .. }), .. }) = &object.material
+        else {
+            panic!("it is {:?}", object.material)
+        };
+        assert!(table.error().greatest < 1e-3 && table.error().mean < 2e-4, "{:?}", table.error());
+    }
+    for (area, problem, column) in [
+        ("|angle| cos(angle) - 0.5", "it is -", 0),
+        ("|angle| 0.0 / 0.0", "it is NaN at an angle of 0: it must be finite", 0),
+        ("|angle| 1 / angle", "it is inf at an angle of 0", 0),
+        ("|angle| 0", "it is 0 at all angles", 0),
+        ("|angle| \"wide\"", "no number", 0),
+        ("|angle| angle + nothing", "unknown name nothing", 35),
+        ("|angle| { loop {} }", "more than 20000000 steps", 0),
+        ("|angle, more| 1", "", 0),
+        ("3", "must be a function", 0),
+    ] {
+        let script = format!("\nuser_distribution({area});");
+        let error = evaluate(&script, "a", Path::new(""), &[]).expect_err(area);
+        let ScriptError::Place(place) = &error else { panic!("{area}: {error}") };
+        assert!(place.line == 2 && place.message.contains(problem), "{area}: {error}");
+        assert!(column == 0 || place.column == column, "{area}: {error}");
+    }
+    let own =
+        "let own = user_distribution(|angle| 1); cube(1).shaped(#{ reflectance: 1, distribution: own, roughness: 1 });";
+    assert!(evaluate(own, "a", Path::new(""), &[]).expect_err("two").to_string().contains("has no roughness"));
 }
 
 #[test]

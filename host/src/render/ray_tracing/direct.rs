@@ -98,15 +98,16 @@ impl<'a> Direct<'a> {
 
     /// The part of a beam that nothing holds back.
     fn passed(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, above: bool) -> Channels {
-        let Encounter { found, sighting, .. } = encounter;
+        let Encounter { found, sighting, draws, .. } = encounter;
         let (element, comb) = (&found.element, sighting.comb);
         let origin = if above { element.leave_curved } else { element.through };
         if !beam.distance.is_finite() {
-            return self.world.passed(&Ray { origin, direction: beam.towards }, f64::INFINITY, index, comb);
+            let ray = Ray { origin, direction: beam.towards };
+            return self.world.passed(&ray, f64::INFINITY, index, (comb, draws.time));
         }
         let source = &self.world.appearance.sources[index].1;
         let at = element.position + beam.towards * beam.distance;
         let t_max = if source.is_sharp() || source.is_surface() { 1.0 } else { SHORT };
-        self.world.passed(&Ray { origin, direction: at - origin }, t_max, index, comb)
+        self.world.passed(&Ray { origin, direction: at - origin }, t_max, index, (comb, draws.time))
     }
 }

@@ -20,6 +20,8 @@ pub(super) enum Purpose {
     Direction,
     /// Points of lights: one purpose for each from here on.
     Lights,
+    /// When the sample is taken; beyond all that points of lights may have.
+    Time = 1 << 31,
 }
 
 /// The choices of one sample of one pixel.
@@ -28,12 +30,20 @@ pub(super) struct Draws {
     sequence: Sequence,
     index: u32,
     of: u32,
+    /// When the sample is taken, from the middle of the time in which the shutter is open.
+    pub(super) time: f64,
 }
 
 impl Draws {
     /// - `seed`: of the picture. `pixel`: its number. `index`: of the sample, of `of` at the most.
     pub(super) fn new(seed: u64, pixel: u64, index: u32, of: u32) -> Draws {
-        Draws { sequence: Sequence::new(seed, pixel), index, of }
+        Draws { sequence: Sequence::new(seed, pixel), index, of, time: 0.0 }
+    }
+
+    /// The same at a time drawn from those in which a shutter is open for so long; a single sample in their middle.
+    pub(super) fn within(self, shutter: f64) -> Draws {
+        let part = if self.of <= 1 { 0.5 } else { self.point(Purpose::Time)[0] };
+        Draws { time: (part - 0.5) * shutter, ..self }
     }
 
     /// Where in the pixel the sample lies, 0..1 both; a single one in the middle.

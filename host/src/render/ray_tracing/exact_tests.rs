@@ -39,7 +39,7 @@ fn met(objects: Vec<Object>, mut tell: impl FnMut(&Ray, &Found<'_>)) -> usize {
             let origin = center + right * at.x + up * at.y + axis * reach;
             let ray = Ray { origin, direction: axis * -0.7 };
             let sight = Sight { ray, t_min: 0.0, t_max: f64::INFINITY, cone: Cone::default() };
-            if let Met::Element(found) = tracer.world.meet(&sight, 0) {
+            if let Met::Element(found) = tracer.world.meet(&sight, 0, 0.0) {
                 let on = found.depth;
                 assert!((ray.origin - axis * on - found.element.position).length() < 1e-9, "on its ray");
                 tell(&ray, &found);

@@ -16,6 +16,8 @@ mod exact_tests;
 #[cfg(test)]
 mod light_tests;
 #[cfg(test)]
+mod motion_tests;
+#[cfg(test)]
 mod texture_tests;
 #[cfg(test)]
 mod tests;
@@ -192,6 +194,7 @@ impl<'a> RayTracer<'a> {
     ) -> (Sample, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let draws = Draws::new(order.seed, pixel, index, order.samples);
+        let draws = if self.world.moves() { draws.within(self.prepared().settings.shutter) } else { draws };
         let [dx, dy] = draws.position();
         let wavelengths = &self.world.appearance.wavelengths;
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);

@@ -140,7 +140,7 @@ impl<'a> Tracer<'a> {
                 _ => counts.reflected += 1,
             }
             let direction = leg.sight.ray.direction;
-            match self.world.meet(&leg.sight, comb) {
+            match self.world.meet(&leg.sight, comb, draws.time) {
                 Met::Nothing => {
                     let radiance = match leg.for_lights && !self.direct.has_sky() {
                         true => Channels::ZERO,
@@ -194,7 +194,7 @@ impl<'a> Tracer<'a> {
             return sum;
         }
         let normal = found.element.normal;
-        let frame = optics.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
+        let frame = found.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
         let lanes = self.world.appearance.wavelengths.lanes();
         // Where wavelengths part, the one that is left is drawn together with the comb: all of them get their turn.
         let parting = draws.point(Purpose::Wavelengths)[1];

@@ -13,15 +13,25 @@ use crate::render::RenderError;
 use crate::render::element::Element;
 use crate::render::eye::Sight;
 use crate::render::ready::Appearance;
-use crate::scene::{Prepared, footprint};
+use crate::scene::{Motion, Moved, Prepared, footprint};
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// A scene as rays meet it.
 pub(super) struct World<'a> {
     pub(super) appearance: Appearance<'a>,
-    /// None if the plan needs no octree.
+    /// None if the plan needs no octree, or everything moves.
     pub(super) octree: Option<Octree>,
     /// The triangle of the scene behind each triangle of the octree; empty if they are the same.
+    triangle_of: Vec<u32>,
+    /// What moves while the shutter is open, each motion with an octree of its own.
+    moving: Vec<Moving>,
+}
+
+/// Objects of one motion, where they are in the middle of the time in which the shutter is open.
+struct Moving {
+    motion: Motion,
+    octree: Octree,
     triangle_of: Vec<u32>,
 }
 
@@ -66,6 +76,8 @@ pub(super) struct Found<'a> {
     pub(super) t: f64,
     /// What the patterns of the material give; none for a material that has none.
     painting: Option<Box<Painting>>,
+    /// The direction in which its material is brushed.
+    pub(super) along: Option<DVec3>,
 }
 
 impl Found<'_> {
@@ -82,36 +94,59 @@ impl<'a> World<'a> {
     /// [`RenderError`].
     pub(super) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
         let (octree, triangle_of) = octree(prepared, plan)?;
-        Ok(World { appearance: Appearance::new(prepared, plan)?, octree, triangle_of })
+        let moving = if plan.needs(Stage::Motion) { moving(prepared, plan)? } else { Vec::new() };
+        Ok(World { appearance: Appearance::new(prepared, plan)?, octree, triangle_of, moving })
     }
 
-    /// What is first in sight.
-    pub(super) fn meet(&self, sight: &Sight, comb: usize) -> Met<'_> {
+    /// Whether something moves, so that samples need a time.
+    pub(super) fn moves(&self) -> bool {
+        !self.moving.is_empty()
+    }
+
+    /// The first triangle in sight at a time, and where what it belongs to has moved to.
+    fn first(&self, sight: &Sight, time: f64) -> Option<(Hit, u32, Option<Moved>)> {
         let hit = self.octree.as_ref().and_then(|octree| octree.closest(&sight.ray, sight.t_min, sight.t_max));
-        let t_max = hit.map_or(sight.t_max, |hit| hit.t);
+        let of =
+            |triangle_of: &[u32], hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+        let mut first = hit.map(|hit| (hit, of(&self.triangle_of, &hit), None));
+        for Moving { motion, octree, triangle_of } in &self.moving {
+            let moved = motion.at(time);
+            let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
+            if let Some(hit) = octree.closest(&moved.still(&sight.ray), sight.t_min, t_max) {
+                first = Some((hit, of(triangle_of, &hit), Some(moved)));
+            }
+        }
+        first
+    }
+
+    /// What is first in sight at a time.
+    pub(super) fn meet(&self, sight: &Sight, comb: usize, time: f64) -> Met<'_> {
+        let first = self.first(sight, time);
+        let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
         if let Some((index, glow)) = self.appearance.glow(&sight.ray, sight.t_min, t_max, comb) {
             return Met::Glow(index, glow);
         }
-        let Some(hit) = hit else { return Met::Nothing };
-        let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+        let Some((hit, triangle, moved)) = first else { return Met::Nothing };
         let prepared = self.appearance.prepared;
-        let Some(mut element) = Element::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved) else {
+        // What moves is looked at as if it stood still, up to the element.
+        let ray = moved.map_or(sight.ray, |moved| moved.still(&sight.ray));
+        let Some(mut element) = Element::new(prepared, triangle, &ray, &hit, self.appearance.curved) else {
             return Met::Nothing;
         };
         let object = prepared.object_of[triangle as usize];
         let material = prepared.material_number(triangle);
         let optics = self.appearance.optics(object, material);
-        let length = sight.ray.direction.length();
+        let length = ray.direction.length();
         let distance = hit.t * length;
         let exact = if self.appearance.exact {
-            let on = prepared.on_surface(triangle, &sight.ray, weights(&hit), (element.position, element.outside));
-            on.filter(|on| element.settle(sight.ray.direction, hit.t - sight.t_min, on))
+            let on = prepared.on_surface(triangle, &ray, weights(&hit), (element.position, element.outside));
+            on.filter(|on| element.settle(ray.direction, hit.t - sight.t_min, on))
         } else {
             None
         };
         let depth = distance + exact.map_or(0.0, |on| on.beyond * length);
         let painting = optics.is_textured().then(|| {
-            let towards = sight.ray.direction / length;
+            let towards = ray.direction / length;
             let sides = footprint(element.face, towards, sight.cone.at(distance));
             let mut place = prepared.place(triangle, weights(&hit), sides);
             if let Some(on) = exact {
@@ -120,7 +155,12 @@ impl<'a> World<'a> {
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
             Box::new(optics.paint(&place, comb))
         });
-        Met::Element(Found { element, optics, triangle, object, material, distance, depth, t: hit.t, painting })
+        let mut along = optics.along;
+        if let Some(moved) = moved {
+            element.carry(&moved);
+            along = along.map(|along| moved.vector(along));
+        }
+        Met::Element(Found { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
     }
 
     /// The light that an element emits, and the density with which its light would have drawn it.
@@ -140,22 +180,34 @@ impl<'a> World<'a> {
 
     /// The part of light that comes along a way: nothing, if something opaque is in between.
     ///
-    /// - `index`: of the light that the way leads to, which is not in the way of itself.
-    pub(super) fn passed(&self, ray: &Ray, t_max: f64, index: usize, comb: usize) -> Channels {
+    /// - `index`: of the light that the way leads to, which is not in the way of itself. `time`: when.
+    pub(super) fn passed(&self, ray: &Ray, t_max: f64, index: usize, (comb, time): (usize, f64)) -> Channels {
         let blocks = |(other, (_, source)): (usize, &(usize, Source))| {
             other != index && source.is_surface() && source.glow(ray, 0.0, t_max, comb).is_some()
         };
         if self.appearance.sources.iter().enumerate().any(blocks) {
             return Channels::ZERO;
         }
-        let Some(octree) = &self.octree else { return Channels::ONE };
+        let still = self.octree.as_ref();
+        let mut part =
+            still.map_or(Channels::ONE, |octree| self.passed_by((octree, &self.triangle_of), ray, t_max, comb));
+        for Moving { motion, octree, triangle_of } in &self.moving {
+            if part != Channels::ZERO {
+                part *= self.passed_by((octree, triangle_of), &motion.at(time).still(ray), t_max, comb);
+            }
+        }
+        part
+    }
+
+    /// The part of light that the triangles of an octree let pass.
+    fn passed_by(&self, (octree, triangle_of): (&Octree, &[u32]), ray: &Ray, t_max: f64, comb: usize) -> Channels {
         if !self.appearance.passing {
             return if octree.occluded(ray, 0.0, t_max) { Channels::ZERO } else { Channels::ONE };
         }
         let mut part = Channels::ONE;
         let mut from = 0.0;
         while let Some(hit) = octree.closest(ray, from, t_max) {
-            let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+            let triangle = triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
             let prepared = self.appearance.prepared;
             let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
             let place = || prepared.place(triangle, weights(&hit), Default::default());
@@ -174,18 +226,53 @@ fn weights(hit: &Hit) -> [f64; 3] {
     [1.0 - hit.u - hit.v, hit.u, hit.v]
 }
 
-/// The octree over the objects that a plan keeps, and which triangles of the scene it holds, if not all.
+/// The octree over the objects that a plan keeps and that stand still, and which triangles of the scene it holds, if not
+/// all.
 fn octree(prepared: &Prepared, plan: &Plan) -> Result<(Option<Octree>, Vec<u32>), OctreeError> {
-    let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
-    let all = (0..prepared.objects.len()).all(|index| plan.keeps_object(index));
+    let moves = |index: usize| plan.needs(Stage::Motion) && prepared.objects[index].motion.is_some();
+    let stands = |index: usize| plan.keeps_object(index) && !moves(index);
+    let all = (0..prepared.objects.len()).all(stands);
     let settings = OctreeSettings::default();
     if !plan.needs(Stage::Octree) || prepared.triangles.is_empty() {
         Ok((None, Vec::new()))
     } else if all {
         Ok((Some(Octree::build(&prepared.vertices, &prepared.triangles, &settings)?), Vec::new()))
     } else {
-        let kept: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
+        let stands = |triangle: &u32| stands(prepared.object_of[*triangle as usize] as usize);
+        let kept: Vec<u32> = (0..prepared.triangles.len() as u32).filter(stands).collect();
+        if kept.is_empty() {
+            return Ok((None, Vec::new()));
+        }
         let triangles: Vec<[u32; 3]> = kept.iter().map(|&t| prepared.triangles[t as usize]).collect();
         Ok((Some(Octree::build(&prepared.vertices, &triangles, &settings)?), kept))
     }
+}
+
+/// Octrees over the objects that a plan keeps and that move, one for each motion.
+fn moving(prepared: &Prepared, plan: &Plan) -> Result<Vec<Moving>, OctreeError> {
+    let mut groups: Vec<(Motion, Vec<u32>)> = Vec::new();
+    for (index, object) in prepared.objects.iter().enumerate() {
+        let Some(motion) = object.motion.filter(|_| plan.keeps_object(index) && object.count > 0) else { continue };
+        let triangles = object.first..object.first + object.count;
+        match groups.iter_mut().find(|(other, _)| *other == motion) {
+            Some((_, of)) => of.extend(triangles),
+            None => groups.push((motion, triangles.collect())),
+        }
+    }
+    let made = |(motion, triangle_of): (Motion, Vec<u32>)| {
+        // Only the vertices that it has: there may be many motions.
+        let mut vertices = Vec::new();
+        let mut numbers = HashMap::new();
+        let mut number = |vertex: u32| {
+            *numbers.entry(vertex).or_insert_with(|| {
+                vertices.push(prepared.vertices[vertex as usize]);
+                vertices.len() as u32 - 1
+            })
+        };
+        let triangles: Vec<[u32; 3]> =
+            triangle_of.iter().map(|&t| prepared.triangles[t as usize].map(&mut number)).collect();
+        let octree = Octree::build(&vertices, &triangles, &OctreeSettings::default())?;
+        Ok(Moving { motion, octree, triangle_of })
+    };
+    groups.into_iter().map(made).collect()
 }

@@ -146,6 +146,9 @@ impl<'a> ScanLine<'a> {
         if self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the sky is seen, but lights nothing");
         }
+        if self.plan.needs(Stage::Motion) {
+            left_out.push("what moves stands where it is in the middle of the time in which the shutter is open");
+        }
         if let View::Camera(camera) = view
             && camera.lens.is_some()
         {

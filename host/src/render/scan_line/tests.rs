@@ -76,7 +76,7 @@ fn usual() -> Camera {
 fn scene(objects: Vec<Object>, lights: Lamps, camera: Camera) -> Scene {
     let settings = Settings { width: 72, height: 64, samples: 16, ..Settings::default() };
     let (ambient, background) = (Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
-    Scene { objects, lights, settings, camera: Some(camera), ambient, background }
+    Scene { objects, lights, settings, camera: Some(camera), ambient, background, motions: Vec::new() }
 }
 
 fn order(scene: &Scene, threads: usize) -> Order {
