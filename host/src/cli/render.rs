@@ -300,11 +300,12 @@ fn report(
         return Ok(());
     }
     say!(
-        "{} rays (primary {}, shadow {}, reflected {}) in {seconds:.3} s on {threads} threads: {:.2} million a second",
+        "{} rays (primary {}, shadow {}, reflected {}; {} spared) in {seconds:.3} s on {threads} threads: {:.2} million a second",
         rays.total(),
         rays.primary,
         rays.shadow,
         rays.reflected,
+        rays.spared,
         rendering.mega_rays_per_second()
     );
     Ok(())

@@ -121,6 +121,56 @@ pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool
     search.is_some_and(|mut search| search.descend::<L, true>())
 }
 
+/// As [`nearest`], among the triangles of some packets.
+#[inline]
+pub fn nearest_in(octree: &Octree, packets: &[Packet], ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn nearest_in_wide(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> Option<Hit> {
+            nearest_in_by::<Wide>(octree, packets, ray, limits)
+        }
+        if is_wide() {
+            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { nearest_in_wide(octree, packets, ray, [t_min, t_max]) };
+        }
+    }
+    nearest_in_by::<Plain>(octree, packets, ray, [t_min, t_max])
+}
+
+/// As [`is_any`], among the triangles of some packets.
+#[inline]
+pub fn is_any_in(octree: &Octree, packets: &[Packet], ray: &Ray, t_min: f64, t_max: f64) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn is_any_in_wide(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
+            is_any_in_by::<Wide>(octree, packets, ray, limits)
+        }
+        if is_wide() {
+            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { is_any_in_wide(octree, packets, ray, [t_min, t_max]) };
+        }
+    }
+    is_any_in_by::<Plain>(octree, packets, ray, [t_min, t_max])
+}
+
+#[inline(always)]
+fn nearest_in_by<L: Lanes>(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> Option<Hit> {
+    let mut search = Search::new(octree, ray, limits[0], limits[1], false)?;
+    for packet in packets {
+        search.test::<L, false>(packet, [0.0; 2]);
+    }
+    search.found().0
+}
+
+#[inline(always)]
+fn is_any_in_by<L: Lanes>(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
+    let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], true) else { return false };
+    let within = search.frame.within(search.t_min, search.t_max);
+    packets.iter().any(|packet| search.test::<L, true>(packet, within))
+}
+
 /// Whether the processor has AVX2 and fused multiply-adds.
 #[cfg(target_arch = "x86_64")]
 #[inline]

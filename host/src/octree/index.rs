@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
 use rayon::current_num_threads;
 use rayon::prelude::*;
 use wide::f32x4;
@@ -12,6 +13,7 @@ use super::items::{self, Item};
 use super::lanes::{Eight, LANES, Lanes};
 use super::packet::Packet;
 use super::partition::{Part, divide};
+use crate::numeric::bounds::Bounds;
 
 /// So many cells or fewer are divided by their items.
 const FEW_CELLS: usize = 64;
@@ -77,6 +79,16 @@ impl Node {
             self.bounds[axis][1].0[lane] = high[axis];
         }
         self.children[lane] = child;
+    }
+
+    /// Its boxes, in local coordinates, and what is in each.
+    pub fn boxes(&self) -> impl Iterator<Item = (Bounds, Child)> {
+        let corner = |side: usize, lane: usize| {
+            DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.bounds[axis][side].0[lane])))
+        };
+        (0..LANES)
+            .map(move |lane| (Bounds { min: corner(0, lane), max: corner(1, lane) }, self.children[lane]))
+            .filter(|(bounds, _)| !bounds.is_empty())
     }
 
     /// The children that the ray may meet up to a limit, one bit each, and where it enters them.

@@ -1,6 +1,7 @@
 //! The stages of rendering, one row each: name and the rule that decides whether a scene needs it.
 
 use super::Decision;
+use crate::illumination::Light;
 use crate::illumination::Material;
 use crate::illumination::distribution::TableError;
 use crate::illumination::material::{Body, Classic, Coated, Form, Shaped};
@@ -27,6 +28,8 @@ pub enum Stage {
     Ambient,
     /// Rays towards the lights, or shadow volumes.
     Shadows,
+    /// What stands between the voxels of the scene and its lights, kept for rays towards them.
+    LightBuffer,
     /// Rays from mirrors, through glass, and from rough surfaces.
     Reflection,
     /// A time for each sample, at which it sees what moves.
@@ -131,7 +134,7 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 12] = [
+    pub const ALL: [Stage; 13] = [
         Stage::Octree,
         Stage::Normals,
         Stage::ExactSurfaces,
@@ -141,6 +144,7 @@ impl Stage {
         Stage::Specular,
         Stage::Ambient,
         Stage::Shadows,
+        Stage::LightBuffer,
         Stage::Reflection,
         Stage::Motion,
         Stage::AntiAliasing,
@@ -158,6 +162,7 @@ impl Stage {
             Stage::Specular => "highlights",
             Stage::Ambient => "ambient term",
             Stage::Shadows => "shadows",
+            Stage::LightBuffer => "light buffer",
             Stage::Reflection => "reflected and refracted rays",
             Stage::Motion => "motion",
             Stage::AntiAliasing => "anti-aliasing",
@@ -180,6 +185,7 @@ impl Stage {
             Stage::Specular => highlights(facts),
             Stage::Ambient => ambient(facts),
             Stage::Shadows => facts.shadows(),
+            Stage::LightBuffer => light_buffer(facts),
             Stage::Reflection => facts.reflection(),
             Stage::Motion => motion(facts),
             Stage::AntiAliasing => match facts.prepared.settings.samples {
@@ -188,6 +194,22 @@ impl Stage {
             },
         }
     }
+}
+
+fn light_buffer(facts: &Facts<'_>) -> Decision {
+    let shadows = facts.shadows();
+    if !shadows.needed {
+        return Decision::new(false, "without shadows nothing is looked for between surfaces and lights");
+    }
+    if !facts.prepared.settings.light_buffer {
+        return Decision::new(false, "the scene asks for all rays to lights");
+    }
+    let bright = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
+    let skies = bright.filter(|(_, light)| matches!(light, Light::Sky { .. })).count();
+    if skies == facts.lights() {
+        return Decision::new(false, "a sky is in all directions");
+    }
+    Decision::new(true, "what stands between voxels and lights is kept, for all views")
 }
 
 fn motion(facts: &Facts<'_>) -> Decision {

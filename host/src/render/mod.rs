@@ -123,10 +123,12 @@ pub struct RayCounts {
     pub shadow: u64,
     /// From surfaces that reflect or let through.
     pub reflected: u64,
+    /// Rays towards lights that were not needed: the light buffer knew that nothing comes from there.
+    pub spared: u64,
 }
 
 impl RayCounts {
-    /// All of them.
+    /// All that were traced.
     pub fn total(&self) -> u64 {
         self.primary + self.shadow + self.reflected
     }
@@ -140,6 +142,7 @@ impl std::ops::Add for RayCounts {
             primary: self.primary + other.primary,
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
+            spared: self.spared + other.spared,
         }
     }
 }

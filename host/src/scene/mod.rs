@@ -99,6 +99,8 @@ pub struct Settings {
     /// chance only: such pictures take very many samples. Without it, too, highlights of lamps are cut off on what is seen
     /// by spread light. Light of a sky always counts.
     pub caustics: bool,
+    /// Whether ray tracing keeps what stands between voxels and lights; the picture is the same without.
+    pub light_buffer: bool,
     /// Whether rays carry spectra; without a word, where a material or a light has one.
     pub spectral: Option<bool>,
     /// Whether rays are led on to the exact surfaces behind the triangles that they meet, for position and normal.
@@ -126,6 +128,7 @@ impl Default for Settings {
             light_samples: 1,
             interreflection: false,
             caustics: false,
+            light_buffer: true,
             spectral: None,
             exact_surfaces: true,
             shutter: 1.0,

@@ -294,6 +294,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
+        name: "light_buffer",
+        summary: "Lets ray tracing keep what stands between the parts of the scene and its lights, for all views; pictures are the same without.",
+        parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does; scenes do without a word")],
+        example: "light_buffer(false);",
+        action: |builder, bound| {
+            builder.scene.settings.light_buffer = bound.flag("on").unwrap_or(true);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
         name: "spectral",
         summary: "Lets rays carry spectra, or three bands only, whatever the scene needs.",
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether they do")],

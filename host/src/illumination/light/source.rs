@@ -3,6 +3,7 @@
 use super::{Goniometry, Light, Patch, Sky};
 use crate::color::observer::LUMENS_PER_WATT;
 use crate::color::{Channels, Curve, Wavelengths};
+use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
@@ -210,6 +211,18 @@ impl Source {
             (Some(normal), Sides::Both) => normal.dot(beam.towards).abs(),
         };
         (facing > 0.0).then(|| Beam { irradiance: beam.irradiance * facing, ..beam })
+    }
+
+    /// Where its light comes from: a direction, unit length, or a box; none for a sky.
+    pub fn place(&self) -> Option<Result<Bounds, DVec3>> {
+        let point = |at: DVec3| Ok(Bounds::of([at]));
+        match &self.kind {
+            Kind::Point { at } | Kind::Spot { at, .. } | Kind::Luminaire { at, .. } => Some(point(*at)),
+            Kind::Directional { towards } => Some(Err(*towards)),
+            Kind::Area(patch) => Some(Ok(Bounds::of(patch.bounds()))),
+            Kind::Mesh(triangles) => Some(Ok(Bounds::of(triangles.corners.iter().flatten().copied()))),
+            Kind::Sky(_) => None,
+        }
     }
 
     /// What a ray sees of a light that is a surface of its own.

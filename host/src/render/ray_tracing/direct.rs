@@ -1,6 +1,7 @@
 //! Light that comes to an element from lights, without a way in between.
 
 use super::draws::Purpose;
+use super::light_buffer::Way;
 use super::tracer::counted;
 use super::world::{Encounter, World};
 use crate::color::Channels;
@@ -51,6 +52,10 @@ impl<'a> Direct<'a> {
         let mut sum = Channels::ZERO;
         for (index, (number, source)) in self.world.appearance.sources.iter().enumerate() {
             let samples = if source.is_sharp() { 1 } else { self.samples };
+            if self.is_dark(encounter, index) {
+                counts.spared += u64::from(samples);
+                continue;
+            }
             let mut part = Channels::ZERO;
             for sample in 0..samples {
                 let purpose = (*number as u32).wrapping_mul(self.samples).wrapping_add(sample);
@@ -75,6 +80,13 @@ impl<'a> Direct<'a> {
         let Encounter { found, frame, sighting, parts, highest, .. } = encounter;
         let optics = found.optics;
         let light = frame.local(beam.towards);
+        let ray = self.ray(encounter, index, beam, light.z > 0.0);
+        let to = beam.distance.is_finite().then(|| ray.0.at(1.0));
+        let way = if self.shadows { self.world.way(ray.0.origin, index, to) } else { None };
+        if let Some(Way::Dark) = way {
+            counts.spared += 1;
+            return Channels::ZERO;
+        }
         let mut continued = optics.value(Which::Continued, sighting, light);
         let source = &self.world.appearance.sources[index].1;
         let most = continued.max();
@@ -93,21 +105,26 @@ impl<'a> Direct<'a> {
             return if radiance.is_finite() { radiance } else { Channels::ZERO };
         }
         counts.shadow += 1;
-        radiance * self.passed(encounter, index, beam, light.z > 0.0)
+        radiance * self.world.passed(&ray.0, ray.1, (index, way), (sighting.comb, encounter.draws.time))
     }
 
-    /// The part of a beam that nothing holds back.
-    fn passed(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, above: bool) -> Channels {
-        let Encounter { found, sighting, draws, .. } = encounter;
-        let (element, comb) = (&found.element, sighting.comb);
+    /// Whether nothing comes from a light to an element, as far as the light buffer knows.
+    fn is_dark(&self, encounter: &Encounter<'_>, index: usize) -> bool {
+        let dark = |from| matches!(self.world.way(from, index, None), Some(Way::Dark));
+        let element = &encounter.found.element;
+        self.shadows && dark(element.leave_curved) && dark(element.through)
+    }
+
+    /// The ray to where a beam comes from, and how much of it counts.
+    fn ray(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, above: bool) -> (Ray, f64) {
+        let element = &encounter.found.element;
         let origin = if above { element.leave_curved } else { element.through };
         if !beam.distance.is_finite() {
-            let ray = Ray { origin, direction: beam.towards };
-            return self.world.passed(&ray, f64::INFINITY, index, (comb, draws.time));
+            return (Ray { origin, direction: beam.towards }, f64::INFINITY);
         }
         let source = &self.world.appearance.sources[index].1;
         let at = element.position + beam.towards * beam.distance;
         let t_max = if source.is_sharp() || source.is_surface() { 1.0 } else { SHORT };
-        self.world.passed(&Ray { origin, direction: at - origin }, t_max, index, (comb, draws.time))
+        (Ray { origin, direction: at - origin }, t_max)
     }
 }

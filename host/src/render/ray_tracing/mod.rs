@@ -7,6 +7,7 @@
 mod direct;
 mod draws;
 mod explain;
+mod light_buffer;
 mod media;
 mod tracer;
 mod world;

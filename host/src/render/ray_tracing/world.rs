@@ -1,13 +1,14 @@
 //! What rays meet: triangles of materials, surfaces that emit, and the sky.
 
 use super::draws::Draws;
+use super::light_buffer::{LightBuffer, Way};
 use super::tracer::counted;
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
 use crate::illumination::light::{Glow, Source};
 use crate::illumination::optics::{Optics, Painting, Sighting};
 use crate::numeric::ray::{Hit, Ray};
-use crate::octree::{Octree, OctreeError, Settings as OctreeSettings};
+use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
 use crate::render::element::Element;
@@ -26,6 +27,7 @@ pub(super) struct World<'a> {
     triangle_of: Vec<u32>,
     /// What moves while the shutter is open, each motion with an octree of its own.
     moving: Vec<Moving>,
+    light_buffer: Option<LightBuffer>,
 }
 
 /// Objects of one motion, where they are in the middle of the time in which the shutter is open.
@@ -95,7 +97,23 @@ impl<'a> World<'a> {
     pub(super) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
         let (octree, triangle_of) = octree(prepared, plan)?;
         let moving = if plan.needs(Stage::Motion) { moving(prepared, plan)? } else { Vec::new() };
-        Ok(World { appearance: Appearance::new(prepared, plan)?, octree, triangle_of, moving })
+        let appearance = Appearance::new(prepared, plan)?;
+        let light_buffer = octree.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|_| {
+            let triangles = || match &triangle_of[..] {
+                [] => Box::new(0..prepared.triangles.len() as u32) as Box<dyn Iterator<Item = u32>>,
+                kept => Box::new(kept.iter().copied()),
+            };
+            let is_opaque =
+                |t: u32| !appearance.optics(prepared.object_of[t as usize], prepared.material_number(t)).is_passable();
+            let opaque = appearance.passing.then(|| triangles().map(is_opaque).collect());
+            LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
+        });
+        Ok(World { appearance, octree, triangle_of, moving, light_buffer })
+    }
+
+    /// What stands still between a point and a light, or a point of it, if the light buffer knows.
+    pub(super) fn way(&self, from: DVec3, light: usize, to: Option<DVec3>) -> Option<&Way> {
+        self.light_buffer.as_ref()?.way(self.octree.as_ref()?, from, light, to)
     }
 
     /// Whether something moves, so that samples need a time.
@@ -180,33 +198,59 @@ impl<'a> World<'a> {
 
     /// The part of light that comes along a way: nothing, if something opaque is in between.
     ///
-    /// - `index`: of the light that the way leads to, which is not in the way of itself. `time`: when.
-    pub(super) fn passed(&self, ray: &Ray, t_max: f64, index: usize, (comb, time): (usize, f64)) -> Channels {
+    /// - `index`: of the light that the way leads to, which is not in the way of itself. `way`: what is known of what stands
+    ///   still there. `time`: when.
+    pub(super) fn passed(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        (index, way): (usize, Option<&Way>),
+        (comb, time): (usize, f64),
+    ) -> Channels {
         let blocks = |(other, (_, source)): (usize, &(usize, Source))| {
             other != index && source.is_surface() && source.glow(ray, 0.0, t_max, comb).is_some()
         };
         if self.appearance.sources.iter().enumerate().any(blocks) {
             return Channels::ZERO;
         }
+        let shaft = match way {
+            Some(Way::Dark) => return Channels::ZERO,
+            Some(Way::Few(shaft)) => Some(shaft),
+            _ => None,
+        };
         let still = self.octree.as_ref();
         let mut part =
-            still.map_or(Channels::ONE, |octree| self.passed_by((octree, &self.triangle_of), ray, t_max, comb));
+            still.map_or(Channels::ONE, |octree| self.passed_by((octree, &self.triangle_of, shaft), ray, t_max, comb));
         for Moving { motion, octree, triangle_of } in &self.moving {
             if part != Channels::ZERO {
-                part *= self.passed_by((octree, triangle_of), &motion.at(time).still(ray), t_max, comb);
+                part *= self.passed_by((octree, triangle_of, None), &motion.at(time).still(ray), t_max, comb);
             }
         }
         part
     }
 
-    /// The part of light that the triangles of an octree let pass.
-    fn passed_by(&self, (octree, triangle_of): (&Octree, &[u32]), ray: &Ray, t_max: f64, comb: usize) -> Channels {
+    /// The part of light that the triangles of an octree let pass, or those of a shaft.
+    fn passed_by(
+        &self,
+        (octree, triangle_of, shaft): (&Octree, &[u32], Option<&Shaft>),
+        ray: &Ray,
+        t_max: f64,
+        comb: usize,
+    ) -> Channels {
         if !self.appearance.passing {
-            return if octree.occluded(ray, 0.0, t_max) { Channels::ZERO } else { Channels::ONE };
+            let occluded = match shaft {
+                Some(shaft) => octree.occluded_in(shaft, ray, 0.0, t_max),
+                None => octree.occluded(ray, 0.0, t_max),
+            };
+            return if occluded { Channels::ZERO } else { Channels::ONE };
         }
+        let closest = |from: f64| match shaft {
+            Some(shaft) => octree.closest_in(shaft, ray, from, t_max),
+            None => octree.closest(ray, from, t_max),
+        };
         let mut part = Channels::ONE;
         let mut from = 0.0;
-        while let Some(hit) = octree.closest(ray, from, t_max) {
+        while let Some(hit) = closest(from) {
             let triangle = triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
             let prepared = self.appearance.prepared;
             let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
