@@ -66,9 +66,12 @@ fn the_demo_leaves_its_files_and_makes_the_same_bytes_with_one_thread_and_with_t
 #[test]
 fn a_study_leaves_table_and_plot() {
     let folder = tempfile::tempdir().unwrap();
-    let ended = peris(&["study", "render", "--width", "32", "--samples", "16", "--settings", "3"], folder.path());
+    let ended = peris(
+        &["study", "render", "teapot", "--knob", "samples", "--width", "32", "--samples", "16", "--settings", "3"],
+        folder.path(),
+    );
     assert_eq!(ended.code, Some(0), "{}", ended.errors);
-    for name in ["teapot-render.csv", "teapot-render.svg", "teapot-render.png"] {
+    for name in ["teapot-render.csv", "teapot-render-samples.svg", "teapot-render-samples.png"] {
         assert!(folder.path().join(name).is_file(), "{name}");
     }
 }
