@@ -81,6 +81,13 @@ impl Surface for BezierPatch {
         [sum(by_u, along_v), by_v_at[0] + sum(at_u, by_v_at)]
     }
 
+    fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let rows = self.control.map(|row| casteljau_and_derivative(row, uv.y));
+        let [point, du] = casteljau_and_derivative(rows.map(|[point, _]| point), uv.x);
+        let [dv, _] = casteljau_and_derivative(rows.map(|[_, dv]| dv), uv.x);
+        [point, du, dv]
+    }
+
     /// dS/du x dS/dv; where that vanishes, the first term that does not in its Taylor series towards the middle of the
     /// patch. So a side that is a point has its limit normal.
     fn normal(&self, uv: DVec2) -> DVec3 {
@@ -115,6 +122,13 @@ impl Curved for BezierPatch {
         let taylor = self.taylor(uv);
         [taylor[2][0] * 2.0, taylor[1][1], taylor[0][2] * 2.0]
     }
+}
+
+/// A point of a cubic curve and its derivative, by the same construction.
+fn casteljau_and_derivative([a, b, c, d]: [DVec3; 4], t: f64) -> [DVec3; 2] {
+    let (ab, bc, cd) = (a + (b - a) * t, b + (c - b) * t, c + (d - c) * t);
+    let (abc, bcd) = (ab + (bc - ab) * t, bc + (cd - bc) * t);
+    [abc + (bcd - abc) * t, (bcd - abc) * 3.0]
 }
 
 pub(super) fn casteljau(points: [DVec3; 4], t: f64) -> DVec3 {

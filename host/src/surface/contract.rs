@@ -119,6 +119,18 @@ fn derivatives_agree_with_differences_of_points() {
 }
 
 #[test]
+fn points_and_derivatives_at_once_are_those_of_each() {
+    for (name, surface) in members() {
+        for uv in samples(&surface, 7) {
+            let [point, du, dv] = surface.point_and_derivatives(uv);
+            let [u, v] = surface.derivatives(uv);
+            let off = (point - surface.point(uv)).length() + (du - u).length() + (dv - v).length();
+            assert!(off <= 1e-13 * (10.0 + u.length() + v.length()), "{name} at {uv}: {off}");
+        }
+    }
+}
+
+#[test]
 fn normals_are_unit_perpendicular_and_on_the_side_of_du_x_dv() {
     for (name, surface) in members() {
         for uv in samples(&surface, 9) {

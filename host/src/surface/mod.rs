@@ -73,6 +73,12 @@ pub trait Surface: Send + Sync {
     /// The derivatives of the point by u and by v; either may vanish.
     fn derivatives(&self, uv: DVec2) -> [DVec3; 2];
 
+    /// The point and its derivatives by u and v at once, perhaps with other last digits.
+    fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let [du, dv] = self.derivatives(uv);
+        [self.point(uv), du, dv]
+    }
+
     /// The outward unit normal; where the derivatives do not determine it, its limit from the inside of the domain.
     fn normal(&self, uv: DVec2) -> DVec3;
 
@@ -94,6 +100,10 @@ macro_rules! pointers {
 
             fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
                 (**self).derivatives(uv)
+            }
+
+            fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+                (**self).point_and_derivatives(uv)
             }
 
             fn normal(&self, uv: DVec2) -> DVec3 {

@@ -10,6 +10,8 @@ const MAX_STEPS: usize = 12;
 const LAST: f64 = 1e-6;
 /// Sine of the angle of the derivatives below which they span no plane, as at a pole.
 const SPANNING: f64 = 1e-10;
+/// The same, below which they do not tell a normal of at least twelve digits.
+const CLEAR: f64 = 1e-3;
 
 /// Where a line goes through a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +58,7 @@ fn settled<S: Surface + ?Sized>(surface: &S, line: &Line, mut uv: DVec2, reach: 
     let Line { from, direction, outward } = *line;
     let domain = surface.domain();
     for _ in 0..MAX_STEPS {
-        let (point, [du, dv]) = (surface.point(uv), surface.derivatives(uv));
+        let [point, du, dv] = surface.point_and_derivatives(uv);
         let across = du.cross(dv);
         let spans = across.length_squared() > SPANNING * SPANNING * du.length_squared() * dv.length_squared();
         let plane = if spans { across } else { surface.normal(uv) };
@@ -81,12 +83,22 @@ fn settled<S: Surface + ?Sized>(surface: &S, line: &Line, mut uv: DVec2, reach: 
             }
         }
         if is_last {
-            let normal = surface.normal(uv);
+            let normal = normal_at(surface, uv);
             let is_met = offset.length() <= reach && (normal.dot(direction) > 0.0) == outward;
             return is_met.then_some(Pierced { uv, normal, t });
         }
     }
     None
+}
+
+/// The normal, from the derivatives where they tell it.
+fn normal_at<S: Surface + ?Sized>(surface: &S, uv: DVec2) -> DVec3 {
+    let [_, du, dv] = surface.point_and_derivatives(uv);
+    let across = du.cross(dv);
+    let is_clear = across.length_squared() > CLEAR * CLEAR * du.length_squared() * dv.length_squared();
+    // A side that is nearly a point has derivatives of few digits.
+    let is_clear = is_clear && du.length_squared().min(dv.length_squared()) > CLEAR * CLEAR * across.length();
+    if is_clear { across.normalize() } else { surface.normal(uv) }
 }
 
 /// The parameters of the point of the tangent plane at `offset`, as far as the domain goes.

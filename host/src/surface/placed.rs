@@ -53,6 +53,12 @@ impl<S: Surface> Surface for Placed<S> {
         [if self.is_mirrored { -du } else { du }, dv]
     }
 
+    fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let [point, du, dv] = self.surface.point_and_derivatives(self.inner(uv));
+        let [du, dv] = [if self.is_mirrored { -du } else { du }, dv].map(|d| self.placement.transform_vector3(d));
+        [self.placement.transform_point3(point), du, dv]
+    }
+
     fn normal(&self, uv: DVec2) -> DVec3 {
         (self.normals * self.surface.normal(self.inner(uv))).normalize_or_zero()
     }

@@ -111,6 +111,12 @@ impl Profile {
         [0.0, 0.25, 0.5, 0.75, 1.0].iter().all(|v| self.point(*v).x == 0.0)
     }
 
+    /// The point and its derivative by v.
+    pub(super) fn point_and_derivative(&self, v: f64) -> [DVec2; 2] {
+        let [point, first, _] = self.jet(v);
+        [point, first]
+    }
+
     /// The point and its derivatives by v.
     fn jet(&self, v: f64) -> [DVec2; 3] {
         let ([low, high], jet): (_, fn(&Profile, f64) -> [DVec2; 3]) = match self {

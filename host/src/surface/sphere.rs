@@ -37,6 +37,13 @@ impl Surface for Sphere {
         [DVec3::new(cu * cv, 0.0, -su * cv) * scale, DVec3::new(-su * sv, cv, -cu * sv) * scale]
     }
 
+    fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let ([su, cu], [sv, cv]) = (sine_and_cosine(uv.x), sine_and_cosine(uv.y));
+        let out = DVec3::new(su * cv, sv, cu * cv) * self.radius;
+        let scale = TAU * self.radius;
+        [self.center + out, DVec3::new(cu * cv, 0.0, -su * cv) * scale, DVec3::new(-su * sv, cv, -cu * sv) * scale]
+    }
+
     fn normal(&self, uv: DVec2) -> DVec3 {
         let ([su, cu], [sv, cv]) = (sine_and_cosine(uv.x), sine_and_cosine(uv.y));
         DVec3::new(su * cv, sv, cu * cv)

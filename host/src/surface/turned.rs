@@ -61,6 +61,13 @@ impl Surface for Turned {
         [ahead(uv.x) * (TAU * radius), Turned::turned(self.profile.derivatives(uv.y)[0], uv.x)]
     }
 
+    fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
+        let [sine, cosine] = sine_and_cosine(uv.x);
+        let turned = |p: DVec2| DVec3::new(p.x * sine, p.y, p.x * cosine);
+        let [point, along] = self.profile.point_and_derivative(uv.y);
+        [turned(point), DVec3::new(cosine, 0.0, -sine) * (TAU * point.x), turned(along)]
+    }
+
     /// Also on the axis, where every angle has its own limit.
     fn normal(&self, uv: DVec2) -> DVec3 {
         let along = self.profile.direction(uv.y);

@@ -42,6 +42,46 @@ use glam::{DVec2, DVec3};
 /// Light and viewer are above the horizon: z above 0. Where the quotient D / (N·V) is the same for light and viewer
 /// exchanged, the distribution is reciprocal, and the two may be exchanged in [`Distribution::sample`] too: a tracer
 /// that comes from the eye gives the viewer and gets the light.
+///
+/// Any type that has these four functions is a member. It is measured as those that ship are, and becomes a material by
+/// way of a table:
+///
+/// ```
+/// use glam::DVec3;
+/// use host::illumination::distribution::measure::{check, emitted_share, light_at};
+/// use host::illumination::distribution::{Distribution, Tabulated};
+/// use host::illumination::material::Form;
+/// use std::f64::consts::{PI, TAU};
+///
+/// /// Brighter along the normal than Lambert's: D = 3 cos²θ / 2π.
+/// #[derive(Debug)]
+/// struct Squared;
+///
+/// impl Distribution for Squared {
+///     fn name(&self) -> &str {
+///         "squared"
+///     }
+///     fn density(&self, _light: DVec3, view: DVec3) -> f64 {
+///         3.0 * view.z * view.z / TAU
+///     }
+///     fn sample(&self, _light: DVec3, [one, two]: [f64; 2]) -> Option<DVec3> {
+///         let (cosine, (sin, cos)) = ((1.0 - one).cbrt(), (TAU * two).sin_cos());
+///         let sine = (1.0 - cosine * cosine).sqrt();
+///         Some(DVec3::new(sine * cos, sine * sin, cosine))
+///     }
+///     fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+///         self.density(light, view)
+///     }
+/// }
+///
+/// check(&Squared, 1000, 1).expect("it is finite and not negative");
+/// let share = emitted_share(&Squared, light_at(PI / 4.0), 1e-6, 10_000);
+/// assert!((share.value - 1.0).abs() < 1e-6);
+/// let table = Tabulated::new("squared", 32, |light, view| Squared.density(light, view)).expect("a table");
+/// assert!(table.accuracy().rms < 0.01);
+/// let form = Form::Table(table);
+/// # let _ = form;
+/// ```
 pub trait Distribution: std::fmt::Debug + Send + Sync {
     /// Its name in tables.
     fn name(&self) -> &str;
