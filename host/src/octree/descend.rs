@@ -121,21 +121,56 @@ pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool
     search.is_some_and(|mut search| search.descend::<L, true>())
 }
 
-/// As [`nearest`], among the triangles of some packets.
+/// Gives all hits with `t_min < t < t_max`, in no order, until one is enough; says whether one was.
 #[inline]
-pub fn nearest_in(octree: &Octree, packets: &[Packet], ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
+pub fn each(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, enough: impl FnMut(Hit) -> bool) -> bool {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn nearest_in_wide(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> Option<Hit> {
-            nearest_in_by::<Wide>(octree, packets, ray, limits)
+        fn each_wide(octree: &Octree, ray: &Ray, limits: [f64; 2], enough: impl FnMut(Hit) -> bool) -> bool {
+            each_by::<Wide>(octree, ray, limits, enough)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { nearest_in_wide(octree, packets, ray, [t_min, t_max]) };
+            return unsafe { each_wide(octree, ray, [t_min, t_max], enough) };
         }
     }
-    nearest_in_by::<Plain>(octree, packets, ray, [t_min, t_max])
+    each_by::<Plain>(octree, ray, [t_min, t_max], enough)
+}
+
+#[inline(always)]
+fn each_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], mut enough: impl FnMut(Hit) -> bool) -> bool {
+    let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], true) else { return false };
+    search.visit::<L>(|search, packet| search.any_of_packet::<L>(packet, &mut enough))
+}
+
+/// As [`each`], among the triangles of some packets.
+#[inline]
+pub fn each_in(
+    octree: &Octree,
+    packets: &[Packet],
+    ray: &Ray,
+    [t_min, t_max]: [f64; 2],
+    enough: impl FnMut(Hit) -> bool,
+) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn each_in_wide(
+            octree: &Octree,
+            packets: &[Packet],
+            ray: &Ray,
+            limits: [f64; 2],
+            enough: impl FnMut(Hit) -> bool,
+        ) -> bool {
+            each_in_by::<Wide>(octree, packets, ray, limits, enough)
+        }
+        if is_wide() {
+            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { each_in_wide(octree, packets, ray, [t_min, t_max], enough) };
+        }
+    }
+    each_in_by::<Plain>(octree, packets, ray, [t_min, t_max], enough)
 }
 
 /// As [`is_any`], among the triangles of some packets.
@@ -156,12 +191,15 @@ pub fn is_any_in(octree: &Octree, packets: &[Packet], ray: &Ray, t_min: f64, t_m
 }
 
 #[inline(always)]
-fn nearest_in_by<L: Lanes>(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> Option<Hit> {
-    let mut search = Search::new(octree, ray, limits[0], limits[1], false)?;
-    for packet in packets {
-        search.test::<L, false>(packet, [0.0; 2]);
-    }
-    search.found().0
+fn each_in_by<L: Lanes>(
+    octree: &Octree,
+    packets: &[Packet],
+    ray: &Ray,
+    limits: [f64; 2],
+    mut enough: impl FnMut(Hit) -> bool,
+) -> bool {
+    let Some(search) = Search::new(octree, ray, limits[0], limits[1], true) else { return false };
+    packets.iter().any(|packet| search.any_of_packet::<L>(packet, &mut enough))
 }
 
 #[inline(always)]
@@ -182,8 +220,14 @@ impl Search<'_> {
     /// Goes down the index; returns whether it ended at a hit that is enough.
     #[inline(always)]
     fn descend<L: Lanes, const ANY: bool>(&mut self) -> bool {
-        let index = &self.octree.index;
         let within = if ANY { self.frame.within(self.t_min, self.t_max) } else { [0.0; 2] };
+        self.visit::<L>(|search, packet| search.test::<L, ANY>(packet, within))
+    }
+
+    /// Visits the packets on the way, the nearer ones first, until one of them is the last.
+    #[inline(always)]
+    fn visit<L: Lanes>(&mut self, mut is_last: impl FnMut(&mut Self, &Packet) -> bool) -> bool {
+        let index = &self.octree.index;
         if index.nodes.is_empty() {
             return false;
         }
@@ -218,7 +262,7 @@ impl Search<'_> {
                 }
                 Ok(places) => {
                     for packet in &index.packets[places] {
-                        if self.test::<L, ANY>(packet, within) {
+                        if is_last(self, packet) {
                             return true;
                         }
                     }
@@ -232,6 +276,20 @@ impl Search<'_> {
                 }
             }
         }
+    }
+
+    /// Gives the hits of a packet until one is enough.
+    #[inline(always)]
+    fn any_of_packet<L: Lanes>(&self, packet: &Packet, enough: &mut impl FnMut(Hit) -> bool) -> bool {
+        let (mut lanes, _) = packet.candidates::<L, false>(&self.frame, self.limit, [0.0; 2]);
+        while lanes != 0 {
+            let triangle = packet.triangles[lanes.trailing_zeros() as usize & (LANES - 1)];
+            lanes &= lanes - 1;
+            if self.crossed(triangle).is_some_and(&mut *enough) {
+                return true;
+            }
+        }
+        false
     }
 
     /// Tests a packet; returns whether the search is over.

@@ -288,6 +288,25 @@ impl Octree {
         }
     }
 
+    /// Gives all hits with `t_min < t < t_max`, in no order, until one is enough; says whether one was.
+    ///
+    /// A triangle may come more than once where rays go from cell to cell.
+    pub fn each_hit(&self, ray: &Ray, t_min: f64, t_max: f64, mut enough: impl FnMut(Hit) -> bool) -> bool {
+        match self.walk {
+            Walk::Index => descend::each(self, ray, t_min, t_max, enough),
+            Walk::LeadingDirection => {
+                let mut from = t_min;
+                while let Some(hit) = self.closest(ray, from, t_max) {
+                    if enough(hit) {
+                        return true;
+                    }
+                    from = hit.t;
+                }
+                false
+            }
+        }
+    }
+
     /// Says whether anything is hit with `t_min < t < t_max`.
     pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
         match self.walk {

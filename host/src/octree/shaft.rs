@@ -1,7 +1,7 @@
 //! Shafts: the triangles that rays from one box to another may meet, found once for all of these rays.
 
 use super::Octree;
-use super::descend::{is_any_in, nearest_in};
+use super::descend::{each_in, is_any_in};
 use super::packet::Packet;
 use super::{Hit, Ray};
 use crate::numeric::bounds::Bounds;
@@ -94,9 +94,16 @@ impl Octree {
         Between::Some(Shaft { packets: packets.collect(), triangles: found.len() })
     }
 
-    /// As [`Octree::closest`], for a ray of which all that counts lies in a shaft.
-    pub fn closest_in(&self, shaft: &Shaft, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
-        if shaft.is_empty() { None } else { nearest_in(self, &shaft.packets, ray, t_min, t_max) }
+    /// As [`Octree::each_hit`], for a ray of which all that counts lies in a shaft.
+    pub fn each_hit_in(
+        &self,
+        shaft: &Shaft,
+        ray: &Ray,
+        t_min: f64,
+        t_max: f64,
+        enough: impl FnMut(Hit) -> bool,
+    ) -> bool {
+        !shaft.is_empty() && each_in(self, &shaft.packets, ray, [t_min, t_max], enough)
     }
 
     /// As [`Octree::occluded`], for a ray of which all that counts lies in a shaft.
@@ -248,7 +255,15 @@ mod tests {
                     }
                     Between::Some(shaft) => {
                         some += 1;
-                        assert_eq!(octree.closest_in(shaft, &ray, 0.0, 1.0), octree.closest(&ray, 0.0, 1.0));
+                        let (mut inside, mut all) = (Vec::new(), Vec::new());
+                        octree.each_hit_in(shaft, &ray, 0.0, 1.0, |hit| (inside.push(hit), false).1);
+                        octree.each_hit(&ray, 0.0, 1.0, |hit| (all.push(hit), false).1);
+                        inside.sort_by_key(|hit: &Hit| hit.triangle);
+                        all.sort_by_key(|hit: &Hit| hit.triangle);
+                        assert_eq!(inside, all);
+                        let nearest =
+                            all.into_iter().min_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+                        assert_eq!(nearest, octree.closest(&ray, 0.0, 1.0));
                         assert_eq!(octree.occluded_in(shaft, &ray, 0.0, 1.0), octree.occluded(&ray, 0.0, 1.0));
                     }
                     Between::Many => {}

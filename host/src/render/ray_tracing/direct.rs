@@ -80,13 +80,6 @@ impl<'a> Direct<'a> {
         let Encounter { found, frame, sighting, parts, highest, .. } = encounter;
         let optics = found.optics;
         let light = frame.local(beam.towards);
-        let ray = self.ray(encounter, index, beam, light.z > 0.0);
-        let to = beam.distance.is_finite().then(|| ray.0.at(1.0));
-        let way = if self.shadows { self.world.way(ray.0.origin, index, to) } else { None };
-        if let Some(Way::Dark) = way {
-            counts.spared += 1;
-            return Channels::ZERO;
-        }
         let mut continued = optics.value(Which::Continued, sighting, light);
         let source = &self.world.appearance.sources[index].1;
         let most = continued.max();
@@ -105,12 +98,14 @@ impl<'a> Direct<'a> {
             return if radiance.is_finite() { radiance } else { Channels::ZERO };
         }
         counts.shadow += 1;
-        radiance * self.world.passed(&ray.0, ray.1, (index, way), (sighting.comb, encounter.draws.time))
+        let (ray, t_max) = self.ray(encounter, index, beam, light.z > 0.0);
+        let way = self.world.way(ray.origin, index);
+        radiance * self.world.passed(&ray, t_max, (index, way), (sighting.comb, encounter.draws.time))
     }
 
     /// Whether nothing comes from a light to an element, as far as the light buffer knows.
     fn is_dark(&self, encounter: &Encounter<'_>, index: usize) -> bool {
-        let dark = |from| matches!(self.world.way(from, index, None), Some(Way::Dark));
+        let dark = |from| matches!(self.world.way(from, index), Some(Way::Dark));
         let element = &encounter.found.element;
         self.shadows && dark(element.leave_curved) && dark(element.through)
     }

@@ -261,3 +261,43 @@ fn highlights_that_spread_light_sees_are_cut_off_unless_caustics_count() {
     let (with, without) = (spots(true), spots(false));
     assert!(without < 0.4 * with, "{without} {with}");
 }
+
+#[test]
+fn the_light_buffer_changes_no_picture_and_spares_rays() {
+    // A lamp, the sun and a large light over a bunny, walls with a hole, and a pane of red glass.
+    let sheet = |width: f64, x: f64, material: Classic| {
+        let size = DVec3::new(width, 4.0, 0.1);
+        object(Shape::Solid(Primitive::Box { size }), DMat4::from_translation(DVec3::new(x, 2.0, 2.0)), material)
+    };
+    let red = Color::Bands(DVec3::new(0.6, 0.1, 0.1));
+    let pane = Classic { transparency: red.into(), ..diffuse(0.0) };
+    let objects = vec![
+        object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.6)),
+        object(Shape::Bunny, DMat4::from_translation(DVec3::Y), diffuse(0.7)),
+        sheet(3.0, -2.0, diffuse(0.7)),
+        sheet(3.0, 2.5, diffuse(0.7)),
+        sheet(1.5, 0.25, pane),
+    ];
+    let lights = vec![
+        Light::Directional { direction: DVec3::new(0.2, -1.0, -1.0), irradiance: Color::grey(2.0) },
+        Light::Point { at: DVec3::new(0.5, 1.5, 4.0), intensity: Color::grey(20.0) },
+        Light::Area {
+            patch: Patch::Sphere { center: DVec3::new(-3.0, 3.0, -2.0), radius: 0.05 },
+            radiance: Color::grey(500.0),
+        },
+        Light::Area {
+            patch: Patch::Disc { center: DVec3::new(0.0, 6.0, 0.0), normal: DVec3::NEG_Y, radius: 2.0 },
+            radiance: Color::grey(1.0),
+        },
+    ];
+    let mut scene = scene(objects, lights, 48);
+    scene.settings.samples = 16;
+    let mut drawn = |buffer: bool| {
+        scene.settings.light_buffer = buffer;
+        trace(&scene, Some(from_above(4.0)), false, 2)
+    };
+    let (with, without) = (drawn(true), drawn(false));
+    assert_eq!(with.picture, without.picture);
+    assert_eq!(without.rays.spared, 0);
+    assert!(with.rays.spared * 10 > without.rays.shadow, "{:?}", with.rays);
+}

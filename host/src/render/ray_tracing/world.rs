@@ -111,9 +111,9 @@ impl<'a> World<'a> {
         Ok(World { appearance, octree, triangle_of, moving, light_buffer })
     }
 
-    /// What stands still between a point and a light, or a point of it, if the light buffer knows.
-    pub(super) fn way(&self, from: DVec3, light: usize, to: Option<DVec3>) -> Option<&Way> {
-        self.light_buffer.as_ref()?.way(self.octree.as_ref()?, from, light, to)
+    /// What stands still between a point and a light, if the light buffer knows.
+    pub(super) fn way(&self, from: DVec3, light: usize) -> Option<&Way> {
+        self.light_buffer.as_ref()?.way(self.octree.as_ref()?, from, light)
     }
 
     /// Whether something moves, so that samples need a time.
@@ -215,7 +215,7 @@ impl<'a> World<'a> {
         }
         let shaft = match way {
             Some(Way::Dark) => return Channels::ZERO,
-            Some(Way::Few(shaft)) => Some(shaft),
+            Some(Way::Few(shaft)) => Some(&**shaft),
             _ => None,
         };
         let still = self.octree.as_ref();
@@ -244,24 +244,34 @@ impl<'a> World<'a> {
             };
             return if occluded { Channels::ZERO } else { Channels::ONE };
         }
-        let closest = |from: f64| match shaft {
-            Some(shaft) => octree.closest_in(shaft, ray, from, t_max),
-            None => octree.closest(ray, from, t_max),
+        let prepared = self.appearance.prepared;
+        let of = |hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+        let optics = |triangle: u32| {
+            self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
-        let mut part = Channels::ONE;
-        let mut from = 0.0;
-        while let Some(hit) = closest(from) {
-            let triangle = triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
-            let prepared = self.appearance.prepared;
-            let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
-            let place = || prepared.place(triangle, weights(&hit), Default::default());
-            part *= self.appearance.optics(object, material).passing(comb, place);
-            if part.max() == 0.0 {
-                return Channels::ZERO;
+        let mut hits: Vec<Hit> = Vec::new();
+        let enough = |hit: Hit| {
+            let passable = optics(of(&hit)).is_passable();
+            if passable {
+                hits.push(hit);
             }
-            from = hit.t;
+            !passable
+        };
+        let stopped = match shaft {
+            Some(shaft) => octree.each_hit_in(shaft, ray, 0.0, t_max, enough),
+            None => octree.each_hit(ray, 0.0, t_max, enough),
+        };
+        if stopped {
+            return Channels::ZERO;
         }
-        part
+        // The nearest first; where triangles share a side, what they stand for is passed once.
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        hits.dedup_by(|next, hit| next.t == hit.t);
+        let passing = |hit: &Hit| {
+            let triangle = of(hit);
+            optics(triangle).passing(comb, || prepared.place(triangle, weights(hit), Default::default()))
+        };
+        hits.iter().fold(Channels::ONE, |part, hit| part * passing(hit))
     }
 }
 
