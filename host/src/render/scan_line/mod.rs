@@ -29,7 +29,7 @@ use super::film::{Film, Tally};
 use super::ready::Appearance;
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
-use crate::illumination::light::LightPoint;
+use crate::illumination::light::{LightPoint, Source};
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
@@ -167,6 +167,46 @@ impl<'a> ScanLine<'a> {
         self.lamps.par_iter().map(shadow).collect()
     }
 
+    /// For each lamp, whether points are in its shadow; none where no surface is curved.
+    fn enclosed<'s>(&'s self, shadows: &'s [Shadow]) -> Vec<Option<Enclosed<'s>>> {
+        let groups = self.passing.len();
+        let of = |Shadow { light, facing, silhouettes, .. }: &'s Shadow| {
+            let new = || Enclosed::new(&self.casters, *light, facing, silhouettes, groups).sorted();
+            self.appearance.curved.then(new)
+        };
+        shadows.par_iter().map(of).collect()
+    }
+
+    fn shader<'s>(
+        &'s self,
+        eye: &'s Eye,
+        enclosed: &'s [Option<Enclosed<'s>>],
+        is_parallel: bool,
+        matte: bool,
+    ) -> Shader<'s> {
+        let sources = || self.appearance.sources.iter().map(|(_, source)| source);
+        let (has_surfaces, has_sky) = (sources().any(Source::is_surface), sources().any(Source::is_sky));
+        let wavelengths = &self.appearance.wavelengths;
+        let background = || {
+            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(DVec3::NEG_Z, None, comb, |_| 1.0));
+            (0..wavelengths.combs()).map(seen).sum::<DVec3>() / wavelengths.combs() as f64
+        };
+        Shader {
+            appearance: &self.appearance,
+            casters: &self.casters,
+            lamps: &self.lamps,
+            enclosed,
+            passing: &self.passing,
+            eye,
+            is_plain: wavelengths.combs() == 1 && !has_surfaces && self.passing.len() == 1,
+            matte,
+            has_surfaces,
+            has_sky,
+            is_parallel,
+            background: (!has_surfaces && !has_sky).then(background),
+        }
+    }
+
     fn draw(
         &self,
         (film, picture): (&mut Film, &mut Picture),
@@ -188,40 +228,10 @@ impl<'a> ScanLine<'a> {
         let facets = Facets::new(prepared, (&self.triangles, &self.passable), &screen, lines, bands);
         let reach = Reach::new(&prepared.bounds, &screen);
         let shadows = self.shadows((&screen, &facets, &reach), [lines, bands]);
-        let enclosed: Vec<Option<Enclosed<'_>>> = shadows
-            .par_iter()
-            .map(|shadow| {
-                let Shadow { light, facing, silhouettes, .. } = shadow;
-                let groups = self.passing.len();
-                let new = || Enclosed::new(&self.casters, *light, facing, silhouettes, groups).sorted();
-                self.appearance.curved.then(new)
-            })
-            .collect();
-        let (has_surfaces, has_sky) =
-            self.appearance.sources.iter().fold((false, false), |(surface, sky), (_, source)| {
-                (surface || source.is_surface(), sky || source.is_sky())
-            });
-        let background = || {
-            let (wavelengths, nowhere) = (&self.appearance.wavelengths, DVec3::NEG_Z);
-            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(nowhere, None, comb, |_| 1.0));
-            (0..wavelengths.combs()).map(seen).sum::<DVec3>() / wavelengths.combs() as f64
-        };
-        let shader = Shader {
-            appearance: &self.appearance,
-            casters: &self.casters,
-            lamps: &self.lamps,
-            enclosed: &enclosed,
-            passing: &self.passing,
-            eye: &eye,
-            is_plain: self.appearance.wavelengths.combs() == 1 && !has_surfaces && self.passing.len() == 1,
-            matte: order.matte,
-            has_surfaces,
-            has_sky,
-            is_parallel: matches!(screen.viewpoint, Viewpoint::Towards(_)),
-            background: (!has_surfaces && !has_sky).then(background),
-        };
+        let enclosed = self.enclosed(&shadows);
+        let is_parallel = matches!(screen.viewpoint, Viewpoint::Towards(_));
         let work = Work {
-            shader,
+            shader: self.shader(&eye, &enclosed, is_parallel, order.matte),
             facets: &facets,
             shadows: &shadows,
             offsets: &offsets,
