@@ -25,8 +25,8 @@ fn main() {
     }
     let camera = scene.camera.expect("the room is seen");
     let prepared = Prepared::new(&scene).expect("a sound scene");
-    scene.settings.light_buffer = false;
-    let without = Prepared { settings: scene.settings.clone(), ..prepared.clone() };
+    let mut without = prepared.clone();
+    without.settings.light_buffer = false;
     let runs = [&prepared, &without].map(|prepared| {
         let plan = Plan::new(prepared, &View::Camera(camera));
         let tracer = RayTracer::new(prepared, &plan).expect("an octree");

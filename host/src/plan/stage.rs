@@ -38,6 +38,9 @@ pub enum Stage {
     AntiAliasing,
 }
 
+/// From so many triangles on rays to lights are spared.
+const MANY_TRIANGLES: u64 = 1000;
+
 /// What the rules look at.
 pub(super) struct Facts<'a> {
     prepared: &'a Prepared,
@@ -208,6 +211,10 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
     let skies = bright.filter(|(_, light)| matches!(light, Light::Sky { .. })).count();
     if skies == facts.lights() {
         return Decision::new(false, "a sky is in all directions");
+    }
+    let triangles = facts.kept().map(|o| u64::from(o.count)).sum::<u64>();
+    if triangles < MANY_TRIANGLES {
+        return Decision::new(false, "the octree finds its way as fast among so few triangles");
     }
     Decision::new(true, "what stands between voxels and lights is kept, for all views")
 }
