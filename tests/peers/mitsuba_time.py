@@ -20,7 +20,7 @@ import numpy as np
 from mitsuba_check import HERE, box, copper, diffuse, rgb, sensor
 
 GOAL = 0.01
-SAMPLES = [1, 4, 9, 16, 36, 64, 144, 256]
+SAMPLES = [2, 4, 9, 16, 36, 64, 144, 256, 484, 1024]
 
 
 def lamp(corner, across, up, radiance):
@@ -45,8 +45,8 @@ def vase(program, folder):
         "type": "scene", "integrator": {"type": "path", "max_depth": 3, "rr_depth": 20}, "sensor": eye,
         "vase": {"type": "ply", "filename": path, "bsdf": metal},
         "ground": {"type": "rectangle", "to_world": ground, "bsdf": diffuse(0.18, 0.18, 0.18)},
-        "left": lamp([-3, 5, 1], [1.5, 0, 0], [0, 1.06, 1.06], 12),
-        "right": lamp([3, 3, 3], [0, 0, -1.5], [-0.75, 1.3, 0], 8),
+        "left": lamp([-3, 5, 1], [1.5, 0, 0], [0, 1.06, 1.06], 240),
+        "right": lamp([3, 3, 3], [0, 0, -1.5], [-0.75, 1.3, 0], 160),
     }
 
 
@@ -107,7 +107,7 @@ def main():
             mitsuba = to_goal("Mitsuba, scalar", [(f"{n} samples", lambda seed, n=n: theirs(loaded, n, seed)) for n in SAMPLES])
             fixed = to_goal("peris", [(f"{n} samples", lambda seed, n=n: ours(program, script, ["-D", f"count={n}"], side, seed))
                                       for n in SAMPLES])
-            errors = [0.4, 0.2, 0.1, 0.05]
+            errors = [0.4, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01]
             aimed = to_goal("peris", [(f"--error {e}", lambda seed, e=e: ours(
                 program, script, ["-D", "count=256", "--error", str(e)], side, seed)) for e in errors])
             print(f"  to an RMSE of {GOAL}: Mitsuba {mitsuba:.2f} s, peris {fixed:.2f} s ({fixed / mitsuba:.2f}), "
