@@ -9,7 +9,7 @@
 //! much, as in the middle of its first triangle). A light with a size is represented by points of it, in number the
 //! `light_samples` of the scene, and is itself no obstacle to others; a sky is background only; a lens is a pinhole.
 //!
-//! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 280 for each silhouette and light, and
+//! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and light, and
 //! for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
 
 mod casters;
