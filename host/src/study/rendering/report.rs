@@ -4,6 +4,9 @@ use super::{Bend, KnobStudy, RenderRow, RenderStudy, Technique};
 use crate::study::plot::{Axis, Plot, Point, Series};
 use crate::study::sweep::short;
 
+/// What is less than this part of the RMSE is not drawn: rounding would fill most of the plot.
+const NEGLIGIBLE: f64 = 1e-3;
+
 /// What a row tells: heading and value.
 type Column = (&'static str, fn(&RenderRow) -> f64);
 
@@ -142,7 +145,8 @@ impl KnobStudy {
 
     fn points(&self, of: fn(&RenderRow) -> f64, labels: bool) -> Vec<Point> {
         let label = |row: &RenderRow| if labels { short(row.setting) } else { String::new() };
-        self.rows.iter().map(|row| Point { x: row.seconds, y: of(row), label: label(row) }).collect()
+        let counts = |row: &&RenderRow| of(row) > NEGLIGIBLE * row.measures.rmse;
+        self.rows.iter().filter(counts).map(|row| Point { x: row.seconds, y: of(row), label: label(row) }).collect()
     }
 }
 
