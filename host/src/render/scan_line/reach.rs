@@ -1,6 +1,6 @@
 //! Where in the picture a shadow polygon can stand before something: what lies beyond all that is seen need not be drawn.
 
-use super::screen::{Screen, Viewpoint};
+use super::screen::{Screen, Viewpoint, cut};
 use super::spans::Patch;
 use crate::numeric::bounds::Bounds;
 use glam::{DVec3, DVec4};
@@ -53,25 +53,11 @@ impl<'a> Reach<'a> {
             if heights[..count].iter().all(|height| *height >= 0.0) {
                 continue;
             }
-            let mut kept = [DVec4::ZERO; MOST_CORNERS];
-            let mut n = 0;
-            for i in 0..count {
-                let j = (i + 1) % count;
-                let cut = polygon[i] + (polygon[j] - polygon[i]) * (heights[i] / (heights[i] - heights[j]));
-                for corner in [
-                    (heights[i] >= 0.0).then_some(polygon[i]),
-                    ((heights[i] >= 0.0) != (heights[j] >= 0.0)).then_some(cut),
-                ]
-                .into_iter()
-                .flatten()
-                {
-                    // Rounding may dent it: then it is drawn as a whole.
-                    let Some(place) = kept.get_mut(n) else { return Some(Patch::ALL) };
-                    *place = corner;
-                    n += 1;
-                }
-            }
-            (polygon, count) = (kept, n);
+            // Rounding may dent it so that it has too many corners: then it is drawn as a whole.
+            let Some(inside) = cut(&polygon[..count], &heights, |a, b, t| a + (b - a) * t) else {
+                return Some(Patch::ALL);
+            };
+            (polygon, count) = inside;
             if count == 0 {
                 return None;
             }

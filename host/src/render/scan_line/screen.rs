@@ -223,24 +223,8 @@ impl Screen {
             if heights[..count].iter().all(|height| *height >= 0.0) {
                 continue;
             }
-            let mut kept = [[0.0; 6]; MOST_CORNERS];
-            let mut n = 0;
-            for i in 0..count {
-                let j = (i + 1) % count;
-                if heights[i] >= 0.0 {
-                    *kept.get_mut(n)? = polygon[i];
-                    n += 1;
-                }
-                if (heights[i] >= 0.0) != (heights[j] >= 0.0) {
-                    // Always from the inner end, so that both neighbours find the same point.
-                    let (inner, outer) = if heights[i] >= 0.0 { (i, j) } else { (j, i) };
-                    let t = heights[inner] / (heights[inner] - heights[outer]);
-                    *kept.get_mut(n)? =
-                        std::array::from_fn(|k| polygon[inner][k] + (polygon[outer][k] - polygon[inner][k]) * t);
-                    n += 1;
-                }
-            }
-            (polygon, count) = (kept, n);
+            let between = |a: Corner, b: Corner, t: f64| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t);
+            (polygon, count) = cut(&polygon[..count], &heights, between)?;
             if count < 3 {
                 return None;
             }
@@ -254,6 +238,33 @@ impl Screen {
         }
         Some(outline)
     }
+}
+
+/// The part of a convex polygon that is inside a plane, and how many corners it has; none if there is no room for them.
+///
+/// - `heights`: of the corners, 0 and more inside. `between`: a point on the way from one corner to another.
+pub(super) fn cut<T: Copy + Default, const N: usize>(
+    polygon: &[T],
+    heights: &[f64; N],
+    between: impl Fn(T, T, f64) -> T,
+) -> Option<([T; N], usize)> {
+    let mut kept = [T::default(); N];
+    let mut n = 0;
+    for i in 0..polygon.len() {
+        let j = (i + 1) % polygon.len();
+        if heights[i] >= 0.0 {
+            *kept.get_mut(n)? = polygon[i];
+            n += 1;
+        }
+        if (heights[i] >= 0.0) != (heights[j] >= 0.0) {
+            // Always from the inner end, so that both neighbours find the same point.
+            let (inner, outer) = if heights[i] >= 0.0 { (i, j) } else { (j, i) };
+            let t = heights[inner] / (heights[inner] - heights[outer]);
+            *kept.get_mut(n)? = between(polygon[inner], polygon[outer], t);
+            n += 1;
+        }
+    }
+    Some((kept, n))
 }
 
 /// The rows that give columns and lines, before the division.
