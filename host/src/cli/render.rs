@@ -29,6 +29,8 @@ pub(super) const ROW: Row = Row {
 enum Kind {
     /// All light: mirrors, glass, rough surfaces, soft shadows
     RayTracing,
+    /// The same, with light that is followed from lamps through mirrors and glass first: caustics
+    TwoWay,
     /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors and
     /// glass show highlights only
     ScanLine,
@@ -110,6 +112,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     settings.samples = arguments.samples.unwrap_or(settings.samples);
     settings.seed = arguments.seed.unwrap_or(settings.seed);
     settings.tolerance = arguments.tolerance.or(settings.tolerance);
+    settings.two_way |= arguments.renderer == Kind::TwoWay;
     let start = Instant::now();
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
@@ -130,7 +133,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             let build_seconds = start.elapsed().as_secs_f64();
             (scan_line.render(&view, &order, &watch).map_err(Failure::from), build_seconds)
         }
-        Kind::RayTracing => {
+        Kind::RayTracing | Kind::TwoWay => {
             let tracer = RayTracer::new(&prepared, &plan)?;
             let build_seconds = start.elapsed().as_secs_f64();
             if let Some(pixel) = arguments.pixel {
@@ -275,6 +278,7 @@ fn report(
             "render_seconds": rendering.seconds,
             "threads": rendering.threads,
             "rays": rendering.rays,
+            "caught_light": rendering.balance,
             "spans": rendering.spans,
             "complete": rendering.complete,
         });
@@ -293,6 +297,9 @@ fn report(
         rendering.film.standard_error()
     );
     say!("{} triangles, built in {build_seconds:.3} s", prepared.triangles.len());
+    if let Some(balance) = &rendering.balance {
+        say!("{balance}");
+    }
     let Rendering { rays, spans, seconds, threads, .. } = rendering;
     if arguments.renderer == Kind::ScanLine {
         let (all, shadows) = (spans.surfaces, spans.shadows);

@@ -175,6 +175,16 @@ impl From<Body> for Material {
     }
 }
 
+impl Material {
+    /// Whether it may pass on as a beam some of the light that comes to it.
+    pub fn may_throw(&self) -> bool {
+        match &self.body {
+            Body::Classic(Classic { mirror, specular, .. }) => !mirror.is_black() || !specular.is_black(),
+            _ => true,
+        }
+    }
+}
+
 impl Default for Material {
     fn default() -> Material {
         Classic::default().into()

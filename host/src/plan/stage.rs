@@ -30,6 +30,8 @@ pub enum Stage {
     Shadows,
     /// What stands between the voxels of the scene and its lights, kept for rays towards them.
     LightBuffer,
+    /// Light that is followed from lamps through mirrors and glass, and caught.
+    CaughtLight,
     /// Rays from mirrors, through glass, and from rough surfaces.
     Reflection,
     /// A time for each sample, at which it sees what moves.
@@ -137,7 +139,7 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 13] = [
+    pub const ALL: [Stage; 14] = [
         Stage::Octree,
         Stage::Normals,
         Stage::ExactSurfaces,
@@ -148,6 +150,7 @@ impl Stage {
         Stage::Ambient,
         Stage::Shadows,
         Stage::LightBuffer,
+        Stage::CaughtLight,
         Stage::Reflection,
         Stage::Motion,
         Stage::AntiAliasing,
@@ -166,6 +169,7 @@ impl Stage {
             Stage::Ambient => "ambient term",
             Stage::Shadows => "shadows",
             Stage::LightBuffer => "light buffer",
+            Stage::CaughtLight => "caught light",
             Stage::Reflection => "reflected and refracted rays",
             Stage::Motion => "motion",
             Stage::AntiAliasing => "anti-aliasing",
@@ -174,7 +178,7 @@ impl Stage {
 
     /// Whether running it without need changes nothing.
     pub(super) fn is_forcible(self) -> bool {
-        self != Stage::Spectra
+        !matches!(self, Stage::Spectra | Stage::CaughtLight)
     }
 
     pub(super) fn decide(self, facts: &Facts<'_>) -> Decision {
@@ -189,6 +193,7 @@ impl Stage {
             Stage::Ambient => ambient(facts),
             Stage::Shadows => facts.shadows(),
             Stage::LightBuffer => light_buffer(facts),
+            Stage::CaughtLight => caught_light(facts),
             Stage::Reflection => facts.reflection(),
             Stage::Motion => motion(facts),
             Stage::AntiAliasing => match facts.prepared.settings.samples {
@@ -217,6 +222,26 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
         return Decision::new(false, "the octree finds its way as fast among so few triangles");
     }
     Decision::new(true, "what stands between voxels and lights is kept, for all views")
+}
+
+/// Caustics are more of the picture, not a better way to the same: forcing everything does not bring them.
+fn caught_light(facts: &Facts<'_>) -> Decision {
+    let (throwers, takers) = (facts.count(Material::may_throw), facts.count(|m| has_diffuse(m) || !m.may_throw()));
+    let lamps = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
+    let even = lamps.filter(|(_, light)| matches!(light, Light::Sky { map: None, .. })).count();
+    let lamps = facts.lights() - even;
+    if !facts.prepared.settings.two_way {
+        Decision::new(false, "the scene does not ask for two-way ray tracing")
+    } else if throwers == 0 {
+        Decision::new(false, "no material is a mirror, transparent or shiny: light goes straight")
+    } else if lamps == 0 {
+        Decision::new(false, "no lamp has power; a sky of one radiance is found by rays from everywhere")
+    } else if takers == 0 {
+        Decision::new(false, "no material spreads light that comes to it")
+    } else {
+        let from = format!("{} through {}", counted(lamps, "lamp"), counted(throwers, "object"));
+        Decision::new(true, format!("light of {from} to {}", counted(takers, "receiver")))
+    }
 }
 
 fn motion(facts: &Facts<'_>) -> Decision {

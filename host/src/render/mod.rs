@@ -101,6 +101,8 @@ pub struct Rendering {
     pub rays: RayCounts,
     /// How many spans were drawn; none by ray tracing.
     pub spans: SpanCounts,
+    /// What became of the light of lamps that was followed first, if any was.
+    pub balance: Option<ray_tracing::Balance>,
     /// Wall-clock time, seconds.
     pub seconds: f64,
     /// Threads that worked.

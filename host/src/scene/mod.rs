@@ -37,6 +37,8 @@ pub const MAX_OBJECTS: usize = 100_000;
 pub const MAX_LIGHTS: usize = 10_000;
 /// Most samples in a pixel.
 pub const MAX_SAMPLES: u32 = 65_536;
+/// Most ways of light that are followed at a time: caught, they take up to 1.2 GB.
+pub const MAX_PHOTONS: u32 = 16_000_000;
 /// Deepest chain of reflections.
 pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
 
@@ -99,6 +101,13 @@ pub struct Settings {
     /// chance only: such pictures take very many samples. Without it, too, highlights of lamps are cut off on what is seen
     /// by spread light. Light of a sky always counts.
     pub caustics: bool,
+    /// Whether light is followed from lamps through mirrors and glass and caught where it arrives, so that caustics come
+    /// out well: two-way ray tracing.
+    pub two_way: bool,
+    /// How many ways of light are followed each time.
+    pub photons: u32,
+    /// The largest radius over which caught light is spread, scene units; without one, a twentieth of the scene's diagonal.
+    pub photon_radius: Option<f64>,
     /// Whether ray tracing keeps what stands between voxels and lights; the picture is the same without.
     pub light_buffer: bool,
     /// Whether rays carry spectra; without a word, where a material or a light has one.
@@ -128,6 +137,9 @@ impl Default for Settings {
             light_samples: 1,
             interreflection: false,
             caustics: false,
+            two_way: false,
+            photons: 200_000,
+            photon_radius: None,
             light_buffer: true,
             spectral: None,
             exact_surfaces: true,
@@ -279,6 +291,15 @@ impl Settings {
         if !(1..=MAX_SAMPLES).contains(&self.light_samples) {
             let problem = format!("{} points of a light are not within 1 to {MAX_SAMPLES}", self.light_samples);
             return Err(SceneError::Setting(problem));
+        }
+        if !(1..=MAX_PHOTONS).contains(&self.photons) {
+            return Err(SceneError::Setting(format!(
+                "{} ways of light are not within 1 to {MAX_PHOTONS}",
+                self.photons
+            )));
+        }
+        if self.photon_radius.is_some_and(|radius| !(radius > 0.0 && radius.is_finite())) {
+            return Err(SceneError::Setting("the radius of caught light is not a length above 0".into()));
         }
         if self.reflection_depth > MAX_REFLECTION_DEPTH {
             return Err(SceneError::Limit { what: "reflections in a chain", limit: u64::from(MAX_REFLECTION_DEPTH) });

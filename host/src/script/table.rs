@@ -5,7 +5,7 @@ use super::builder::{Builder, value};
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
 use crate::picture::MAX_PIXELS;
-use crate::scene::{Camera, Lens, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel, Shape};
+use crate::scene::{Camera, Lens, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel, Shape};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use rhai::Dynamic;
 
@@ -280,6 +280,33 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "caustics();",
         action: |builder, bound| {
             builder.scene.settings.caustics = bound.flag("on").unwrap_or(true);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
+        name: "two_way",
+        summary: "Follows light from lamps through mirrors and glass and catches it where it arrives, before rays from the eye ask for it: caustics, as `--renderer two-way` shows them.",
+        parameters: &[
+            parameter(
+                "photons",
+                Kind::Integer(1, MAX_PHOTONS as i64),
+                Is("200000"),
+                "how many ways of light are followed for eight samples of each pixel",
+            ),
+            parameter(
+                "radius",
+                Kind::Number(0.0, f64::INFINITY),
+                Is("a twentieth of the scene's diagonal"),
+                "the largest over which caught light is spread, scene units",
+            ),
+            parameter("on", Kind::Flag, Is("true"), "whether it does; without it, --renderer two-way still may"),
+        ],
+        example: "two_way(#{ photons: 500000 });",
+        action: |builder, bound| {
+            let settings = &mut builder.scene.settings;
+            settings.two_way = bound.flag("on").unwrap_or(true);
+            settings.photons = bound.integer("photons").and_then(|i| u32::try_from(i).ok()).unwrap_or(settings.photons);
+            settings.photon_radius = bound.number("radius").filter(|radius| *radius > 0.0);
             Ok(Dynamic::UNIT)
         },
     },

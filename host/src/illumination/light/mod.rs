@@ -1,6 +1,7 @@
 //! Sources of light: what a scene says of them, and what of their light arrives at a point.
 
 mod area;
+mod emission;
 mod goniometry;
 mod patch;
 mod sky;
@@ -8,6 +9,7 @@ mod source;
 #[cfg(test)]
 mod tests;
 
+pub use emission::Start;
 pub use goniometry::{Goniometry, GoniometryError};
 pub use patch::Patch;
 pub use sky::Sky;

@@ -74,6 +74,17 @@ impl Sky {
         if sine > 0.0 { map.density(place(back)) / (sine * PI * TAU) } else { 0.0 }
     }
 
+    /// Whether it has the same radiance in all directions.
+    pub fn is_even(&self) -> bool {
+        self.map.is_none()
+    }
+
+    /// The integral of its radiance over all directions.
+    pub(super) fn total(&self, comb: usize) -> Channels {
+        let all = self.map.as_ref().map_or_else(|| Channels::splat(2.0 * TAU), |map| map.total(comb));
+        self.factor.of(comb) * all
+    }
+
     /// About the mean of its luminance over all directions.
     pub fn mean(&self) -> f64 {
         self.factor.mean().max() * self.map.as_ref().map_or(1.0, Map::mean)
@@ -142,6 +153,19 @@ impl Map {
         let [x, y] = self.pixel(place);
         let pixel = self.picture.pixels()[y * self.size()[0] + x];
         let of = |band: usize| self.primaries[band].of(comb) * f64::from(pixel.radiance[band].max(0.0));
+        of(0) + of(1) + of(2)
+    }
+
+    /// The integral over all directions: each row has the solid angle between two latitudes.
+    fn total(&self, comb: usize) -> Channels {
+        let [width, height] = self.size();
+        let mut sums = DVec3::ZERO;
+        for (y, row) in self.picture.pixels().chunks_exact(width).enumerate() {
+            let [above, below] = [y, y + 1].map(|y| (y as f64 / height as f64 * PI).cos());
+            let bands = |p: &crate::picture::Pixel| DVec3::from_array(p.radiance.map(|v| f64::from(v.max(0.0))));
+            sums += row.iter().map(bands).sum::<DVec3>() * (TAU / width as f64 * (above - below));
+        }
+        let of = |band: usize| self.primaries[band].of(comb) * sums[band];
         of(0) + of(1) + of(2)
     }
 

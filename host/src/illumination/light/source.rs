@@ -55,12 +55,12 @@ enum Sides {
 /// A light ready for rendering.
 #[derive(Clone, Debug)]
 pub struct Source {
-    strength: Curve,
-    kind: Kind,
+    pub(super) strength: Curve,
+    pub(super) kind: Kind,
 }
 
 #[derive(Clone, Debug)]
-enum Kind {
+pub(super) enum Kind {
     Point { at: DVec3 },
     Directional { towards: DVec3 },
     Spot { at: DVec3, axis: DVec3, inner: f64, outer: f64 },
@@ -72,11 +72,11 @@ enum Kind {
 
 /// Triangles that emit on both sides, drawn evenly by area.
 #[derive(Clone, Debug)]
-struct Triangles {
+pub(super) struct Triangles {
     corners: Vec<[DVec3; 3]>,
     /// The part of the area up to each.
     below: Vec<f64>,
-    area: f64,
+    pub(super) area: f64,
 }
 
 impl Source {
@@ -262,6 +262,11 @@ impl Source {
         matches!(self.kind, Kind::Area(_))
     }
 
+    /// Whether its light is worth being followed: a sky of one radiance is found from everywhere.
+    pub fn is_caught(&self) -> bool {
+        !matches!(&self.kind, Kind::Sky(sky) if sky.is_even())
+    }
+
     /// Whether it surrounds everything.
     pub fn is_sky(&self) -> bool {
         matches!(self.kind, Kind::Sky(_))
@@ -281,7 +286,7 @@ fn from_point(offset: DVec3, intensity: Channels) -> Option<Beam> {
 
 impl Triangles {
     /// A point, drawn evenly by area, and the normal there.
-    fn point(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
+    pub(super) fn point(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
         let index = self.below.partition_point(|part| *part <= x).min(self.below.len() - 1);
         let from = if index == 0 { 0.0 } else { self.below[index - 1] };
         let x = ((x - from) / (self.below[index] - from)).clamp(0.0, 1.0);

@@ -149,6 +149,14 @@ impl Ground {
         self.fraction(sighting) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
     }
 
+    /// Whether it reflects nothing, wherever.
+    pub(super) fn is_black(&self) -> bool {
+        match &self.fraction {
+            Fraction::Known(curve) => curve.max() <= 0.0,
+            Fraction::Painted(shade) => shade.is_black(),
+        }
+    }
+
     /// About what it reflects.
     pub(super) fn strength(&self, sighting: &Sighting) -> f64 {
         self.fraction(sighting).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)

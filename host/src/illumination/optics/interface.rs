@@ -55,7 +55,13 @@ impl Smooth {
     /// What is reflected and what comes through.
     pub(super) fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
         let view = sighting.view;
-        let onward = |light: DVec3, weight: Channels| Onward { light, weight, density: None, is_straight: false };
+        let onward = |light: DVec3, weight: Channels| Onward {
+            light,
+            weight,
+            density: None,
+            is_straight: false,
+            is_broad: false,
+        };
         let fraction = reflected(sighting, view.z);
         let reflection = onward(DVec3::new(-view.x, -view.y, view.z), fraction);
         let through = Channels(std::array::from_fn(|lane| {

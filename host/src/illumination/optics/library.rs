@@ -5,7 +5,7 @@ use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth};
 use super::lobe::Lobe;
 use super::shade::{Painted, Shade};
-use super::{Interior, Optics, Which};
+use super::{Interior, Optics};
 use crate::color::{LANES, Wavelengths};
 use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Facets, Microfacet, Phong};
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
@@ -40,9 +40,12 @@ impl<'a> Library<'a> {
     /// [`MaterialError`].
     pub fn optics(&mut self, material: &Material, spreads: bool) -> Result<Optics, MaterialError> {
         material.check()?;
-        let diffuse = if spreads { Which::Continued } else { Which::Ended };
         let mut optics = Optics {
             lobes: Vec::new(),
+            throws: false,
+            takes: false,
+            passes: false,
+            spreads: false,
             ambient: Shade::Plain(self.wavelengths.constant(0.0)),
             patterns: Vec::new(),
             relief: material.relief.clone(),
@@ -52,7 +55,7 @@ impl<'a> Library<'a> {
             passing: None,
         };
         match &material.body {
-            Body::Classic(classic) => self.classic(classic, diffuse, &mut optics)?,
+            Body::Classic(classic) => self.classic(classic, !spreads, &mut optics)?,
             Body::Shaped(Shaped { reflectance, form }) => {
                 let shape = match form {
                     Form::Member { name, roughness } => self.shape(name, *roughness)?,
@@ -65,29 +68,29 @@ impl<'a> Library<'a> {
                 };
                 let fraction = self.shade(reflectance, &mut optics);
                 optics.ambient = fraction.clone();
-                optics.lobes.push((Which::Continued, Lobe::Shaped(fraction, distribution)));
+                optics.add(Lobe::Shaped(fraction, distribution), false);
             }
             Body::Metal(metal) => self.metal(metal, &mut optics)?,
             Body::Transparent(transparent) => self.transparent(transparent, &mut optics),
-            Body::Coated(coated) => self.coated(coated, diffuse, &mut optics)?,
+            Body::Coated(coated) => self.coated(coated, !spreads, &mut optics)?,
         }
         Ok(optics)
     }
 
-    fn classic(&self, classic: &Classic, diffuse: Which, optics: &mut Optics) -> Result<(), MaterialError> {
+    fn classic(&self, classic: &Classic, ends: bool, optics: &mut Optics) -> Result<(), MaterialError> {
         if let Some(shade) = self.needed(&classic.diffuse, optics) {
             optics.ambient = shade.clone();
-            optics.lobes.push((diffuse, Lobe::Diffuse(shade)));
+            optics.add(Lobe::Diffuse(shade), ends);
         }
         if let Some(shade) = self.needed(&classic.specular, optics) {
-            optics.lobes.push((diffuse, Lobe::Phong(shade, Phong::new(classic.exponent)?)));
+            optics.add(Lobe::Phong(shade, Phong::new(classic.exponent)?), ends);
         }
         if let Some(shade) = self.needed(&classic.mirror, optics) {
-            optics.lobes.push((Which::Continued, Lobe::Mirror(shade)));
+            optics.add(Lobe::Mirror(shade), false);
         }
         if let Some(shade) = self.needed(&classic.transparency, optics) {
             optics.passing = Some(shade.clone());
-            optics.lobes.push((Which::Continued, Lobe::Straight(shade)));
+            optics.add(Lobe::Straight(shade), false);
         }
         Ok(())
     }
@@ -116,7 +119,7 @@ impl<'a> Library<'a> {
                 Lobe::Metallic(Metallic::new(Shape::Once(form), conductors))
             }
         };
-        optics.lobes.push((Which::Continued, lobe));
+        optics.add(lobe, false);
         Ok(())
     }
 
@@ -131,20 +134,20 @@ impl<'a> Library<'a> {
         } else {
             Lobe::Smooth(Smooth)
         };
-        optics.lobes.push((Which::Continued, lobe));
+        optics.add(lobe, false);
     }
 
-    fn coated(&self, coated: &Coated, diffuse: Which, optics: &mut Optics) -> Result<(), MaterialError> {
+    fn coated(&self, coated: &Coated, ends: bool, optics: &mut Optics) -> Result<(), MaterialError> {
         let surface = Dielectric::new(1.0, coated.index)?;
         let facets = match coated.roughness {
             0.0 => None,
             roughness => Some(Microfacet::new(Facets::Ggx, DVec2::splat(roughness))?),
         };
         let coat = Arc::new(Coat::new(surface, facets));
-        optics.lobes.push((Which::Continued, Lobe::Coat(coat.clone())));
+        optics.add(Lobe::Coat(coat.clone()), false);
         if let Some(shade) = self.needed(&coated.diffuse, optics) {
             let ground = Ground::new(coat, coated.index, &shade, self.wavelengths.combs());
-            optics.lobes.push((diffuse, Lobe::Ground(ground)));
+            optics.add(Lobe::Ground(ground), ends);
             optics.ambient = shade;
         }
         Ok(())

@@ -49,7 +49,39 @@ pub(super) enum Lobe {
     Rough(Rough),
 }
 
+/// A lobe that is drawn with a greater density from straight above, 1/sr, is narrow: a diffuse one has 1/π.
+const NARROW: f64 = 1.5;
+
 impl Lobe {
+    /// Whether it spreads light about everywhere, and does not pass it on as a beam.
+    pub(super) fn is_broad(&self) -> bool {
+        let density = match self {
+            Lobe::Diffuse(_) | Lobe::Ground(_) => return true,
+            Lobe::Mirror(_) | Lobe::Straight(_) | Lobe::Polished(_) | Lobe::Smooth(_) => return false,
+            Lobe::Phong(_, phong) => phong.sample_density(DVec3::Z, DVec3::Z),
+            Lobe::Shaped(_, form) => form.sample_density(DVec3::Z, DVec3::Z),
+            Lobe::Metallic(metal) => metal.shape.sample_density(DVec3::Z, DVec3::Z),
+            Lobe::Coat(coat) if coat.is_polished() => return false,
+            Lobe::Coat(coat) => coat.density(DVec3::Z, DVec3::Z),
+            // Of facets that all are seen, a quarter of the density of their normals.
+            Lobe::Rough(rough) => 0.25 * rough.facets.area(DVec3::Z, rough.roughness),
+        };
+        density < NARROW
+    }
+
+    /// Whether it reflects nothing, wherever.
+    pub(super) fn is_black(&self) -> bool {
+        match self {
+            Lobe::Diffuse(fraction)
+            | Lobe::Phong(fraction, _)
+            | Lobe::Mirror(fraction)
+            | Lobe::Straight(fraction)
+            | Lobe::Shaped(fraction, _) => fraction.is_black(),
+            Lobe::Ground(ground) => ground.is_black(),
+            _ => false,
+        }
+    }
+
     /// Whether it knows single directions only.
     pub(super) fn is_mirror(&self) -> bool {
         match self {
@@ -101,7 +133,13 @@ impl Lobe {
     /// Draws a direction to light; its weight is right for single directions only, the others have a density.
     pub(super) fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward> {
         let view = sighting.view;
-        let spread = |light: DVec3| Onward { light, weight: Channels::ZERO, density: Some(0.0), is_straight: false };
+        let spread = |light: DVec3| Onward {
+            light,
+            weight: Channels::ZERO,
+            density: Some(0.0),
+            is_straight: false,
+            is_broad: true,
+        };
         match self {
             Lobe::Diffuse(_) | Lobe::Ground(_) => {
                 Some(cosine_hemisphere(point, DVec3::Z)).filter(|light| light.z > 0.0).map(spread)
@@ -120,7 +158,13 @@ impl Lobe {
     pub(super) fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
         let Sighting { view, comb, .. } = *sighting;
         let reflected = DVec3::new(-view.x, -view.y, view.z);
-        let onward = |light: DVec3, weight: Channels| Onward { light, weight, density: None, is_straight: false };
+        let onward = |light: DVec3, weight: Channels| Onward {
+            light,
+            weight,
+            density: None,
+            is_straight: false,
+            is_broad: false,
+        };
         match self {
             Lobe::Mirror(fraction) => [Some(onward(reflected, fraction.of(sighting))), None],
             Lobe::Polished(metal) => {

@@ -31,18 +31,52 @@ const MOST_LOBES: usize = 4;
 pub type Painting = [Channels; MOST_LOBES];
 
 /// Which of the lobes.
+///
+/// The first two carry rays on. A way of light may be told by them: each of its turns is by a broad lobe or by a narrow one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
-    /// Those that carry a ray on.
-    Continued,
+    /// Those that spread light so far that it is seen from about everywhere.
+    Broad,
+    /// Those that pass it on as a beam: mirrors, smooth interfaces, and rough ones of narrow highlights.
+    Narrow,
     /// Those that answer lights only.
     Ended,
+}
+
+impl Which {
+    /// Those that carry rays on.
+    pub const CONTINUED: [Which; 2] = [Which::Broad, Which::Narrow];
+}
+
+/// Among which lobes a direction is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Among {
+    /// All that carry rays on.
+    All,
+    /// Those whose directions are not all known: [`Optics::mirrored`] gives the others.
+    Spread,
+    /// The narrow ones.
+    Narrow,
+}
+
+impl Among {
+    fn has(self, which: Which, lobe: &Lobe) -> bool {
+        match self {
+            Among::All => true,
+            Among::Spread => !lobe.is_mirror(),
+            Among::Narrow => which == Which::Narrow,
+        }
+    }
 }
 
 /// A material made ready for rendering.
 #[derive(Clone, Debug)]
 pub struct Optics {
     lobes: Vec<(Which, Lobe)>,
+    throws: bool,
+    takes: bool,
+    passes: bool,
+    spreads: bool,
     /// What the ambient term reflects.
     ambient: Shade,
     patterns: Vec<Painted>,
@@ -94,6 +128,8 @@ pub struct Onward {
     pub density: Option<f64>,
     /// Whether it goes straight on, as if nothing was there.
     pub is_straight: bool,
+    /// Whether a broad lobe carries it on, and not a narrow one.
+    pub is_broad: bool,
 }
 
 impl Optics {
@@ -110,48 +146,51 @@ impl Optics {
         self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))
     }
 
-    /// The density with which [`Optics::onward`] draws a direction, 1/sr.
+    /// The density with which [`Optics::onward`] draws a direction by broad or by narrow lobes, 1/sr.
     ///
-    /// - `only_spread`: as there.
-    pub fn density(&self, sighting: &Sighting, light: DVec3, only_spread: bool) -> f64 {
-        let shares = self.shares(sighting, only_spread);
-        let lobes = self.of(Which::Continued).zip(&shares);
-        lobes.map(|(lobe, share)| share * lobe.density(sighting, light)).sum()
+    /// - `among`: as there.
+    pub fn density(&self, which: Which, sighting: &Sighting, light: DVec3, among: Among) -> f64 {
+        let shares = self.shares(sighting, among);
+        let lobes = self.continued().zip(&shares).filter(|((kind, _), _)| *kind == which);
+        lobes.map(|((_, lobe), share)| share * lobe.density(sighting, light)).sum()
     }
 
     /// The directions of mirrors and smooth interfaces, all of them.
     pub fn mirrored(&self, sighting: &Sighting) -> impl Iterator<Item = Onward> {
-        let lobes = self.of(Which::Continued).filter(|lobe| lobe.is_mirror());
-        lobes.flat_map(|lobe| lobe.mirrored(sighting)).flatten()
+        let lobes = self.of(Which::Narrow).filter(|lobe| lobe.is_mirror());
+        lobes.flat_map(|lobe| lobe.mirrored(sighting)).flatten().filter(|onward| onward.weight.max() > 0.0)
     }
 
     /// What goes straight through, if anything does.
     pub fn straight(&self, sighting: &Sighting) -> Option<Onward> {
         let weight = self.passing.as_ref()?.of(sighting);
-        Some(Onward { light: -sighting.view, weight, density: None, is_straight: true })
+        Some(Onward { light: -sighting.view, weight, density: None, is_straight: true, is_broad: false })
     }
 
     /// One direction, drawn about as what comes from there counts; none where what is drawn counts nothing.
     ///
     /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.
-    /// - `only_spread`: leaves out what [`Optics::mirrored`] gives.
-    pub fn onward(&self, sighting: &Sighting, choice: f64, point: [f64; 2], only_spread: bool) -> Option<Onward> {
-        let shares = self.shares(sighting, only_spread);
+    /// - `among`: which lobes it is drawn among.
+    pub fn onward(&self, sighting: &Sighting, choice: f64, point: [f64; 2], among: Among) -> Option<Onward> {
+        let shares = self.shares(sighting, among);
         let (index, choice) = chosen(&shares, choice)?;
-        let lobe = self.of(Which::Continued).nth(index)?;
+        let (which, lobe) = self.continued().nth(index)?;
         let drawn = lobe.sample(sighting, choice, point)?;
         if drawn.density.is_none() {
             return Some(Onward { weight: drawn.weight * shares[index].recip(), ..drawn });
         }
-        // What all lobes give there, over the density with which all of them draw it.
+        // What all lobes of the kind give there, over the density with which all of them draw it.
         let light = drawn.light;
         let (mut value, mut density) = (Channels::ZERO, 0.0);
-        for (lobe, share) in self.of(Which::Continued).zip(&shares).filter(|(_, share)| **share > 0.0) {
-            value += lobe.value(sighting, light);
-            density += share * lobe.density(sighting, light);
+        for ((kind, lobe), share) in self.continued().zip(&shares).filter(|(_, share)| **share > 0.0) {
+            if kind == which {
+                value += lobe.value(sighting, light);
+                density += share * lobe.density(sighting, light);
+            }
         }
         let weight = value * (light.z.abs() / density);
-        (density > 0.0 && weight.is_finite()).then_some(Onward { weight, density: Some(density), ..drawn })
+        let is_broad = *which == Which::Broad;
+        (density > 0.0 && weight.is_finite()).then_some(Onward { weight, density: Some(density), is_broad, ..drawn })
     }
 
     /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
@@ -182,7 +221,7 @@ impl Optics {
 
     /// Whether light goes straight through.
     pub fn is_passable(&self) -> bool {
-        self.passing.is_some()
+        self.passes
     }
 
     /// The part of light that goes straight through.
@@ -205,12 +244,60 @@ impl Optics {
 
     /// Whether rays are carried on.
     pub fn carries_on(&self) -> bool {
-        self.of(Which::Continued).next().is_some()
+        self.continued().next().is_some()
+    }
+
+    /// Whether some lobe passes light on as a beam, other than straight.
+    pub fn throws(&self) -> bool {
+        self.throws
+    }
+
+    /// Whether some lobe spreads the light that comes to it.
+    pub fn takes(&self) -> bool {
+        self.takes
+    }
+
+    /// Radiance towards the viewer for each unit of flux density that arrives, 1/sr, of all lobes but the narrow ones.
+    pub fn spread_value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        let spread = self.lobes.iter().filter(|(which, _)| *which != Which::Narrow);
+        spread.fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))
+    }
+
+    /// The same where it is one for all light from above; none where it is not.
+    pub fn even_value(&self, sighting: &Sighting) -> Option<Channels> {
+        let mut spread = self.lobes.iter().filter(|(which, _)| *which != Which::Narrow);
+        spread.try_fold(Channels::ZERO, |sum, (_, lobe)| match lobe {
+            Lobe::Diffuse(_) => Some(sum + lobe.value(sighting, DVec3::Z)),
+            _ => None,
+        })
     }
 
     /// Whether some lobe that carries rays on does so in more than single directions.
     pub fn spreads(&self) -> bool {
-        self.of(Which::Continued).any(|lobe| !lobe.is_mirror())
+        self.spreads
+    }
+
+    /// Adds a lobe.
+    ///
+    /// - `ends`: whether it answers lights only.
+    fn add(&mut self, lobe: Lobe, ends: bool) {
+        let which = match (ends, lobe.is_broad()) {
+            (true, _) => Which::Ended,
+            (false, true) => Which::Broad,
+            (false, false) => Which::Narrow,
+        };
+        self.spreads |= !ends && !lobe.is_mirror() && !lobe.is_black();
+        match (which, &lobe) {
+            _ if lobe.is_black() => {}
+            (Which::Narrow, Lobe::Straight(_)) => self.passes = true,
+            (Which::Narrow, _) => self.throws = true,
+            _ => self.takes = true,
+        }
+        self.lobes.push((which, lobe));
+    }
+
+    fn continued(&self) -> impl Iterator<Item = &(Which, Lobe)> {
+        self.lobes.iter().filter(|(kind, _)| *kind != Which::Ended)
     }
 
     fn of(&self, which: Which) -> impl Iterator<Item = &Lobe> {
@@ -218,10 +305,10 @@ impl Optics {
     }
 
     /// The chances of the lobes that carry on; they add up to 1, or are all 0.
-    fn shares(&self, sighting: &Sighting, only_spread: bool) -> [f64; MOST_LOBES] {
+    fn shares(&self, sighting: &Sighting, among: Among) -> [f64; MOST_LOBES] {
         let mut shares = [0.0; MOST_LOBES];
-        for (share, lobe) in shares.iter_mut().zip(self.of(Which::Continued)) {
-            *share = if only_spread && lobe.is_mirror() { 0.0 } else { lobe.strength(sighting) };
+        for (share, (which, lobe)) in shares.iter_mut().zip(self.continued()) {
+            *share = if among.has(*which, lobe) { lobe.strength(sighting) } else { 0.0 };
         }
         let all: f64 = shares.iter().sum();
         if all > 0.0 {

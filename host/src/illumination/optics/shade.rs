@@ -57,6 +57,11 @@ impl Painted {
 }
 
 impl Shade {
+    /// Whether it is nothing, wherever.
+    pub(super) fn is_black(&self) -> bool {
+        matches!(self, Shade::Plain(curve) if curve.max() <= 0.0)
+    }
+
     /// The fraction at the place and the wavelengths that are looked at.
     #[inline]
     pub(super) fn of(&self, sighting: &Sighting<'_>) -> Channels {

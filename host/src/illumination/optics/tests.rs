@@ -31,7 +31,8 @@ fn rough(name: &str, roughness: f64) -> Finish {
 fn furnace(optics: &Optics, sighting: &Sighting) -> f64 {
     let mirrored: f64 = optics.mirrored(sighting).map(|onward| onward.weight.0[0]).sum();
     let spread = |choice: f64| {
-        let drawn = |point| optics.onward(sighting, choice, point, true).map_or(0.0, |onward| onward.weight.0[0]);
+        let drawn =
+            |point| optics.onward(sighting, choice, point, Among::Spread).map_or(0.0, |onward| onward.weight.0[0]);
         unit_square(drawn, 1e-4, 20_000).value
     };
     // Lobes are chosen by the first number; it is averaged over evenly.
@@ -47,7 +48,7 @@ fn integral(optics: &Optics, sighting: &Sighting) -> f64 {
             let (sin, cos) = (TAU * y).sin_cos();
             let sine = (1.0 - x).max(0.0).sqrt();
             let light = DVec3::new(sine * cos, sine * sin, cosine * below);
-            PI * [Which::Continued, Which::Ended]
+            PI * [Which::Broad, Which::Narrow, Which::Ended]
                 .map(|which| optics.value(which, sighting, light).0[0])
                 .iter()
                 .sum::<f64>()
@@ -128,7 +129,7 @@ fn densities_are_those_with_which_directions_are_drawn() {
             let count = 40_000;
             let mut inside = 0.0;
             for _ in 0..count {
-                let onward = optics.onward(&sighting, stream.uniform(), stream.point(), false);
+                let onward = optics.onward(&sighting, stream.uniform(), stream.point(), Among::All);
                 inside += f64::from(u8::from(onward.is_some_and(|onward| onward.light.dot(axis) > cosine)));
             }
             let frame = crate::illumination::distribution::Frame::about(axis);
@@ -136,7 +137,8 @@ fn densities_are_those_with_which_directions_are_drawn() {
                 let z = 1.0 - x * (1.0 - cosine);
                 let (sin, cos) = (TAU * y).sin_cos();
                 let sine = (1.0 - z * z).sqrt();
-                optics.density(&sighting, frame.world(DVec3::new(sine * cos, sine * sin, z)), false)
+                let light = frame.world(DVec3::new(sine * cos, sine * sin, z));
+                Which::CONTINUED.iter().map(|which| optics.density(*which, &sighting, light, Among::All)).sum::<f64>()
             };
             let expected = TAU * (1.0 - cosine) * unit_square(term, 1e-5, 100_000).value;
             let found = inside / f64::from(count);
@@ -246,10 +248,14 @@ fn nothing_is_infinite_at_the_extremes() {
                 let sighting = sighting(degrees, before, behind);
                 for _ in 0..200 {
                     let light = sphere(stream.point());
-                    let value = optics.value(Which::Continued, &sighting, light);
+                    let value = optics.response(&sighting, light);
                     assert!(value.is_finite() && value.0.iter().all(|v| *v >= 0.0));
-                    assert!(optics.density(&sighting, light, false) >= 0.0);
-                    let onward = optics.onward(&sighting, stream.uniform(), stream.point(), false);
+                    assert!(
+                        Which::CONTINUED
+                            .iter()
+                            .all(|which| optics.density(*which, &sighting, light, Among::All) >= 0.0)
+                    );
+                    let onward = optics.onward(&sighting, stream.uniform(), stream.point(), Among::All);
                     assert!(onward.is_none_or(|o| o.weight.is_finite() && (o.light.length() - 1.0).abs() < 1e-6));
                 }
             }

@@ -77,22 +77,25 @@ impl<'a> Direct<'a> {
 
     /// What a beam adds.
     fn arriving(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, counts: &mut RayCounts) -> Channels {
-        let Encounter { found, frame, sighting, parts, highest, .. } = encounter;
+        let Encounter { found, frame, sighting, among, highest, .. } = encounter;
         let optics = found.optics;
         let light = frame.local(beam.towards);
-        let mut continued = optics.value(Which::Continued, sighting, light);
         let source = &self.world.appearance.sources[index].1;
-        let most = continued.max();
-        if most > *highest && !source.is_sky() {
-            continued *= highest / most;
+        let mut value = optics.value(Which::Ended, sighting, light);
+        for which in Which::CONTINUED {
+            let mut continued = optics.value(which, sighting, light);
+            let most = continued.max();
+            if which == Which::Narrow && most > *highest && !source.is_sky() {
+                continued *= highest / most;
+            }
+            if let Some(density) = beam.density
+                && continued != Channels::ZERO
+            {
+                // The rest is what a further leg brings that meets the light.
+                continued *= counted(Some(density), optics.density(which, sighting, light, *among));
+            }
+            value += continued;
         }
-        if let Some(density) = beam.density
-            && continued != Channels::ZERO
-        {
-            // The rest is what a further leg brings that meets the light.
-            continued *= counted(Some(density), optics.density(sighting, light, *parts));
-        }
-        let value = optics.value(Which::Ended, sighting, light) + continued;
         let radiance = value * beam.irradiance * light.z.abs();
         if radiance == Channels::ZERO || !radiance.is_finite() || !self.shadows {
             return if radiance.is_finite() { radiance } else { Channels::ZERO };

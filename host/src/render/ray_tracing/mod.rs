@@ -10,6 +10,7 @@ mod explain;
 mod light_buffer;
 mod media;
 mod tracer;
+mod two_way;
 mod world;
 
 #[cfg(test)]
@@ -21,10 +22,13 @@ mod motion_tests;
 #[cfg(test)]
 mod texture_tests;
 #[cfg(test)]
+mod two_way_tests;
+#[cfg(test)]
 mod tests;
 
 pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
+pub use two_way::Balance;
 
 use super::eye::Eye;
 use super::film::{Film, Sample, Tally};
@@ -38,15 +42,19 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use tracer::{First, Tracer, Work};
+use two_way::{CaughtLight, TwoWay};
 use world::World;
 
 /// Samples of the first pass, where errors or the clock decide about more.
 const FIRST_PASS: u32 = 8;
+/// Samples that see the same caught light; for those after them it is caught anew.
+const SAMPLES_OF_LIGHT: u32 = 8;
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
     plan: &'a Plan,
     world: World<'a>,
+    two_way: Option<TwoWay>,
 }
 
 /// One sample of a pixel, explained.
@@ -68,7 +76,10 @@ impl<'a> RayTracer<'a> {
     /// # Errors
     /// [`RenderError::Octree`], [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
-        Ok(RayTracer { plan, world: World::new(prepared, plan)? })
+        let world = World::new(prepared, plan)?;
+        let keeps = |object| plan.keeps_object(object);
+        let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps)).flatten();
+        Ok(RayTracer { plan, world, two_way })
     }
 
     /// The scene.
@@ -81,10 +92,10 @@ impl<'a> RayTracer<'a> {
         self.world.octree.as_ref()
     }
 
-    fn tracer(&self) -> Tracer<'_> {
+    fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>) -> Tracer<'b> {
         let depth = self.world.appearance.prepared.settings.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
-        Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows))
+        Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows), self.two_way.is_some(), caught)
     }
 
     fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
@@ -113,17 +124,32 @@ impl<'a> RayTracer<'a> {
     ) -> Result<Exposed, RenderError> {
         let start = Instant::now();
         let eye = self.eye(view, order)?;
-        let tracer = self.tracer();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
         let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
         let stopped = || watch.is_cancelled() || late();
         let width = order.width as usize;
-        let passes = passes(order);
+        let passes = self.passes(order);
         let done = AtomicU64::new(0);
         let mut rays = RayCounts::default();
+        let mut balance = None;
         let mut complete = true;
         for samples in &passes {
             let wanted = order.target.map(|target| film.uncertain(target));
+            let is_needed = film.tallies().iter().any(|tally| tally.count < *samples);
+            let caught = match &self.two_way {
+                Some(two_way) if is_needed => {
+                    let pass = (samples - 1) / SAMPLES_OF_LIGHT;
+                    let caught = pool.install(|| two_way.caught(&self.world, pass, watch));
+                    if caught.is_none() {
+                        complete = false;
+                        break;
+                    }
+                    caught
+                }
+                _ => None,
+            };
+            balance = balance.or(caught.as_ref().map(CaughtLight::balance));
+            let tracer = self.tracer(caught.as_ref());
             let counted: Vec<Option<RayCounts>> = pool.install(|| {
                 let rows = film.tallies_mut().par_chunks_exact_mut(width).enumerate();
                 rows.map(|(y, row)| {
@@ -150,7 +176,13 @@ impl<'a> RayTracer<'a> {
         }
         // Time that ran out as it was asked for is no interruption.
         complete |= order.seconds.is_some() && !watch.is_cancelled();
-        Ok(Exposed { rays, complete, seconds: start.elapsed().as_secs_f64(), threads: pool.current_num_threads() })
+        Ok(Exposed {
+            rays,
+            balance,
+            complete,
+            seconds: start.elapsed().as_secs_f64(),
+            threads: pool.current_num_threads(),
+        })
     }
 
     /// Makes a picture of a film to which samples are added, as [`RayTracer::expose`] does it.
@@ -164,8 +196,24 @@ impl<'a> RayTracer<'a> {
         order: &Order,
         watch: &Watch<'_>,
     ) -> Result<Rendering, RenderError> {
-        let Exposed { rays, complete, seconds, threads } = self.expose(&mut film, view, order, watch)?;
-        Ok(Rendering { picture: film.picture()?, film, complete, rays, spans: SpanCounts::default(), seconds, threads })
+        let Exposed { rays, balance, complete, seconds, threads } = self.expose(&mut film, view, order, watch)?;
+        let (picture, spans) = (film.picture()?, SpanCounts::default());
+        Ok(Rendering { picture, film, complete, rays, spans, balance, seconds, threads })
+    }
+
+    /// How many samples pixels have after each pass: one pass, unless errors or the clock decide, or light is caught anew.
+    fn passes(&self, order: &Order) -> Vec<u32> {
+        let mut passes = vec![order.samples];
+        if order.target.is_some() || order.seconds.is_some() {
+            let doubled = std::iter::successors(Some(FIRST_PASS), |samples| samples.checked_mul(2));
+            passes.extend(doubled.take_while(|samples| *samples < order.samples));
+        }
+        if self.two_way.is_some() {
+            passes.extend((SAMPLES_OF_LIGHT..order.samples).step_by(SAMPLES_OF_LIGHT as usize));
+        }
+        passes.sort_unstable();
+        passes.dedup();
+        passes
     }
 
     /// Adds samples to a pixel until it has `samples`.
@@ -209,7 +257,7 @@ impl<'a> RayTracer<'a> {
         let first =
             seen.first.map(|First { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !seen.covered;
-        let radiance = if left_out { glam::DVec3::ZERO } else { wavelengths.seen(comb, seen.radiance) };
+        let radiance = if left_out { glam::DVec3::ZERO } else { wavelengths.seen(comb, seen.radiance) + seen.other };
         (Sample { radiance, covered: seen.covered, first }, comb)
     }
 
@@ -226,8 +274,12 @@ impl<'a> RayTracer<'a> {
         pixel: [u32; 2],
         most: u32,
     ) -> Result<Vec<Explanation>, RenderError> {
-        let (eye, tracer) = (self.eye(view, order)?, self.tracer());
+        let eye = self.eye(view, order)?;
         let told = |index: u32| {
+            let pass = index / SAMPLES_OF_LIGHT;
+            let two_way = self.two_way.as_ref();
+            let caught = two_way.and_then(|two_way| two_way.caught(&self.world, pass, &Watch::NOBODY));
+            let tracer = self.tracer(caught.as_ref());
             let (mut notes, mut work) = (Vec::new(), Work::default());
             let (sample, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;
@@ -243,21 +295,14 @@ impl<'a> RayTracer<'a> {
 pub struct Exposed {
     /// How many rays were traced.
     pub rays: RayCounts,
+    /// What became of the light of lamps that was followed first, if any was.
+    pub balance: Option<Balance>,
     /// Whether it was not stopped from outside.
     pub complete: bool,
     /// Wall-clock time, seconds.
     pub seconds: f64,
     /// Threads that worked.
     pub threads: usize,
-}
-
-/// How many samples pixels have after each pass: one pass, unless errors or the clock decide.
-fn passes(order: &Order) -> Vec<u32> {
-    if order.target.is_none() && order.seconds.is_none() {
-        return vec![order.samples];
-    }
-    let doubled = std::iter::successors(Some(FIRST_PASS), |samples| samples.checked_mul(2));
-    doubled.take_while(|samples| *samples < order.samples).chain([order.samples]).collect()
 }
 
 impl Renderer for RayTracer<'_> {

@@ -4,10 +4,10 @@ use super::direct::Direct;
 use super::draws::{Draws, Purpose};
 use super::explain::{Log, Note};
 use super::media::Media;
+use super::two_way::CaughtLight;
 use super::world::{Encounter, Found, Met, World};
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
-use crate::illumination::optics::{Onward, Sighting};
+use crate::illumination::optics::{Among, Onward, Sighting};
 use crate::numeric::ray::Ray;
 use crate::render::RayCounts;
 use crate::render::eye::{Cone, Sight};
@@ -23,8 +23,6 @@ const WORTH_PARTING: f64 = 1.0 / 64.0;
 /// # Source
 /// Ours, in the place of the path regularisation of Kaplanyan and Dachsbacher 2013.
 const HIGHEST: f64 = 1.0;
-/// A direction that is drawn with a greater density, 1/sr, is that of a highlight and not of spread light.
-const NARROW: f64 = 1.5;
 /// Most legs of a sample that wait to be followed.
 const MOST_WAITING: usize = 8;
 
@@ -52,7 +50,7 @@ struct Leg {
     lane: Option<usize>,
     /// Whether it only looks for lights: it is one too many for anything else.
     for_lights: bool,
-    /// Whether a direction was drawn before the last mirror: a light that is met then is a caustic.
+    /// Whether a broad lobe carried it on: a light that is met behind a narrow one is then a caustic.
     after_spread: bool,
 }
 
@@ -60,6 +58,8 @@ struct Leg {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Seen {
     pub(super) radiance: Channels,
+    /// Radiance at other wavelengths than those of the sample, linear sRGB.
+    pub(super) other: DVec3,
     /// Whether the first leg met an object or light.
     pub(super) covered: bool,
     /// What it met: distance from the eye, normal, object and material.
@@ -88,6 +88,8 @@ pub(super) struct Work {
 struct Counting<'a, 'b> {
     counts: &'a mut RayCounts,
     log: &'a mut Log<'b>,
+    /// Light at other wavelengths than those of the sample, linear sRGB.
+    other: &'a mut DVec3,
 }
 
 /// Follows rays through a scene as its plan tells.
@@ -96,16 +98,39 @@ pub(super) struct Tracer<'a> {
     direct: Direct<'a>,
     /// Most legs after the first.
     depth: u32,
-    /// Whether light of a lamp counts that a mirror or glass throws on what is not.
-    caustics: bool,
+    caustics: Caustics,
+    /// Light that was caught on its way from lamps.
+    caught: Option<&'a CaughtLight<'a>>,
+}
+
+/// What becomes of light of a lamp that narrow lobes throw on a broad one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Caustics {
+    /// Rays from the eye find it, if they do.
+    Met,
+    /// It was caught there: rays from the eye may not find it again.
+    Caught,
+    /// It does not count, or only as far as it is faint.
+    LeftOut,
 }
 
 impl<'a> Tracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
-    pub(super) fn new(world: &'a World<'a>, depth: u32, shadows: bool) -> Tracer<'a> {
-        let samples = world.appearance.prepared.settings.light_samples.max(1);
-        let caustics = world.appearance.prepared.settings.caustics;
-        Tracer { world, direct: Direct::new(world, shadows, samples), depth, caustics }
+    /// - `catches`: whether light of lamps was followed; `caught` is what was caught.
+    pub(super) fn new(
+        world: &'a World<'a>,
+        depth: u32,
+        shadows: bool,
+        catches: bool,
+        caught: Option<&'a CaughtLight<'a>>,
+    ) -> Tracer<'a> {
+        let settings = &world.appearance.prepared.settings;
+        let caustics = match (catches, settings.caustics) {
+            (true, _) => Caustics::Caught,
+            (false, true) => Caustics::Met,
+            (false, false) => Caustics::LeftOut,
+        };
+        Tracer { world, direct: Direct::new(world, shadows, settings.light_samples.max(1)), depth, caustics, caught }
     }
 
     /// The radiance that arrives along a line of sight.
@@ -164,7 +189,7 @@ impl<'a> Tracer<'a> {
                         seen.first = Some(First { distance: depth, normal: found.element.normal, object, material });
                     }
                     seen.covered = true;
-                    let counting = &mut Counting { counts, log: &mut log };
+                    let counting = &mut Counting { counts, log: &mut log, other: &mut seen.other };
                     seen.radiance += self.arrive(leg, &found, (comb, draws), counting, waiting);
                 }
             }
@@ -178,7 +203,7 @@ impl<'a> Tracer<'a> {
         mut leg: Leg,
         found: &Found<'_>,
         (comb, draws): (usize, &Draws),
-        Counting { counts, log }: &mut Counting<'_, '_>,
+        Counting { counts, log, other }: &mut Counting<'_, '_>,
         waiting: &mut Vec<Leg>,
     ) -> Channels {
         let optics = found.optics;
@@ -193,8 +218,7 @@ impl<'a> Tracer<'a> {
         if leg.for_lights && !optics.is_passable() {
             return sum;
         }
-        let normal = found.element.normal;
-        let frame = found.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
+        let frame = found.frame();
         let lanes = self.world.appearance.wavelengths.lanes();
         // Where wavelengths part, the one that is left is drawn together with the comb: all of them get their turn.
         let parting = draws.point(Purpose::Wavelengths)[1];
@@ -216,21 +240,28 @@ impl<'a> Tracer<'a> {
             optics.mirrored(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));
         let directions = count + usize::from(optics.spreads());
         let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
-        let highest = if self.is_blurred(&leg) { HIGHEST } else { f64::INFINITY };
-        let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, parts, highest };
+        let among = if parts { Among::Spread } else { Among::All };
+        let highest = self.highest(&leg);
+        let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, among, highest };
         if optics.answers_lights() {
             let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
             sum += leg.passed * self.direct.light(&encounter, counts, add);
+        }
+        if let Some(caught) = self.caught.filter(|_| optics.takes()) {
+            let (radiance, elsewhere) = caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()));
+            sum += radiance;
+            **other += elsewhere;
+            log.note(|| Note::term(leg.depth, "caught light", radiance));
         }
         if optics.carries_on() {
             let point = draws.leg(leg.number, Purpose::Direction, 0);
             let [choice, _] = draws.leg(leg.number, Purpose::Choice, 0);
             if parts {
-                let drawn = optics.spreads().then(|| optics.onward(&sighting, choice, point, true)).flatten();
+                let drawn = optics.spreads().then(|| optics.onward(&sighting, choice, point, among)).flatten();
                 let legs = optics.mirrored(&sighting).zip(0..).chain(drawn.map(|onward| (onward, 2)));
                 waiting.extend(legs.filter_map(|(onward, branch)| self.onward(&leg, &encounter, onward, branch)));
             } else {
-                let drawn = optics.onward(&sighting, choice, point, false);
+                let drawn = optics.onward(&sighting, choice, point, among);
                 waiting.extend(drawn.and_then(|onward| self.onward(&leg, &encounter, onward, 0)));
             }
         }
@@ -240,22 +271,27 @@ impl<'a> Tracer<'a> {
     /// How much a light counts that a leg meets.
     fn part(&self, leg: &Leg, light: f64) -> f64 {
         let is_caustic = leg.density.is_none() && leg.after_spread;
-        if is_caustic && !self.caustics { 0.0 } else { leg.lamps * counted(leg.density, light) }
+        let counts = !is_caustic || self.caustics == Caustics::Met;
+        if counts { leg.lamps * counted(leg.density, light) } else { 0.0 }
     }
 
-    /// Whether highlights of lamps are cut off where a leg arrives.
-    fn is_blurred(&self, leg: &Leg) -> bool {
-        leg.after_spread && !self.caustics
+    /// The greatest value with which narrow lobes may reflect a lamp where a leg arrives, 1/sr.
+    fn highest(&self, leg: &Leg) -> f64 {
+        match self.caustics {
+            Caustics::Caught if leg.after_spread => 0.0,
+            Caustics::LeftOut if leg.after_spread => HIGHEST,
+            _ => f64::INFINITY,
+        }
     }
 
     /// The leg that goes on in a direction; none if it is not worth following.
     fn onward(&self, leg: &Leg, encounter: &Encounter<'_>, onward: Onward, branch: u32) -> Option<Leg> {
-        let Encounter { found, frame, sighting, draws, .. } = encounter;
+        let Encounter { found, frame, sighting, draws, highest, .. } = *encounter;
         if onward.is_straight {
-            return self.straight(leg, found, (onward, branch), draws);
+            return self.straight(leg, found, (onward, branch), &draws);
         }
         let through = onward.light.z < 0.0;
-        let parts_wavelengths = through && leg.lane.is_none() && disperses(found);
+        let parts_wavelengths = through && leg.lane.is_none() && found.disperses();
         // Beyond the last leg, a direction that might have been drawn for a light still looks for it.
         let is_last = leg.depth >= self.depth;
         if is_last && (onward.density.is_none() || !self.direct.is_spread()) {
@@ -266,7 +302,7 @@ impl<'a> Tracer<'a> {
             passed = passed.only(sighting.lane, self.world.appearance.wavelengths.lanes());
         }
         let number = leg.number.wrapping_mul(3).wrapping_add(branch);
-        let passed = survived(passed, number, draws)?;
+        let passed = survived(passed, number, &draws)?;
         let element = &found.element;
         let direction = frame.world(onward.light);
         // Of a spread lobe, what falls on the wrong side of the triangle or its surface is lost.
@@ -279,8 +315,8 @@ impl<'a> Tracer<'a> {
             media.cross(found);
         }
         let lamps = match onward.density {
-            Some(density) if self.is_blurred(leg) => {
-                (HIGHEST * onward.light.z.abs() / (onward.weight.max() * density)).clamp(0.0, 1.0)
+            Some(density) if highest.is_finite() && !onward.is_broad => {
+                (highest * onward.light.z.abs() / (onward.weight.max() * density)).clamp(0.0, 1.0)
             }
             _ => 1.0,
         };
@@ -303,7 +339,7 @@ impl<'a> Tracer<'a> {
             media,
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,
-            after_spread: leg.after_spread || onward.density.is_some_and(|density| density < NARROW),
+            after_spread: leg.after_spread || onward.is_broad,
         })
     }
 
@@ -343,8 +379,4 @@ pub(super) fn counted(leg: Option<f64>, light: f64) -> f64 {
             if ratio.is_finite() { 1.0 / (1.0 + ratio * ratio) } else { 0.0 }
         }
     }
-}
-
-fn disperses(found: &Found<'_>) -> bool {
-    found.optics.interior.as_ref().is_some_and(|interior| interior.disperses)
 }

@@ -6,7 +6,7 @@ use super::tracer::counted;
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
 use crate::illumination::light::{Glow, Source};
-use crate::illumination::optics::{Optics, Painting, Sighting};
+use crate::illumination::optics::{Among, Optics, Painting, Sighting};
 use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft};
 use crate::plan::{Plan, Stage};
@@ -56,8 +56,8 @@ pub(super) struct Encounter<'a> {
     pub(super) draws: Draws,
     /// The number of the leg that met it.
     pub(super) leg: u32,
-    /// Whether mirrored directions are followed beside a drawn one, so that none of them is drawn.
-    pub(super) parts: bool,
+    /// Among which lobes a direction is drawn: not among those of mirrors, if all of these are followed beside it.
+    pub(super) among: Among,
     /// The greatest value with which it may reflect a lamp, 1/sr.
     pub(super) highest: f64,
 }
@@ -83,6 +83,17 @@ pub(super) struct Found<'a> {
 }
 
 impl Found<'_> {
+    /// The frame in which its optics has directions.
+    pub(super) fn frame(&self) -> Frame {
+        let normal = self.element.normal;
+        self.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along))
+    }
+
+    /// Whether wavelengths part that go through it.
+    pub(super) fn disperses(&self) -> bool {
+        self.optics.interior.as_ref().is_some_and(|interior| interior.disperses)
+    }
+
     /// What the patterns of the material give.
     pub(super) fn painted(&self) -> &[Channels] {
         self.painting.as_ref().map_or(&[], |painting| painting.as_slice())

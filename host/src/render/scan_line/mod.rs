@@ -356,6 +356,6 @@ impl Renderer for ScanLine<'_> {
         let (spans, complete) =
             pool.install(|| self.draw((&mut film, &mut picture), (view, order), &stopped, watch))?;
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
-        Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, seconds, threads })
+        Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, balance: None, seconds, threads })
     }
 }

@@ -1,0 +1,200 @@
+//! Points sorted by locational code, and those around a place.
+
+use super::cube::Cube;
+use super::{LocationalCode, MAX_DEPTH};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Digits of a code by which runs are found without a search.
+const TABLE_LEVEL: u32 = 5;
+/// Bits behind them.
+const BEHIND: u32 = 64 - 3 * TABLE_LEVEL;
+
+/// Points in the order of the codes of their voxels.
+///
+/// Each cube of any size is one run of them, found by binary search. Building takes one sort.
+#[derive(Clone, Debug)]
+pub struct Points {
+    cube: Cube,
+    /// Codes of the voxels, rising.
+    codes: Vec<u64>,
+    /// Local coordinates, 0..=1 in the cube.
+    positions: Vec<[f32; 3]>,
+    /// Where the points of each cube of the table's level begin.
+    table: Vec<u32>,
+}
+
+/// The points around a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Around {
+    /// All points within this distance are among them, scene units.
+    pub reach: f64,
+    /// How many there are.
+    pub count: usize,
+    /// Where they are, cube by cube.
+    pub runs: [Range<u32>; 8],
+}
+
+impl Points {
+    /// Sorts points; the number of each among those given comes beside, in the new order.
+    ///
+    /// Points beyond 2^32 − 1, and all that are not finite, are left out.
+    pub fn new(points: &[DVec3]) -> (Points, Vec<u32>) {
+        let finite = || points.iter().filter(|point| point.is_finite());
+        let low = finite().copied().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
+        let high = finite().copied().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
+        let cube = Cube::around(low, high);
+        let code = |(number, point): (usize, &DVec3)| {
+            let voxel = cube.voxel(*point).filter(|_| point.is_finite())?;
+            Some((LocationalCode::containing(voxel, MAX_DEPTH).bits(), u32::try_from(number).ok()?))
+        };
+        let mut keys: Vec<(u64, u32)> = points.par_iter().enumerate().filter_map(code).collect();
+        keys.par_sort_unstable();
+        let positions = keys.par_iter().map(|(_, number)| cube.local(points[*number as usize]).as_vec3().to_array());
+        let positions = positions.collect();
+        let codes: Vec<u64> = keys.iter().map(|(code, _)| *code).collect();
+        let cubes = 1 << (3 * TABLE_LEVEL);
+        let table = (0..=cubes as u64).map(|k| match k {
+            k if k == cubes as u64 => codes.len() as u32,
+            k => codes.partition_point(|code| *code < k << BEHIND) as u32,
+        });
+        let table = table.collect();
+        (Points { cube, codes, positions, table }, keys.into_iter().map(|(_, number)| number).collect())
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.codes.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.codes.is_empty()
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.codes[..]) + size_of_val(&self.positions[..]) + size_of_val(&self.table[..])
+    }
+
+    /// A point, scene units: to 6e-8 of the side of the cube.
+    pub fn position(&self, place: usize) -> DVec3 {
+        let local = DVec3::from_array(self.positions[place].map(f64::from));
+        self.cube.origin + local * self.cube.side
+    }
+
+    /// The points around a place: within a radius, or within a half, a quarter and so on of it, so that there are not many.
+    ///
+    /// - `most`: so many are not many.
+    pub fn around(&self, place: DVec3, radius: f64, most: usize) -> Around {
+        let local = self.cube.local(place);
+        // Of a cube twice as wide as the radius and its three nearest neighbours along each axis.
+        let mut level = (0.5 * self.cube.side / radius).log2().floor().clamp(0.0, f64::from(MAX_DEPTH)) as u32;
+        loop {
+            let side = 0.5_f64.powi(level as i32);
+            let mut around =
+                Around { reach: radius.min(0.5 * side * self.cube.side), count: 0, runs: Default::default() };
+            let corner = local.to_array().map(|x| (x / side - 0.5).floor());
+            let mut runs = 0;
+            for digit in 0..8 {
+                let cell = [0, 1, 2].map(|axis| corner[axis] + f64::from(digit >> axis & 1));
+                let run = self.run(cell, level);
+                if !run.is_empty() {
+                    around.count += run.len();
+                    around.runs[runs] = run;
+                    runs += 1;
+                }
+            }
+            if around.count <= most || level >= MAX_DEPTH {
+                return around;
+            }
+            level += 1;
+        }
+    }
+
+    /// The squared distance of a point from a place, in sides of the cube; the place in local coordinates.
+    #[inline]
+    pub fn local_square(&self, local: [f32; 3], place: usize) -> f32 {
+        let [x, y, z] = self.positions[place];
+        let [dx, dy, dz] = [x - local[0], y - local[1], z - local[2]];
+        dx * dx + dy * dy + dz * dz
+    }
+
+    /// The offset of a point from a place, in sides of the cube; the place in local coordinates.
+    #[inline]
+    pub fn local_offset(&self, local: [f32; 3], place: usize) -> [f32; 3] {
+        let position = self.positions[place];
+        [0, 1, 2].map(|axis| position[axis] - local[axis])
+    }
+
+    /// Local coordinates of a place.
+    pub fn local(&self, place: DVec3) -> [f32; 3] {
+        self.cube.local(place).as_vec3().to_array()
+    }
+
+    /// The side of the cube, scene units.
+    pub fn side(&self) -> f64 {
+        self.cube.side
+    }
+
+    /// The points of a cube, by its place among those of a level.
+    fn run(&self, cell: [f64; 3], level: u32) -> Range<u32> {
+        let cells = f64::from(1_u32 << level);
+        if cell.iter().any(|x| !(0.0..cells).contains(x)) {
+            return 0..0;
+        }
+        let voxel = cell.map(|x| (x as u32) << (MAX_DEPTH - level));
+        let code = LocationalCode::containing(voxel, level).bits();
+        let mark = code & code.wrapping_neg();
+        let (first, last) = (code - mark, (code - mark) | (mark - 1) | mark);
+        let [from, to] = [first, last].map(|code| (code >> BEHIND) as usize);
+        let found = |near: usize, is_before: &dyn Fn(u64) -> bool| {
+            let (start, end) = (self.table[near] as usize, self.table[near + 1] as usize);
+            (start + self.codes[start..end].partition_point(|code| is_before(*code))) as u32
+        };
+        found(from, &|code| code < first)..found(to, &|code| code <= last)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::sampling::Stream;
+
+    #[test]
+    fn the_points_around_a_place_are_those_within_reach() {
+        let mut stream = Stream::new(4, 1);
+        // Dense towards a corner, far from the origin.
+        let mut coordinate = || 1e4 + stream.uniform().powi(3) * 7.0;
+        let given: Vec<DVec3> = (0..20_000).map(|_| DVec3::new(coordinate(), coordinate(), 5.0)).collect();
+        let (points, order) = Points::new(&given);
+        assert_eq!(points.len(), given.len());
+        for (place, number) in order.iter().enumerate() {
+            assert!(points.position(place).distance(given[*number as usize]) < 1e-5);
+        }
+        for centre in given.iter().step_by(997) {
+            for (radius, most) in [(3.0, 100_000), (1.0, 300), (0.1, 50)] {
+                let around = points.around(*centre, radius, most);
+                assert!(around.count <= most && around.reach <= radius);
+                let runs = around.runs.iter().flat_map(|run| run.clone());
+                let local = points.local(*centre);
+                let reach = around.reach * 0.9999;
+                let near = |place: usize| f64::from(points.local_square(local, place)).sqrt() * points.side() < reach;
+                let found = runs.filter(|place| near(*place as usize)).count();
+                let expected = (0..points.len()).filter(|place| near(*place)).count();
+                assert_eq!(found, expected, "{radius} {most}");
+            }
+        }
+        let far = points.around(DVec3::splat(-1e6), 1.0, 10);
+        assert_eq!(far.count, 0);
+    }
+
+    #[test]
+    fn points_at_one_place_and_no_points_are_no_trouble() {
+        let (points, _) = Points::new(&vec![DVec3::splat(2.0); 1000]);
+        assert_eq!(points.around(DVec3::splat(2.0), 1.0, 10).count, 1000);
+        let (none, _) = Points::new(&[DVec3::NAN]);
+        assert!(none.is_empty() && none.around(DVec3::ZERO, 1.0, 10).count == 0);
+    }
+}

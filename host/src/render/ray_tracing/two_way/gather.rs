@@ -1,0 +1,258 @@
+//! Caught light as a surface shows it: its density around a place.
+//!
+//! The flux that arrived within a small disc, over its area, is the irradiance. A small disc has few ways of light in it, so
+//! that chance shows; a large one blurs. Which is right is different from place to place: discs are tried from small to
+//! large as long as what they tell is the same within what chance allows.
+
+use super::flight::Caught;
+use super::surfaces::{Surfaces, part_of_disc};
+use crate::color::{Channels, LANES};
+use crate::numeric::bounds::Bounds;
+use crate::numeric::ray::Ray;
+use crate::numeric::triangle::Shear;
+use crate::octree::{Points, Sorted};
+use crate::scene::Prepared;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::FRAC_2_PI;
+
+/// Caught light that is looked at around a place, at the most.
+const MOST: usize = 384;
+/// The least that a disc holds, if there is so much around the place.
+const LEAST: u32 = 10;
+/// Rings of equal area around a place.
+const RINGS: usize = 32;
+/// Discs that are tried: so many rings each.
+const DISCS: [usize; 10] = [1, 2, 3, 4, 6, 8, 11, 16, 22, 32];
+/// Two discs tell the same if they differ by no more than so many standard errors.
+const SAME: f64 = 1.0;
+/// How far above or below the plane at a place light may have arrived to count there, over the radius.
+const HEIGHT: f64 = 0.25;
+
+/// Light that was caught on surfaces, by its place.
+pub(super) struct Captured {
+    points: Points,
+    towards: Vec<[f32; 3]>,
+    sides: Vec<u32>,
+    /// Flux of each lane, those of one after those of the other.
+    flux: Vec<f32>,
+    lanes: usize,
+    /// Their mean.
+    strength: Vec<f32>,
+    combs: Vec<u8>,
+}
+
+/// A place that asks for the light around it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) position: DVec3,
+    /// Outer normal of the surface.
+    pub(super) outside: DVec3,
+    /// Where rays from there to other places of the surface begin.
+    pub(super) leave: DVec3,
+    pub(super) surface: u32,
+    /// The side, as [`super::flight::side_of`] numbers them.
+    pub(super) side: u32,
+}
+
+/// What stands around places.
+pub(super) struct Surroundings<'a> {
+    pub(super) prepared: &'a Prepared,
+    pub(super) surfaces: &'a Surfaces,
+    /// Triangles that stand in the way of light.
+    pub(super) opaque: &'a Sorted,
+    /// The largest disc, scene units.
+    pub(super) reach: f64,
+    /// What the areas of discs are multiplied with.
+    pub(super) shrink: f64,
+}
+
+/// Light that arrives at a place, over an area.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arriving {
+    /// Towards where it comes from.
+    pub(super) towards: DVec3,
+    /// Irradiance, W/m².
+    pub(super) irradiance: Channels,
+    pub(super) comb: usize,
+}
+
+/// Sums over the light within a ring, or a disc: of its strength and of the square, each times powers of d².
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: u32,
+    first: [f64; 2],
+    second: [f64; 3],
+}
+
+impl Sums {
+    fn add(&mut self, strength: f64, square: f64) {
+        let product = strength * strength;
+        self.count += 1;
+        self.first[0] += strength;
+        self.first[1] += strength * square;
+        self.second[0] += product;
+        self.second[1] += product * square;
+        self.second[2] += product * square * square;
+    }
+
+    fn and(&self, other: &Sums) -> Sums {
+        Sums {
+            count: self.count + other.count,
+            first: [0, 1].map(|i| self.first[i] + other.first[i]),
+            second: [0, 1, 2].map(|i| self.second[i] + other.second[i]),
+        }
+    }
+
+    /// Irradiance and its standard error of a disc, weighted by 1 − d²/r², times π/2.
+    fn irradiance(&self, square: f64) -> (f64, f64) {
+        let value = (self.first[0] - self.first[1] / square) / square;
+        let variance = self.second[0] - 2.0 * self.second[1] / square + self.second[2] / (square * square);
+        (value, variance.max(0.0).sqrt() / square)
+    }
+}
+
+impl Captured {
+    /// Sorts what was caught.
+    pub(super) fn new(caught: &[Caught], lanes: usize) -> Captured {
+        let positions: Vec<DVec3> = caught.iter().map(|c| c.position).collect();
+        let (points, order) = Points::new(&positions);
+        let sorted = || order.par_iter().map(|number| &caught[*number as usize]);
+        Captured {
+            towards: sorted().map(|c| c.towards.as_vec3().to_array()).collect(),
+            sides: sorted().map(|c| c.side).collect(),
+            flux: sorted().flat_map_iter(|c| c.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
+            strength: sorted().map(|c| (c.flux.0[..lanes].iter().sum::<f64>() / lanes as f64) as f32).collect(),
+            combs: sorted().map(|c| c.comb).collect(),
+            lanes,
+            points,
+        }
+    }
+
+    /// Memory, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        self.points.bytes()
+            + size_of_val(&self.towards[..])
+            + size_of_val(&self.sides[..])
+            + size_of_val(&self.flux[..])
+            + size_of_val(&self.strength[..])
+            + size_of_val(&self.combs[..])
+    }
+
+    /// Visits the light that arrives around a place, as if it arrived at it.
+    ///
+    /// - `aside`: the square of how far the middle of the discs may be off counts as distance.
+    pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) {
+        let around = self.points.around(place.position, surroundings.reach, MOST);
+        if around.count == 0 {
+            return;
+        }
+        let side = self.points.side();
+        let reach = (around.reach / side) as f32;
+        let local = self.points.local(place.position);
+        let normal = place.outside.as_vec3();
+        let mut near: Vec<(u32, f32)> = Vec::with_capacity(around.count);
+        for number in around.runs.iter().flat_map(|run| run.clone()) {
+            if self.sides[number as usize] != place.side {
+                continue;
+            }
+            let offset = glam::Vec3::from_array(self.points.local_offset(local, number as usize));
+            let height = offset.dot(normal);
+            let square = offset.length_squared() - height * height;
+            if square < reach * reach && height.abs() <= HEIGHT as f32 * reach {
+                near.push((number, square));
+            }
+        }
+        if near.is_empty() {
+            return;
+        }
+        self.keep_seen(&mut near, place, surroundings, around.reach);
+        let Some((square, part)) = self.disc(&near, place, surroundings, around.reach) else { return };
+        // In scene units from here on.
+        let area = square * side * side;
+        let factor = FRAC_2_PI / (area * part);
+        for (number, distance) in near.iter().filter(|(_, distance)| f64::from(*distance) < square) {
+            let number = *number as usize;
+            let weight = factor * (1.0 - f64::from(*distance) / square);
+            let flux = &self.flux[number * self.lanes..(number + 1) * self.lanes];
+            let irradiance = std::array::from_fn::<f64, LANES, _>(|lane| flux.get(lane).map_or(0.0, |f| f64::from(*f)));
+            visit(&Arriving {
+                towards: DVec3::from_array(self.towards[number].map(f64::from)),
+                irradiance: Channels(irradiance) * weight,
+                comb: usize::from(self.combs[number]),
+            });
+        }
+    }
+
+    /// Leaves out light that arrived behind something that stands on the surface, as seen from the place.
+    fn keep_seen(&self, near: &mut Vec<(u32, f32)>, place: &Place, surroundings: &Surroundings<'_>, reach: f64) {
+        let prepared = surroundings.prepared;
+        let lift = place.leave - place.position;
+        let above = lift.normalize_or(place.outside);
+        let bounds = Bounds { min: place.position - DVec3::splat(reach), max: place.position + DVec3::splat(reach) };
+        let mut walls: Vec<[DVec3; 3]> = Vec::new();
+        surroundings.opaque.touching(bounds, |triangle| {
+            if surroundings.surfaces.of(triangle) != place.surface {
+                let corners = prepared.corners(triangle);
+                let heights = corners.map(|corner| (corner - place.leave).dot(above));
+                if heights.iter().any(|height| *height > 0.0) {
+                    walls.push(corners);
+                }
+            }
+        });
+        if walls.is_empty() {
+            return;
+        }
+        near.retain(|(number, _)| {
+            let direction = self.points.position(*number as usize) + lift - place.leave;
+            // Along the plane: positions are rounded.
+            let direction = direction - above * direction.dot(above);
+            let Some(shear) = Shear::new(&Ray { origin: place.leave, direction }, 1.0) else { return true };
+            !walls.iter().any(|wall| shear.crossing(*wall).is_some_and(|crossing| (0.0..=1.0).contains(&crossing.t)))
+        });
+    }
+
+    /// The disc that tells most, by the square of its radius in sides of the cube, and how much of it is on the surface.
+    ///
+    /// # Source
+    /// Goldenshluger and Nemirovski 1997, intersection of confidence intervals; the weight is that of Epanechnikov 1969.
+    fn disc(&self, near: &[(u32, f32)], place: &Place, of: &Surroundings<'_>, reach: f64) -> Option<(f64, f64)> {
+        let side = self.points.side();
+        let whole = (reach / side) * (reach / side);
+        let mut rings = [Sums::default(); RINGS];
+        for (number, square) in near {
+            let ring = (f64::from(*square) / whole * RINGS as f64) as usize;
+            rings[ring.min(RINGS - 1)].add(f64::from(self.strength[*number as usize]), f64::from(*square));
+        }
+        let borders = of.surfaces.around(place.surface, place.position, place.outside, reach);
+        let part = |square: f64| match borders.is_empty() {
+            true => 1.0,
+            false => part_of_disc(&borders, square.sqrt() * side),
+        };
+        let (mut sums, mut next) = (Sums::default(), 0);
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut best = None;
+        for disc in DISCS {
+            sums = rings[next..disc].iter().fold(sums, |sums, ring| sums.and(ring));
+            next = disc;
+            let square = whole * disc as f64 / RINGS as f64;
+            if sums.count < LEAST && disc < RINGS {
+                continue;
+            }
+            let part = part(square);
+            let (value, error) = sums.irradiance(square);
+            let (value, error) = (value / part, SAME * error / part);
+            (low, high) = (low.max(value - error), high.min(value + error));
+            if low > high {
+                break;
+            }
+            best = Some((square, part));
+        }
+        let (square, whole_part) = best?;
+        if of.shrink == 1.0 {
+            return Some((square, whole_part));
+        }
+        let square = square * of.shrink;
+        Some((square, part(square)))
+    }
+}

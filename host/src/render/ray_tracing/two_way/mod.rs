@@ -1,0 +1,314 @@
+//! Phase one of two-way ray tracing: light is followed from lamps through mirrors and glass, and caught where it arrives.
+//!
+//! It does not depend on the view. Phase two, the rays from the eye, adds what was caught around each place that they meet,
+//! as light that comes from where it came from.
+//!
+//! **Which ways of light are found by whom.** Each turn of light at a surface is by a *narrow* lobe, a mirror, an
+//! interface or a highlight, or by a *broad* one, such as Lambert's. From a lamp on,
+//!
+//! - light that comes to a broad turn without any before it is direct: rays to lights bring it;
+//! - light whose first turns are narrow and that then comes to a broad one is caught, and added where it was caught;
+//! - light that comes to the eye by narrow turns alone is found by the rays from the eye;
+//! - what happens after the first broad turn is found by the rays from the eye, wherever these meet one of the first two.
+//!
+//! A ray from the eye that went on from a broad turn and then by narrow ones to a lamp is on a way of the second kind,
+//! and counts nothing. A sky without a picture is left to the rays from the eye: it is as bright everywhere, and they find it.
+
+mod aim;
+mod flight;
+mod gather;
+mod surfaces;
+
+pub use flight::Balance;
+
+use super::world::{Found, World};
+use crate::color::{Channels, LANES};
+use crate::illumination::light::Start;
+use crate::illumination::optics::Sighting;
+use crate::numeric::ray::Ray;
+use crate::numeric::sequence::Sequence;
+use crate::octree::Sorted;
+use crate::render::Watch;
+use aim::Ball;
+use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
+use gather::{Captured, Place, Surroundings};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+use surfaces::Surfaces;
+
+/// Ways that are followed first, to see where light goes.
+const PILOT: u32 = 1 << 14;
+/// The least of them for each lamp and ball.
+const LEAST_PILOT: u32 = 32;
+/// Of the ways of a lamp and ball, the least part of the mean of all, however little came of them.
+const LEAST_PART: f64 = 0.05;
+/// Ways that one thread follows before it takes others.
+const CHUNK: u32 = 1024;
+/// The largest disc over which caught light is spread, as a part of the diagonal of the scene.
+const REACH: f64 = 0.05;
+
+/// Memory that caught light takes while it is kept for further views, bytes at the most.
+const MOST_BYTES: usize = 1 << 30;
+
+/// Follows light from lamps.
+pub(super) struct TwoWay {
+    surfaces: Surfaces,
+    /// Triangles that stand in the way of light.
+    opaque: Sorted,
+    balls: Vec<Ball>,
+    /// How many ways go from each lamp to each ball.
+    quotas: Vec<Quota>,
+    turns: u32,
+    reach: f64,
+    seed: u64,
+    /// What was caught, pass by pass, as far as it is kept.
+    kept: Mutex<Vec<Arc<Capture>>>,
+}
+
+/// Ways from a lamp to a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Quota {
+    /// An index into the sources.
+    lamp: usize,
+    ball: usize,
+    count: u32,
+}
+
+/// What a pass caught.
+struct Capture {
+    pass: u32,
+    light: Captured,
+    balance: Balance,
+}
+
+/// Light that was caught, with what is needed to show it.
+pub(super) struct CaughtLight<'a> {
+    world: &'a World<'a>,
+    two_way: &'a TwoWay,
+    capture: Arc<Capture>,
+    shrink: f64,
+}
+
+impl TwoWay {
+    /// Looks where light of lamps goes; none if nothing of it goes through mirrors or glass to where it can be caught.
+    pub(super) fn new(world: &World<'_>, keeps: impl Fn(usize) -> bool) -> Option<TwoWay> {
+        let appearance = &world.appearance;
+        let prepared = appearance.prepared;
+        let settings = &prepared.settings;
+        let of = |triangle: u32| {
+            let object = prepared.object_of[triangle as usize];
+            (keeps(object as usize), appearance.optics(object, prepared.material_number(triangle)))
+        };
+        let throws = |triangle: u32| matches!(of(triangle), (true, optics) if optics.throws());
+        let balls = aim::balls(prepared, throws);
+        let lamps: Vec<usize> =
+            (0..appearance.sources.len()).filter(|i| appearance.sources[*i].1.is_caught()).collect();
+        if balls.is_empty() || lamps.is_empty() {
+            return None;
+        }
+        let takes = |object: usize| {
+            let materials = 0..prepared.objects[object].materials.len() as u32;
+            keeps(object) && materials.into_iter().any(|m| appearance.optics(object as u32, m).takes())
+        };
+        let stands = |t: u32| matches!(of(t), (true, optics) if !optics.is_passable() && optics.interior.is_none());
+        let mut two_way = TwoWay {
+            surfaces: Surfaces::new(prepared, takes),
+            opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(stands),
+            quotas: Vec::new(),
+            turns: settings.reflection_depth.max(LEAST_TURNS),
+            reach: settings.photon_radius.unwrap_or(REACH * prepared.bounds.diagonal()),
+            seed: settings.seed,
+            kept: Mutex::new(Vec::new()),
+            balls,
+        };
+        two_way.divide(world, &lamps);
+        (!two_way.quotas.is_empty()).then_some(two_way)
+    }
+
+    /// Divides the ways among lamps and balls, as a few of them are of use.
+    fn divide(&mut self, world: &World<'_>, lamps: &[usize]) {
+        let pairs = lamps.len() * self.balls.len();
+        let count = (PILOT / pairs as u32).max(LEAST_PILOT);
+        let all = |lamp: &usize| (0..self.balls.len()).map(move |ball| (*lamp, ball)).collect::<Vec<_>>();
+        let pairs = lamps.iter().flat_map(all);
+        self.quotas = pairs.map(|(lamp, ball)| Quota { lamp, ball, count }).collect();
+        let pilot = u64::MAX;
+        let caught: Vec<f64> = (0..self.quotas.len())
+            .into_par_iter()
+            .map(|quota| self.follow(world, pilot, quota, 0..count).1.caught)
+            .collect();
+        let all: f64 = caught.iter().sum();
+        let photons = f64::from(world.appearance.prepared.settings.photons);
+        if !(all > 0.0) {
+            self.quotas.clear();
+            return;
+        }
+        let least = LEAST_PART / caught.len() as f64;
+        let sum: f64 = caught.iter().map(|c| (c / all).max(least)).sum();
+        for (quota, caught) in self.quotas.iter_mut().zip(&caught) {
+            quota.count = ((caught / all).max(least) / sum * photons).ceil() as u32;
+        }
+    }
+
+    /// Follows all ways of a pass; none if it was cancelled.
+    ///
+    /// - `pass`: counts from 0. The more of them, the smaller the discs over which light is spread.
+    pub(super) fn caught<'a>(&'a self, world: &'a World<'a>, pass: u32, watch: &Watch<'_>) -> Option<CaughtLight<'a>> {
+        let shown = |capture: Arc<Capture>| {
+            let shrink = f64::from(pass + 1).powf(-1.0 / 3.0);
+            CaughtLight { world, two_way: self, capture, shrink }
+        };
+        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(capture) = kept().iter().find(|capture| capture.pass == pass) {
+            return Some(shown(capture.clone()));
+        }
+        let capture = Arc::new(self.capture(world, pass, watch)?);
+        let mut kept = kept();
+        let bytes: usize = kept.iter().map(|capture| capture.light.bytes()).sum();
+        if bytes + capture.light.bytes() <= MOST_BYTES {
+            kept.push(capture.clone());
+        }
+        Some(shown(capture))
+    }
+
+    fn capture(&self, world: &World<'_>, pass: u32, watch: &Watch<'_>) -> Option<Capture> {
+        let chunks = (0..self.quotas.len()).flat_map(|quota| {
+            let count = self.quotas[quota].count;
+            (0..count.div_ceil(CHUNK)).map(move |k| (quota, k * CHUNK..((k + 1) * CHUNK).min(count)))
+        });
+        let chunks: Vec<(usize, Range<u32>)> = chunks.collect();
+        let follow = |(quota, range): (usize, Range<u32>)| {
+            (!watch.is_cancelled()).then(|| self.follow(world, u64::from(pass), quota, range))
+        };
+        let parts: Option<Vec<(Vec<Caught>, Balance)>> = chunks.into_par_iter().map(follow).collect();
+        let parts = parts?;
+        let balance = parts.iter().fold(Balance::default(), |sum, (_, balance)| sum + *balance);
+        let caught: Vec<Caught> = parts.into_iter().flat_map(|(caught, _)| caught).collect();
+        Some(Capture { pass, light: Captured::new(&caught, world.appearance.wavelengths.lanes()), balance })
+    }
+
+    /// Follows some ways from a lamp to a ball.
+    fn follow(&self, world: &World<'_>, pass: u64, quota: usize, range: Range<u32>) -> (Vec<Caught>, Balance) {
+        let mut flight = Flight {
+            world,
+            surfaces: &self.surfaces,
+            turns: self.turns,
+            caught: Vec::new(),
+            balance: Balance::default(),
+        };
+        let Quota { lamp, ball, .. } = self.quotas[quota];
+        let number = (lamp * self.balls.len() + ball) as u64;
+        let sequence = Sequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number);
+        for index in range {
+            let choices = Choices::new(sequence, index);
+            match self.start(world, &self.quotas[quota], &choices) {
+                Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.follow(&start, &choices),
+                _ => flight.balance.ways += 1,
+            }
+        }
+        (flight.caught, flight.balance)
+    }
+
+    /// Light as it leaves a lamp towards a ball.
+    fn start(&self, world: &World<'_>, quota: &Quota, choices: &Choices) -> Option<Ray0> {
+        let appearance = &world.appearance;
+        let source = &appearance.sources[quota.lamp].1;
+        let [comb, time] = choices.point(Purpose::Wavelengths, 0);
+        let comb = appearance.wavelengths.comb(comb);
+        let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.shutter } else { 0.0 };
+        let aim = choices.point(Purpose::Aim, 0);
+        let ball = &self.balls[quota.ball];
+        // However a way might have been drawn.
+        let others = || self.quotas.iter().filter(|other| other.lamp == quota.lamp);
+        let all = |density: &dyn Fn(&Ball) -> f64| -> f64 {
+            others().map(|other| f64::from(other.count) * density(&self.balls[other.ball])).sum()
+        };
+        match source.start(choices.point(Purpose::Start, 0), comb)? {
+            Start::Place { at, normal, area } => {
+                let direction = ball.direction(at, aim);
+                let density = all(&|ball| ball.density(at, direction));
+                let flux = source.intensity(normal, direction, comb) * density.recip();
+                // Clear of the lamp itself.
+                let largest = at.abs().max_element() + area.sqrt();
+                let clear = normal.map_or(DVec3::ZERO, |n| n * (1e-12 * largest * n.dot(direction).signum()));
+                Some(Ray0 { ray: Ray { origin: at + clear, direction }, flux, comb, time })
+            }
+            Start::Parallel { direction, irradiance } => {
+                let on = ball.line(direction, aim);
+                let density = all(&|ball| ball.line_density(direction, on));
+                let bounds = &appearance.prepared.bounds;
+                let far = 2.0 * bounds.diagonal() + on.distance(bounds.center());
+                let ray = Ray { origin: on - direction * far, direction };
+                Some(Ray0 { ray, flux: irradiance * density.recip(), comb, time })
+            }
+        }
+    }
+}
+
+impl CaughtLight<'_> {
+    /// What became of all that was sent.
+    pub(super) fn balance(&self) -> Balance {
+        self.capture.balance
+    }
+
+    /// Radiance towards the viewer of an element by the light that was caught around it.
+    ///
+    /// - `passed`: how much of the radiance comes to the eye. `is_parted`: whether a single wavelength is left of it.
+    /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB.
+    pub(super) fn seen(
+        &self,
+        found: &Found<'_>,
+        sighting: &Sighting<'_>,
+        (passed, is_parted): (Channels, bool),
+    ) -> (Channels, DVec3) {
+        let two_way = self.two_way;
+        let element = &found.element;
+        let surface = two_way.surfaces.of(found.triangle);
+        let sign = if element.outside { 1.0 } else { -1.0 };
+        let place = Place {
+            position: element.position,
+            outside: element.face * sign,
+            leave: element.leave,
+            surface,
+            side: flight::side_of(surface, element.outside),
+        };
+        let appearance = &self.world.appearance;
+        let surroundings = Surroundings {
+            prepared: appearance.prepared,
+            surfaces: &two_way.surfaces,
+            opaque: &two_way.opaque,
+            reach: two_way.reach,
+            shrink: self.shrink,
+        };
+        let frame = found.frame();
+        let wavelengths = &appearance.wavelengths;
+        let even = found.optics.even_value(sighting);
+        let (mut sum, mut elsewhere) = (Channels::ZERO, DVec3::ZERO);
+        self.capture.light.each(&place, &surroundings, |arriving| {
+            let light = frame.local(arriving.towards);
+            if !wavelengths.is_spectral() || is_parted {
+                let value = even.unwrap_or_else(|| found.optics.spread_value(sighting, light));
+                sum += value * arriving.irradiance;
+            } else {
+                // The light has other wavelengths than the ray.
+                let at = Sighting { comb: arriving.comb, ..*sighting };
+                let passed = between(passed, sighting.comb, arriving.comb, wavelengths.combs());
+                let radiance = found.optics.spread_value(&at, light) * arriving.irradiance * passed;
+                elsewhere += wavelengths.seen(arriving.comb, radiance);
+            }
+        });
+        (passed * sum, elsewhere)
+    }
+}
+
+/// A quantity that is known at the wavelengths of a comb, at those of another, by straight lines.
+fn between(quantity: Channels, known: usize, wanted: usize, combs: usize) -> Channels {
+    let apart = (wanted as f64 - known as f64) / combs as f64;
+    let (other, part) = (if apart < 0.0 { -1 } else { 1 }, apart.abs());
+    Channels(std::array::from_fn(|lane| {
+        let beside = (lane as isize + other).clamp(0, LANES as isize - 1) as usize;
+        quantity.0[lane] * (1.0 - part) + quantity.0[beside] * part
+    }))
+}
