@@ -20,23 +20,42 @@ pub fn linear_from_srgb(byte: u8) -> f32 {
 /// IEC 61966-2-1.
 #[inline]
 pub fn srgb_from_linear(light: f32) -> u8 {
+    let [byte] = srgb_from_linear_each(&[light]);
+    byte as u8
+}
+
+/// [`srgb_from_linear`] for several at once, 0..=255, with the widest instructions that the caller is compiled for.
+#[inline(always)]
+pub fn srgb_from_linear_each<const N: usize>(light: &[f32; N]) -> [u32; N] {
     let encoding = &*ENCODING;
-    let light = light.clamp(0.0, 1.0);
-    // The cast takes NaN to 0, and no threshold is passed by NaN.
-    let start = encoding.starts[(light * STEPS as f32) as usize];
-    start + u8::from(encoding.thresholds[usize::from(start)] <= light)
+    let mut bytes = [0; N];
+    for (byte, light) in bytes.iter_mut().zip(light) {
+        // Written so that NaN becomes 0.
+        let light = if *light > 0.0 { *light } else { 0.0 };
+        let light = if light < 1.0 { light } else { 1.0 };
+        let step = (light * STEPS as f32 + ROUND).to_bits();
+        let start = encoding.starts[step as usize % ROOM];
+        *byte = start + if encoding.thresholds[start as usize % BYTES] <= light { 1 } else { 0 };
+    }
+    bytes
 }
 
 /// Equal steps of light, each of which passes one threshold at most: they are 1/3295 apart where they are closest.
 /// Multiplying by this number is exact.
 const STEPS: usize = 4096;
+/// Values of a byte.
+const BYTES: usize = 256;
+/// More than the steps: a remainder by it spares a check.
+const ROOM: usize = 2 * STEPS;
+/// 1.5 * 2^23: adding it rounds to a whole number and leaves that in the low bits, in one instruction.
+const ROUND: f32 = 12_582_912.0;
 
 /// What finds the byte of a light.
 struct Encoding {
     /// Light of every half step between two bytes, rising; the last is never passed.
-    thresholds: [f32; 256],
-    /// How many thresholds the beginning of each step passes.
-    starts: [u8; STEPS + 1],
+    thresholds: [f32; BYTES],
+    /// How many thresholds the beginning of each step passes, which is half a step before its number.
+    starts: [u32; ROOM],
 }
 
 /// Light of every byte.
@@ -44,10 +63,10 @@ static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte
 
 static ENCODING: LazyLock<Encoding> = LazyLock::new(|| {
     let half_step = |byte: usize| if byte < 255 { decode((byte as f64 + 0.5) / 255.0) } else { f32::INFINITY };
-    let thresholds: [f32; 256] = std::array::from_fn(half_step);
+    let thresholds: [f32; BYTES] = std::array::from_fn(half_step);
     let passed = |light: f32| thresholds.partition_point(|threshold| *threshold <= light);
     // At most 255 thresholds are passed, so that the count fits a byte.
-    Encoding { thresholds, starts: std::array::from_fn(|step| passed(step as f32 / STEPS as f32) as u8) }
+    Encoding { thresholds, starts: std::array::from_fn(|step| passed((step as f32 - 0.5) / STEPS as f32) as u32) }
 });
 
 /// The transfer function of sRGB, encoded 0..=1 to linear 0..=1.
@@ -76,6 +95,12 @@ mod tests {
             let byte = f64::from(srgb_from_linear(light as f32));
             assert!((byte - exact).abs() < 0.5 + 1e-2, "{light}: {byte} for {exact}");
         }
+    }
+
+    #[test]
+    fn several_at_once_have_the_bytes_that_each_has_alone() {
+        let light = std::array::from_fn::<f32, 1000, _>(|step| (step as f32 - 100.0) / 700.0);
+        assert_eq!(srgb_from_linear_each(&light), light.map(|light| u32::from(srgb_from_linear(light))));
     }
 
     #[test]

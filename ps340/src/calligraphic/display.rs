@@ -18,14 +18,15 @@ use super::drawer::Drawer;
 use super::exposure::Exposure;
 use super::light::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile};
 use super::phosphor::Emission;
-use super::track::LANES;
 use super::widest::{self, Work};
 use super::{Controls, Light, Refresh};
 use crate::picture::Picture;
 use crate::traversal::Stroke;
-use protocol::raster::srgb_from_linear;
+use protocol::raster::srgb_from_linear_each;
 use rayon::prelude::*;
 
+/// Pixels that are exposed together.
+const LANES: usize = 16;
 /// The part of a change that is not waited for: less than a step of the pixels.
 const UNSEEN: f64 = 1e-4;
 /// Light that is darkness.
@@ -280,7 +281,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Linear red, green and blue of eight pixels, by their place in a plane.
+    /// Linear red, green and blue of some pixels, by the place of the first in a plane.
     #[inline(always)]
     fn colors(&self, place: usize) -> [[f32; LANES]; 3] {
         let mut colors = [[0.0; LANES]; 3];
@@ -340,10 +341,13 @@ impl Put for Bytes<'_> {
     #[inline(always)]
     fn put(&mut self, row: usize, column: usize, count: usize, [red, green, blue]: &[[f32; LANES]; 3]) {
         let start = 4 * (row * self.width + self.left + column);
-        for (lane, pixel) in self.pixels[start..start + 4 * count].chunks_exact_mut(4).enumerate() {
-            let byte = |channel: &[f32; LANES]| srgb_from_linear(channel[lane]);
-            pixel.copy_from_slice(&[byte(red), byte(green), byte(blue), 255]);
+        let (red, green, blue) =
+            (srgb_from_linear_each(red), srgb_from_linear_each(green), srgb_from_linear_each(blue));
+        let mut pixels = [[255; 4]; LANES];
+        for (pixel, ((red, green), blue)) in pixels.iter_mut().zip(red.iter().zip(green).zip(blue)) {
+            *pixel = (red | green << 8 | blue << 16 | 255 << 24).to_le_bytes();
         }
+        self.pixels[start..start + 4 * count].copy_from_slice(&pixels.as_flattened()[..4 * count]);
     }
 
     #[inline(always)]

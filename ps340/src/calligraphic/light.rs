@@ -16,6 +16,10 @@ pub(super) const STRIDE: usize = TILE_WIDTH + LANES;
 /// Floats of a plane of a tile.
 pub(super) const PLANE: usize = STRIDE * TILE_HEIGHT;
 
+/// Strokes that are prepared before they are written, so that the processor waits for none of them. It has no influence
+/// on the light.
+const STROKES: usize = 16;
+
 /// Light per pixel; 1 is the centre of a long stroke of intensity 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -146,15 +150,35 @@ impl Work for Writing<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { optics, guns, corner, bins, index, tile } = self;
-        let mut room = Room::new();
-        for stroke in bins.members(index).flatten() {
-            let Some(track) = Track::new(optics, stroke, corner) else { continue };
+        let mut strokes = bins.members(index).flatten().peekable();
+        if strokes.peek().is_none() {
+            return;
+        }
+        let mut rooms = [const { Room::new() }; STROKES];
+        let mut tracks = Vec::with_capacity(STROKES);
+        loop {
+            tracks.clear();
+            while tracks.len() < STROKES
+                && let Some(stroke) = strokes.next()
+            {
+                if let Some(track) = Track::new(optics, stroke, corner) {
+                    tracks.push(track);
+                }
+            }
+            if tracks.is_empty() {
+                return;
+            }
             if !tile.lit {
                 tile.lit = true;
                 tile.planes.resize(guns * PLANE, 0.0);
                 tile.planes.fill(0.0);
             }
-            track.write(&mut room, &mut tile.planes);
+            for (track, room) in tracks.iter().zip(&mut rooms) {
+                track.find(room);
+            }
+            for (track, room) in tracks.iter().zip(&rooms) {
+                track.write(room, &mut tile.planes);
+            }
         }
     }
 }

@@ -7,11 +7,17 @@ use crate::traversal::Stroke;
 
 /// Pixels are written in multiples of this number, into room beyond the last one if need be.
 pub(super) const LANES: usize = 8;
+/// How many of these multiples, from any rows, are reckoned together: the widest instructions hold two.
+const TOGETHER: usize = 2;
+/// Rows that are looked at together.
+const BLOCK: usize = 16;
+/// Room for the rows of a tile, for a block of them that begins at the last, and, as the very last, one without light.
+const ROWS: usize = 2 * TILE_HEIGHT;
 /// Below this length, in spots, a stroke is the moments of its current around its middle: the difference of
 /// two error functions would be all rounding. The first term left out is 1e-7 of the stroke's light here.
 const SHORT: f64 = 0.25;
-/// Room for the places of a tile, and for two that are not counted.
-const PLACES: usize = TILE_HEIGHT * TILE_WIDTH / LANES + 2;
+/// Room for the places of a tile, and for some that are not counted.
+const PLACES: usize = TILE_HEIGHT * TILE_WIDTH / LANES + TOGETHER;
 /// What a row counts in a place of the list; more than its columns.
 const ROW: u16 = 256;
 /// Stands for the pixels per spot along a row where the direction makes them infinitely many.
@@ -95,9 +101,16 @@ impl Track {
         })
     }
 
-    /// Adds the light to the planes of a tile: one, or three for red, green and blue.
+    /// Notes the pixels that light can reach.
     #[inline(always)]
-    pub fn write(&self, room: &mut Room, planes: &mut [f32]) {
+    pub fn find(&self, room: &mut Room) {
+        self.look(&mut room.rows);
+        room.count = self.list(&room.rows, &mut room.places);
+    }
+
+    /// Adds the light to the planes of a tile, one, or three for red, green and blue, after [`Track::find`].
+    #[inline(always)]
+    pub fn write(&self, room: &Room, planes: &mut [f32]) {
         let (planes, _) = planes.as_chunks_mut();
         if let [plane] = planes {
             self.draw(room, std::array::from_mut(plane));
@@ -107,7 +120,7 @@ impl Track {
     }
 
     #[inline(always)]
-    fn draw<const GUNS: usize>(&self, room: &mut Room, planes: &mut [[f32; PLANE]; GUNS]) {
+    fn draw<const GUNS: usize>(&self, room: &Room, planes: &mut [[f32; PLANE]; GUNS]) {
         match self.current {
             Current::Point(terms) => self.fill(room, planes, Point { terms }),
             Current::Both(current, 0.0) => self.fill(room, planes, EvenBetween { current }),
@@ -120,27 +133,37 @@ impl Track {
     #[inline(always)]
     fn fill<const GUNS: usize>(
         &self,
-        Room { rows, places }: &mut Room,
+        Room { rows, places, count }: &Room,
         planes: &mut [[f32; PLANE]; GUNS],
         profile: impl Profile,
     ) {
-        self.look(rows);
-        let count = self.list(rows, places);
-        for packed in &places[..count] {
-            // The remainders change nothing and spare the checks of what follows.
-            let (y, column) = (usize::from(packed / ROW) % TILE_HEIGHT, usize::from(packed % ROW) % TILE_WIDTH);
-            let (u, rest, v) = (rows.u[y], rows.rest[y], rows.v[y]);
-            let mut light = [0.0; LANES];
-            for (light, right) in light.iter_mut().zip(&COLUMNS[column..column + LANES]) {
-                let (u, rest) = (right.mul_add(self.step[0], u), right.mul_add(-self.step[0], rest));
-                *light = profile.light(u, rest, right.mul_add(-self.step[1], v));
+        let (together, _) = places[..count.next_multiple_of(TOGETHER)].as_chunks::<TOGETHER>();
+        for places in together {
+            let [mut u, mut rest, mut v] = [[[0.0; LANES]; TOGETHER]; 3];
+            for (eight, packed) in places.iter().enumerate() {
+                // The remainders change nothing and spare the checks of what follows.
+                let (y, column) = (usize::from(packed / ROW) % ROWS, usize::from(packed % ROW) % TILE_WIDTH);
+                let (row_u, row_rest, row_v) = (rows.u[y], rows.rest[y], rows.v[y]);
+                for (lane, right) in COLUMNS[column..column + LANES].iter().enumerate() {
+                    u[eight][lane] = right.mul_add(self.step[0], row_u);
+                    rest[eight][lane] = right.mul_add(-self.step[0], row_rest);
+                    v[eight][lane] = right.mul_add(-self.step[1], row_v);
+                }
             }
-            let place = y * STRIDE + column;
-            for (plane, color) in planes.iter_mut().zip(self.color) {
-                // A single gun draws every colour alike.
-                let strength = if GUNS == 1 { 1.0 } else { color };
-                for (sum, light) in plane[place..place + LANES].iter_mut().zip(&light) {
-                    *sum = light.mul_add(strength, *sum);
+            let mut light = [[0.0; LANES]; TOGETHER];
+            let distances = u.as_flattened().iter().zip(rest.as_flattened()).zip(v.as_flattened());
+            for (light, ((u, rest), v)) in light.as_flattened_mut().iter_mut().zip(distances) {
+                *light = profile.light(*u, *rest, *v);
+            }
+            for (packed, light) in places.iter().zip(&light) {
+                let (y, column) = (usize::from(packed / ROW) % TILE_HEIGHT, usize::from(packed % ROW) % TILE_WIDTH);
+                let place = y * STRIDE + column;
+                for (plane, color) in planes.iter_mut().zip(self.color) {
+                    // A single gun draws every colour alike.
+                    let strength = if GUNS == 1 { 1.0 } else { color };
+                    for (sum, light) in plane[place..place + LANES].iter_mut().zip(light) {
+                        *sum = light.mul_add(strength, *sum);
+                    }
                 }
             }
         }
@@ -164,20 +187,23 @@ impl Track {
             }
             count += eights;
         }
+        // What is missing in the last of those reckoned together lies where no light is.
+        if let Some(rest) = places[count..].first_chunk_mut::<{ TOGETHER - 1 }>() {
+            *rest = [(ROWS as u16 - 1) * ROW; TOGETHER - 1];
+        }
         count
     }
 
-    /// Finds what is the same for all pixels of a row, eight rows at a time, for the rows that light can reach.
+    /// Finds what is the same for all pixels of a row, many rows at a time, for the rows that light can reach.
     #[inline(always)]
     fn look(&self, rows: &mut Rows) {
         // -reach <= u + step[0] x <= length + reach, and -reach <= v - step[1] x <= reach.
         let width = |step: f32| if step.abs() > 1.0 / ENDLESS { step.recip() } else { ENDLESS };
         let (along, across) = (width(self.step[0]), width(self.step[1]));
-        for block in self.rows[0] / LANES..self.rows[1] / LANES + 1 {
-            let top = block * LANES;
-            let [mut us, mut rests, mut vs] = [[0.0; LANES]; 3];
-            let [mut firsts, mut counts] = [[0; LANES]; 2];
-            for lane in 0..LANES {
+        for top in (self.rows[0]..self.rows[1] + 1).step_by(BLOCK) {
+            let [mut us, mut rests, mut vs] = [[0.0; BLOCK]; 3];
+            let [mut firsts, mut counts] = [[0; BLOCK]; 2];
+            for lane in 0..BLOCK {
                 let y = (top + lane) as i32;
                 let down = y as f32;
                 let u = down.mul_add(self.step[1], self.u);
@@ -196,11 +222,11 @@ impl Track {
                 rests[lane] = down.mul_add(-self.step[1], self.rest);
                 vs[lane] = v;
             }
-            rows.first[top..top + LANES].copy_from_slice(&firsts);
-            rows.eights[top..top + LANES].copy_from_slice(&counts);
-            rows.u[top..top + LANES].copy_from_slice(&us);
-            rows.rest[top..top + LANES].copy_from_slice(&rests);
-            rows.v[top..top + LANES].copy_from_slice(&vs);
+            rows.first[top..top + BLOCK].copy_from_slice(&firsts);
+            rows.eights[top..top + BLOCK].copy_from_slice(&counts);
+            rows.u[top..top + BLOCK].copy_from_slice(&us);
+            rows.rest[top..top + BLOCK].copy_from_slice(&rests);
+            rows.v[top..top + BLOCK].copy_from_slice(&vs);
         }
     }
 }
@@ -216,32 +242,32 @@ const COLUMNS: [f32; STRIDE] = {
     columns
 };
 
-/// Room for what writing a stroke notes; what it held before does not matter.
+/// What is noted of a stroke before it is written; what was noted before does not matter.
 pub(super) struct Room {
     rows: Rows,
     places: [u16; PLACES],
+    /// How many of them count.
+    count: usize,
 }
 
 impl Room {
-    /// Empty room.
-    #[inline(always)]
-    pub fn new() -> Self {
-        let [u, rest, v] = [[0.0; TILE_HEIGHT]; 3];
-        let [first, eights] = [[0; TILE_HEIGHT]; 2];
-        Self { rows: Rows { first, eights, u, rest, v }, places: [0; PLACES] }
+    /// Nothing noted.
+    pub const fn new() -> Self {
+        let rows = Rows { first: [0; ROWS], eights: [0; ROWS], u: [0.0; ROWS], rest: [0.0; ROWS], v: [ENDLESS; ROWS] };
+        Self { rows, places: [0; PLACES], count: 0 }
     }
 }
 
 /// What is the same for all pixels of a row of a tile, row after row.
 struct Rows {
     /// Where the light begins, as in [`Track::list`].
-    first: [i32; TILE_HEIGHT],
+    first: [i32; ROWS],
     /// How many times eight pixels it can reach from there.
-    eights: [i32; TILE_HEIGHT],
+    eights: [i32; ROWS],
     /// u at the first pixel, distance from there to the end, and v.
-    u: [f32; TILE_HEIGHT],
-    rest: [f32; TILE_HEIGHT],
-    v: [f32; TILE_HEIGHT],
+    u: [f32; ROWS],
+    rest: [f32; ROWS],
+    v: [f32; ROWS],
 }
 
 /// The whole number next to one that is much less than 2^22. One addition, unlike a cast.
@@ -318,9 +344,9 @@ impl Profile for Long {
     fn light(&self, u: f32, rest: f32, v: f32) -> f32 {
         let nearer = spot::within(lesser(u, rest));
         // Towards the end it is a fall.
-        let (rise, fall) = (spot::rise(nearer), -spot::rise(nearer));
-        let rise = if u < rest { rise } else { fall };
-        let light = self.gain.mul_add(rise, self.gain.mul_add(u, self.current) * (0.5 + spot::half_written(nearer)));
+        let gain = if u < rest { self.gain } else { -self.gain };
+        let light =
+            gain.mul_add(spot::rise(nearer), self.gain.mul_add(u, self.current) * (0.5 + spot::half_written(nearer)));
         greater(light, 0.0) * spot::across(v)
     }
 }
