@@ -11,7 +11,7 @@
 //!   integral of (i + k s) g(u - s) for s = 0..L
 //!   = (i + k u) (written(u) - written(u - L)) + k (rise(u) - rise(u - L)).
 //!
-//! The functions compute both sides of a choice before they choose, so that the compiler can work on eight
+//! The functions compute both sides of a choice before they choose, so that the compiler can work on many
 //! pixels with one instruction. They consist of additions, multiplications, fused multiply-adds, choices and
 //! one shift of bits in 32-bit floating point, so that a shader can repeat them.
 //!
