@@ -29,6 +29,25 @@ impl Channels {
         Channels(std::array::from_fn(|i| if i == lane { self.0[i] * lanes as f64 } else { 0.0 }))
     }
 
+    /// One lane, drawn as often as the numbers times others tell, and that alone: it stands for all of them.
+    ///
+    /// - `uniform`: in 0..1, chooses.
+    pub fn drawn(self, weights: [f64; LANES], uniform: f64) -> Option<(usize, Channels)> {
+        let weighted: [f64; LANES] = std::array::from_fn(|lane| self.0[lane].abs() * weights[lane]);
+        let all: f64 = weighted.iter().sum();
+        let mut below = 0.0;
+        let mut drawn = None;
+        for (lane, weight) in weighted.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
+            below += weight;
+            drawn =
+                Some((lane, Channels(std::array::from_fn(|i| if i == lane { self.0[i] * all / weight } else { 0.0 }))));
+            if uniform * all < below {
+                break;
+            }
+        }
+        drawn.filter(|(_, channels)| channels.is_finite())
+    }
+
     /// A function of each number.
     #[inline]
     pub fn map(self, function: impl Fn(f64) -> f64) -> Channels {

@@ -112,6 +112,11 @@ impl Wavelengths {
         (0..LANES).map(|lane| weights[lane] * light.0[lane]).sum()
     }
 
+    /// How much is seen of light of 1 in each lane: the greater of what it adds to or takes from red, green and blue.
+    pub fn visibility(&self, comb: usize) -> [f64; LANES] {
+        self.seen[comb.min(self.seen.len() - 1)].map(|seen| seen.abs().max_element())
+    }
+
     /// The same everywhere, also in unused lanes.
     pub fn constant(&self, value: f64) -> Curve {
         Curve(vec![Channels::splat(value); self.at.len()])

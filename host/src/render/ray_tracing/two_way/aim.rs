@@ -4,7 +4,7 @@ use crate::numeric::bounds::Bounds;
 use crate::numeric::sampling::{disk, sphere};
 use crate::scene::Prepared;
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// Balls at the most.
 const MOST_BALLS: usize = 16;
@@ -12,6 +12,7 @@ const MOST_BALLS: usize = 16;
 const LOOSE: f64 = 0.7;
 /// By how much balls are larger than they need be, so that rounding does not lose their rims.
 const WIDER: f64 = 1.0 + 1e-9;
+const BELOW_ONE: f64 = 1.0_f64.next_down();
 
 /// A ball around something that mirrors or refracts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +36,20 @@ impl Ball {
         ((u * x + v * y) * scale + axis * (1.0 - height)).normalize()
     }
 
-    /// The density of [`Ball::direction`], 1/sr.
-    pub(super) fn density(&self, from: DVec3, direction: DVec3) -> f64 {
+    /// The density of [`Ball::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
+    pub(super) fn density(&self, from: DVec3, direction: DVec3) -> Option<(f64, [f64; 2])> {
         let offset = self.center - from;
-        let Some(cap) = self.cap(offset) else { return 0.5 / TAU };
+        let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
         let along = offset.dot(direction);
         let aside = (offset - direction * along).length();
-        if along > 0.0 && aside <= self.radius * WIDER { (TAU * cap).recip() } else { 0.0 }
+        if along <= 0.0 || aside > self.radius * WIDER {
+            return None;
+        }
+        let axis = offset.normalize();
+        let (u, v) = axis.any_orthonormal_pair();
+        let scale = (cap * (1.0 + direction.dot(axis))).sqrt();
+        let place = disk_inverse([u, v].map(|side| direction.dot(side) / scale));
+        Some(((TAU * cap).recip(), place))
     }
 
     /// A point on a line that goes in a direction and meets the ball, even in area across the direction.
@@ -51,13 +59,18 @@ impl Ball {
         self.center + (u * x + v * y) * self.radius
     }
 
-    /// The density of [`Ball::line`], one over an area.
-    pub(super) fn line_density(&self, direction: DVec3, on: DVec3) -> f64 {
-        let offset = self.center - on;
+    /// The density of [`Ball::line`], one over an area, and the point of the square that gives a line; none beside the ball.
+    pub(super) fn line_density(&self, direction: DVec3, on: DVec3) -> Option<(f64, [f64; 2])> {
+        let offset = on - self.center;
         let aside = offset - direction * offset.dot(direction);
         let square = self.radius * self.radius;
         // Its own lines count to the last digit.
-        if aside.length_squared() <= square * WIDER { (PI * square).recip() } else { 0.0 }
+        if aside.length_squared() > square * WIDER {
+            return None;
+        }
+        let (u, v) = direction.any_orthonormal_pair();
+        let place = disk_inverse([u, v].map(|side| aside.dot(side) / self.radius));
+        Some(((PI * square).recip(), place))
     }
 
     /// 1 − cos of the half angle under which it is seen from the other end of an offset; none from inside.
@@ -65,6 +78,107 @@ impl Ball {
         let sine = self.radius / offset.length();
         (sine < 1.0).then(|| sine * sine / (1.0 + (1.0 - sine * sine).sqrt()))
     }
+}
+
+/// The point of the square that [`disk`] maps to a point.
+fn disk_inverse([x, y]: [f64; 2]) -> [f64; 2] {
+    let radius = x.hypot(y);
+    let [a, b] = if radius == 0.0 {
+        [0.0; 2]
+    } else if x.abs() > y.abs() {
+        let a = radius.copysign(x);
+        [a, a * (y / x).atan() / FRAC_PI_4]
+    } else {
+        let b = radius.copysign(y);
+        [b * (x / y).atan() / FRAC_PI_4, b]
+    };
+    [a, b].map(|c| (0.5 * (c + 1.0)).clamp(0.0, BELOW_ONE))
+}
+
+/// The point of the square that [`sphere`] maps to a direction.
+fn sphere_inverse(direction: DVec3) -> [f64; 2] {
+    let turn = direction.y.atan2(direction.x) / TAU;
+    [0.5 * (1.0 - direction.z), turn - turn.floor()].map(|c| c.clamp(0.0, BELOW_ONE))
+}
+
+/// Which parts of what is aimed at are of use: a map of cells of the square, each of them wanted or not.
+///
+/// Those that are not get little, but never nothing, so that what was overlooked still counts in the mean.
+///
+/// # Source
+/// Jensen 2001, projection maps; found by following light instead of by projection.
+#[derive(Clone, Debug)]
+pub(super) struct Guide {
+    /// The part of all up to each row.
+    rows: Vec<f64>,
+    /// In each row, the part of it up to each cell.
+    columns: Vec<f64>,
+}
+
+impl Guide {
+    /// Cells along each side.
+    const SIDE: usize = 32;
+    /// How often what is not wanted is asked for, for each time that the same area is that is.
+    const UNWANTED: f64 = 0.03;
+
+    /// Every cell alike.
+    pub(super) fn even() -> Guide {
+        Guide::of(&[true; Guide::SIDE * Guide::SIDE])
+    }
+
+    /// - `used`: points of the square that were of use; cells beside theirs are wanted, too.
+    pub(super) fn around(used: &[[f64; 2]]) -> Guide {
+        let mut wanted = [false; Guide::SIDE * Guide::SIDE];
+        for place in used {
+            let [column, row] = place.map(|c| (c * Guide::SIDE as f64) as usize);
+            for row in row.saturating_sub(1)..(row + 2).min(Guide::SIDE) {
+                for column in column.saturating_sub(1)..(column + 2).min(Guide::SIDE) {
+                    wanted[row * Guide::SIDE + column] = true;
+                }
+            }
+        }
+        Guide::of(&wanted)
+    }
+
+    fn of(wanted: &[bool]) -> Guide {
+        let mut guide = Guide { rows: Vec::with_capacity(Guide::SIDE), columns: Vec::with_capacity(wanted.len()) };
+        let mut all = 0.0;
+        for row in wanted.chunks(Guide::SIDE) {
+            let mut below = 0.0;
+            let first = guide.columns.len();
+            for wanted in row {
+                below += if *wanted { 1.0 } else { Guide::UNWANTED };
+                guide.columns.push(below);
+            }
+            guide.columns[first..].iter_mut().for_each(|part| *part /= below);
+            all += below;
+            guide.rows.push(all);
+        }
+        guide.rows.iter_mut().for_each(|part| *part /= all);
+        guide
+    }
+
+    /// A point of the square, more often where it is wanted.
+    pub(super) fn draw(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (row, y) = within(&self.rows, y);
+        let (column, x) = within(&self.columns[row * Guide::SIDE..(row + 1) * Guide::SIDE], x);
+        [(column as f64 + x) / Guide::SIDE as f64, (row as f64 + y) / Guide::SIDE as f64]
+    }
+
+    /// The density of [`Guide::draw`].
+    pub(super) fn density(&self, place: [f64; 2]) -> f64 {
+        let [column, row] = place.map(|c| (c * Guide::SIDE as f64) as usize);
+        let part = |below: &[f64], i: usize| below[i] - if i == 0 { 0.0 } else { below[i - 1] };
+        let columns = &self.columns[row * Guide::SIDE..(row + 1) * Guide::SIDE];
+        part(&self.rows, row) * part(columns, column) * (Guide::SIDE * Guide::SIDE) as f64
+    }
+}
+
+/// The part in which a number falls, and where in it, 0..1.
+fn within(below: &[f64], uniform: f64) -> (usize, f64) {
+    let index = below.partition_point(|part| *part <= uniform).min(below.len() - 1);
+    let from = if index == 0 { 0.0 } else { below[index - 1] };
+    (index, ((uniform - from) / (below[index] - from)).clamp(0.0, BELOW_ONE))
 }
 
 /// Balls around all triangles that a test chooses, as tight as so many allow.
@@ -152,13 +266,36 @@ mod tests {
         for i in 0..4096 {
             let direction = ball.direction(from, sequence.point(i, 1));
             assert!((direction.length() - 1.0).abs() < 1e-12);
-            let density = ball.density(from, direction);
-            assert!((density * solid_angle - 1.0).abs() < 1e-9 || (direction.dot(axis) - cosine).abs() < 1e-12);
+            let (density, place) = ball.density(from, direction).expect("towards the ball");
+            assert!((density * solid_angle - 1.0).abs() < 1e-9);
+            assert!((ball.direction(from, place) - direction).length() < 1e-9);
             let on = ball.line(direction, sequence.point(i, 2));
-            assert!((ball.line_density(direction, on) * PI * 0.25 - 1.0).abs() < 1e-12);
+            let (density, place) = ball.line_density(direction, on).expect("through the ball");
+            assert!((density * PI * 0.25 - 1.0).abs() < 1e-12);
+            assert!((ball.line(direction, place) - on).length() < 1e-9);
+            let (density, place) = ball.density(ball.center, direction).expect("from inside");
+            assert!(density == 0.5 / TAU && (ball.direction(ball.center, place) - direction).length() < 1e-9);
         }
-        assert_eq!(ball.density(from, -axis), 0.0);
-        assert_eq!(ball.density(ball.center, axis), 0.5 / TAU);
-        assert_eq!(ball.line_density(DVec3::Z, ball.center + DVec3::X), 0.0);
+        assert_eq!(ball.density(from, -axis), None);
+        assert_eq!(ball.line_density(DVec3::Z, ball.center + DVec3::X), None);
+    }
+
+    #[test]
+    fn a_guide_draws_what_is_wanted_and_knows_how_often() {
+        let guide = Guide::around(&[[0.1, 0.2], [0.11, 0.99], [0.0, 0.0]]);
+        let sequence = Sequence::new(3, 3);
+        let count = 1 << 14;
+        // The mean of what is drawn over its density is the integral over the square.
+        let drawn = || (0..count).map(|i| guide.draw(sequence.point(i, 0)));
+        let mean = |of: &dyn Fn([f64; 2]) -> f64| {
+            drawn().map(|place| of(place) / guide.density(place)).sum::<f64>() / f64::from(count)
+        };
+        assert!((mean(&|_| 1.0) - 1.0).abs() < 2e-2 && (mean(&|[x, y]| x + 2.0 * y) - 1.5).abs() < 3e-2);
+        let wanted = drawn().filter(|[x, y]| *x < 0.16 && (*y < 0.06 || (0.15..0.26).contains(y) || *y > 0.93)).count();
+        assert!(wanted as f64 > 0.1 * f64::from(count), "{wanted}");
+        let even = Guide::even();
+        assert!(drawn().all(|place| (even.density(place) - 1.0).abs() < 1e-9));
+        let there = even.draw([0.3, 0.7]);
+        assert!((there[0] - 0.3).abs() < 1e-12 && (there[1] - 0.7).abs() < 1e-12);
     }
 }

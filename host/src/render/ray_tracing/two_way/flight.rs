@@ -275,9 +275,13 @@ impl Flight<'_> {
         (towards, choices, number): (DVec3, &Choices, u32),
     ) -> Option<(f64, Option<(Channels, Onward)>)> {
         let optics: &Optics = found.optics;
-        let lanes = self.world.appearance.wavelengths.lanes();
         let [choice, parting] = choices.point(Purpose::Choice, number);
-        let lane = leg.lane.unwrap_or(((parting * lanes as f64) as usize).min(lanes - 1));
+        // Where wavelengths part, the one that is left is drawn as it is seen.
+        let alone = match leg.lane {
+            None if found.disperses() => leg.flux.drawn(self.world.appearance.wavelengths.visibility(comb), parting),
+            _ => None,
+        };
+        let lane = leg.lane.or(alone.map(|(lane, _)| lane)).unwrap_or(0);
         let side = leg.media.side(self.world, found, comb);
         let frame = found.frame();
         let sighting = Sighting { view: frame.local(towards), comb, side, lane, painted: found.painted() };
@@ -310,9 +314,8 @@ impl Flight<'_> {
             Some(_) => self.watts(flux),
             None => optics.mirrored(&sighting).map(|onward| self.watts(leg.flux * flux_of(&onward))).sum(),
         };
-        let parts = drawn.light.z < 0.0 && !drawn.is_straight && leg.lane.is_none() && found.disperses();
-        if parts {
-            flux = flux.only(lane, lanes);
+        if let Some((lane, alone)) = alone.filter(|_| drawn.light.z < 0.0 && !drawn.is_straight) {
+            flux = alone * flux_of(&drawn);
             leg.lane = Some(lane);
         }
         Some((expected, Some((flux, drawn))))

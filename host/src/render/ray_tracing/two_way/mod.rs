@@ -29,7 +29,7 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
 use crate::render::Watch;
-use aim::Ball;
+use aim::{Ball, Guide};
 use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
 use gather::{Captured, Place, Surroundings};
 use glam::DVec3;
@@ -40,6 +40,8 @@ use surfaces::Surfaces;
 
 /// Ways that are followed first, to see where light goes.
 const PILOT: u32 = 1 << 14;
+/// What stands for a pass when they are followed.
+const PILOT_PASS: u64 = u64::MAX;
 /// The least of them for each lamp and ball.
 const LEAST_PILOT: u32 = 32;
 /// Of the ways of a lamp and ball, the least part of the mean of all, however little came of them.
@@ -68,12 +70,14 @@ pub(super) struct TwoWay {
 }
 
 /// Ways from a lamp to a ball.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Quota {
     /// An index into the sources.
     lamp: usize,
     ball: usize,
     count: u32,
+    /// Where it is best aimed at.
+    guide: Guide,
 }
 
 /// What a pass caught.
@@ -133,12 +137,10 @@ impl TwoWay {
         let count = (PILOT / pairs as u32).max(LEAST_PILOT);
         let all = |lamp: &usize| (0..self.balls.len()).map(move |ball| (*lamp, ball)).collect::<Vec<_>>();
         let pairs = lamps.iter().flat_map(all);
-        self.quotas = pairs.map(|(lamp, ball)| Quota { lamp, ball, count }).collect();
-        let pilot = u64::MAX;
-        let caught: Vec<f64> = (0..self.quotas.len())
-            .into_par_iter()
-            .map(|quota| self.follow(world, pilot, quota, 0..count).1.caught)
-            .collect();
+        self.quotas = pairs.map(|(lamp, ball)| Quota { lamp, ball, count, guide: Guide::even() }).collect();
+        let found: Vec<(f64, Guide)> =
+            (0..self.quotas.len()).into_par_iter().map(|quota| self.explore(world, quota, count)).collect();
+        let (caught, guides): (Vec<f64>, Vec<Guide>) = found.into_iter().unzip();
         let all: f64 = caught.iter().sum();
         let photons = f64::from(world.appearance.prepared.settings.photons);
         if !(all > 0.0) {
@@ -147,9 +149,32 @@ impl TwoWay {
         }
         let least = LEAST_PART / caught.len() as f64;
         let sum: f64 = caught.iter().map(|c| (c / all).max(least)).sum();
-        for (quota, caught) in self.quotas.iter_mut().zip(&caught) {
+        for ((quota, caught), guide) in self.quotas.iter_mut().zip(&caught).zip(guides) {
             quota.count = ((caught / all).max(least) / sum * photons).ceil() as u32;
+            quota.guide = guide;
         }
+    }
+
+    /// Follows a few ways from a lamp to a ball: how much light is caught, and where it has to be sent.
+    fn explore(&self, world: &World<'_>, quota: usize, count: u32) -> (f64, Guide) {
+        let mut used = Vec::new();
+        let mut caught = 0.0;
+        for index in 0..count {
+            let (_, balance) = self.follow(world, PILOT_PASS, quota, index..index + 1);
+            if balance.caught > 0.0 {
+                let choices = Choices::new(self.sequence(PILOT_PASS, quota), index);
+                used.push(choices.point(Purpose::Aim, 0));
+            }
+            caught += balance.caught;
+        }
+        (caught, Guide::around(&used))
+    }
+
+    /// The choices of a pass for the ways from a lamp to a ball.
+    fn sequence(&self, pass: u64, quota: usize) -> Sequence {
+        let Quota { lamp, ball, .. } = self.quotas[quota];
+        let number = (lamp * self.balls.len() + ball) as u64;
+        Sequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number)
     }
 
     /// Follows all ways of a pass; none if it was cancelled.
@@ -198,9 +223,7 @@ impl TwoWay {
             caught: Vec::new(),
             balance: Balance::default(),
         };
-        let Quota { lamp, ball, .. } = self.quotas[quota];
-        let number = (lamp * self.balls.len() + ball) as u64;
-        let sequence = Sequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number);
+        let sequence = self.sequence(pass, quota);
         for index in range {
             let choices = Choices::new(sequence, index);
             match self.start(world, &self.quotas[quota], &choices) {
@@ -218,12 +241,16 @@ impl TwoWay {
         let [comb, time] = choices.point(Purpose::Wavelengths, 0);
         let comb = appearance.wavelengths.comb(comb);
         let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.shutter } else { 0.0 };
-        let aim = choices.point(Purpose::Aim, 0);
+        let aim = quota.guide.draw(choices.point(Purpose::Aim, 0));
         let ball = &self.balls[quota.ball];
         // However a way might have been drawn.
         let others = || self.quotas.iter().filter(|other| other.lamp == quota.lamp);
-        let all = |density: &dyn Fn(&Ball) -> f64| -> f64 {
-            others().map(|other| f64::from(other.count) * density(&self.balls[other.ball])).sum()
+        let all = |density: &dyn Fn(&Ball) -> Option<(f64, [f64; 2])>| -> f64 {
+            let of = |other: &Quota| {
+                let (density, place) = density(&self.balls[other.ball])?;
+                Some(f64::from(other.count) * density * other.guide.density(place))
+            };
+            others().filter_map(of).sum()
         };
         match source.start(choices.point(Purpose::Start, 0), comb)? {
             Start::Place { at, normal, area } => {
