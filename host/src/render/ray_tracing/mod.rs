@@ -10,7 +10,7 @@ mod explain;
 mod light_buffer;
 mod media;
 mod tracer;
-mod world;
+pub(super) mod world;
 
 #[cfg(test)]
 mod exact_tests;

@@ -19,8 +19,8 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 /// A scene as rays meet it.
-pub(super) struct World<'a> {
-    pub(super) appearance: Appearance<'a>,
+pub(in crate::render) struct World<'a> {
+    pub(in crate::render) appearance: Appearance<'a>,
     /// None if the plan needs no octree, or everything moves.
     pub(super) octree: Option<Octree>,
     /// The triangle of the scene behind each triangle of the octree; empty if they are the same.
@@ -94,7 +94,7 @@ impl<'a> World<'a> {
     ///
     /// # Errors
     /// [`RenderError`].
-    pub(super) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
+    pub(in crate::render) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
         let (octree, triangle_of) = octree(prepared, plan)?;
         let moving = if plan.needs(Stage::Motion) { moving(prepared, plan)? } else { Vec::new() };
         let appearance = Appearance::new(prepared, plan)?;
@@ -122,24 +122,29 @@ impl<'a> World<'a> {
     }
 
     /// The first triangle in sight at a time, and where what it belongs to has moved to.
-    fn first(&self, sight: &Sight, time: f64) -> Option<(Hit, u32, Option<Moved>)> {
-        let hit = self.octree.as_ref().and_then(|octree| octree.closest(&sight.ray, sight.t_min, sight.t_max));
+    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Moved>)> {
+        let hit = self.octree.as_ref().and_then(|octree| octree.closest(ray, t_min, t_max));
         let of =
             |triangle_of: &[u32], hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
         let mut first = hit.map(|hit| (hit, of(&self.triangle_of, &hit), None));
         for Moving { motion, octree, triangle_of } in &self.moving {
             let moved = motion.at(time);
-            let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
-            if let Some(hit) = octree.closest(&moved.still(&sight.ray), sight.t_min, t_max) {
+            let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
+            if let Some(hit) = octree.closest(&moved.still(ray), t_min, t_max) {
                 first = Some((hit, of(triangle_of, &hit), Some(moved)));
             }
         }
         first
     }
 
+    /// The first triangle that a ray meets in the middle of the time in which the shutter is open.
+    pub(in crate::render) fn struck(&self, ray: &Ray, t_min: f64) -> Option<(Hit, u32)> {
+        self.first(ray, [t_min, f64::INFINITY], 0.0).map(|(hit, triangle, _)| (hit, triangle))
+    }
+
     /// What is first in sight at a time.
     pub(super) fn meet(&self, sight: &Sight, comb: usize, time: f64) -> Met<'_> {
-        let first = self.first(sight, time);
+        let first = self.first(&sight.ray, [sight.t_min, sight.t_max], time);
         let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
         if let Some((index, glow)) = self.appearance.glow(&sight.ray, sight.t_min, t_max, comb) {
             return Met::Glow(index, glow);
@@ -200,7 +205,7 @@ impl<'a> World<'a> {
     ///
     /// - `index`: of the light that the way leads to, which is not in the way of itself. `way`: what is known of what stands
     ///   still there. `time`: when.
-    pub(super) fn passed(
+    pub(in crate::render) fn passed(
         &self,
         ray: &Ray,
         t_max: f64,
