@@ -109,10 +109,11 @@ fn a_forced_plan_leaves_nothing_out_and_says_so() {
     scene.lights.clear();
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::everything(&prepared, &prepared.view());
-    // Spectra are another picture: they are not forced.
-    let all = plan.entries.iter().filter(|e| e.name != "spectra");
-    assert!(all.clone().count() + 1 == plan.entries.len() && all.clone().all(|e| e.needed));
-    assert!(Stage::ALL.into_iter().all(|s| plan.needs(s) != (s == Stage::Spectra)));
+    // Spectra and radiosity are another picture: they are not forced.
+    let other = |name: &str| matches!(name, "spectra" | "radiosity");
+    let all = plan.entries.iter().filter(|e| !other(&e.name));
+    assert!(all.clone().count() + 2 == plan.entries.len() && all.clone().all(|e| e.needed));
+    assert!(Stage::ALL.into_iter().all(|s| plan.needs(s) != matches!(s, Stage::Spectra | Stage::Radiosity)));
     assert!(plan.entries.iter().any(|e| e.reason.starts_with("forced; no light")));
     assert!(plan.table().lines().count() == plan.entries.len() + 1);
     let json = serde_json::to_value(&plan).expect("plain data");

@@ -28,6 +28,7 @@ mod tests;
 mod visible;
 
 pub use elements::Exitance;
+pub(in crate::render) use elements::diffuse;
 pub use report::Report;
 pub use solver::Unsolvable;
 pub use surface::Part;
@@ -71,6 +72,12 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Settings {
         Settings { error: 0.02, finest: 1.0 / 256.0, tolerance: 1e-6, directions: 32 }
+    }
+}
+
+impl From<crate::scene::Settings> for Settings {
+    fn from(scene: crate::scene::Settings) -> Settings {
+        Settings { error: scene.patch_error, finest: scene.finest_patch, ..Settings::default() }
     }
 }
 

@@ -28,6 +28,7 @@ pub use tracer::ENERGY_CUTOFF;
 
 use super::eye::Eye;
 use super::film::{Film, Sample, Tally};
+use super::radiosity::Radiosity;
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::octree::Octree;
 use crate::plan::{Plan, Stage};
@@ -68,12 +69,21 @@ impl<'a> RayTracer<'a> {
     /// # Errors
     /// [`RenderError::Octree`], [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
-        Ok(RayTracer { plan, world: World::new(prepared, plan)? })
+        let mut world = World::new(prepared, plan)?;
+        if plan.needs(Stage::Radiosity) {
+            world.indirect = Some(Radiosity::new(prepared, plan, &prepared.settings.into(), None, &Watch::NOBODY)?);
+        }
+        Ok(RayTracer { plan, world })
     }
 
     /// The scene.
     pub fn prepared(&self) -> &Prepared {
         self.world.appearance.prepared
+    }
+
+    /// The light that diffuse surfaces send each other, if it was found before.
+    pub fn radiosity(&self) -> Option<&Radiosity> {
+        self.world.indirect.as_ref()
     }
 
     /// The octree, if the plan needs one.

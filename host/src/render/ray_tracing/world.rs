@@ -13,6 +13,7 @@ use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
 use crate::render::element::Element;
 use crate::render::eye::Sight;
+use crate::render::radiosity::{Part, Radiosity, diffuse};
 use crate::render::ready::Appearance;
 use crate::scene::{Motion, Moved, Prepared, footprint};
 use glam::DVec3;
@@ -28,6 +29,8 @@ pub(in crate::render) struct World<'a> {
     /// What moves while the shutter is open, each motion with an octree of its own.
     moving: Vec<Moving>,
     light_buffer: Option<LightBuffer>,
+    /// Light that diffuse surfaces send each other, if it is known already.
+    pub(super) indirect: Option<Radiosity>,
 }
 
 /// Objects of one motion, where they are in the middle of the time in which the shutter is open.
@@ -108,7 +111,16 @@ impl<'a> World<'a> {
             let opaque = appearance.passing.then(|| triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
-        Ok(World { appearance, octree, triangle_of, moving, light_buffer })
+        Ok(World { appearance, octree, triangle_of, moving, light_buffer, indirect: None })
+    }
+
+    /// Radiance of an element by light of other diffuse ones, as far as it is known already.
+    pub(super) fn indirect(&self, found: &Found<'_>, comb: usize) -> Option<Channels> {
+        let solution = self.indirect.as_ref().filter(|_| found.optics.is_diffuse())?;
+        let corners = self.appearance.prepared.corners(found.triangle);
+        let weights = crate::numeric::triangle::weights(corners, found.element.position);
+        let irradiance = solution.irradiance(found.triangle, found.element.outside, weights, Part::Indirect);
+        Some(diffuse(found.optics, comb, found.painted()) * irradiance * std::f64::consts::FRAC_1_PI)
     }
 
     /// What stands still between a point and a light, if the light buffer knows.
