@@ -4,6 +4,7 @@ use super::source::stem;
 use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, load, watch_interrupts};
 use crate::picture::Picture;
 use crate::plan::Plan;
+use crate::render::radiosity::{Radiosity, Report};
 use crate::render::ray_tracing::{Explanation, RayTracer};
 use crate::render::scan_line::ScanLine;
 use crate::render::{Film, Fingerprint, Order, Renderer, Rendering, Watch};
@@ -19,7 +20,7 @@ const EXPLAINED: usize = 4;
 
 pub(super) const ROW: Row = Row {
     name: "render",
-    summary: "Renders a scene by ray tracing or scan line into a PNG or EXR file.",
+    summary: "Renders a scene by ray tracing, scan line or radiosity into a PNG or EXR file.",
     arguments: Arguments::augment_args,
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
@@ -34,6 +35,9 @@ enum Kind {
     /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors and
     /// glass show highlights only
     ScanLine,
+    /// Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are
+    /// not seen
+    Radiosity,
 }
 
 #[derive(Args, Debug)]
@@ -113,6 +117,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     settings.seed = arguments.seed.unwrap_or(settings.seed);
     settings.tolerance = arguments.tolerance.or(settings.tolerance);
     settings.two_way |= arguments.renderer == Kind::TwoWay;
+    // Surfaces out of view send light, too.
+    settings.interreflection |= arguments.renderer == Kind::Radiosity;
     let start = Instant::now();
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
@@ -126,7 +132,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let progress = Progress::new("rendering", arguments.json);
     let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
+    let mut books = None;
     let (rendering, build_seconds) = match arguments.renderer {
+        Kind::Radiosity => {
+            let solution = radiosity(arguments, &prepared, &plan, &watch)?;
+            books = Some(solution.report);
+            let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
+            scan_line.left_out(&view).iter().for_each(|what| eprintln!("warning: by radiosity, {what}"));
+            let build_seconds = start.elapsed().as_secs_f64();
+            (scan_line.render(&view, &order, &watch).map_err(Failure::from), build_seconds)
+        }
         Kind::ScanLine => {
             let scan_line = ScanLine::new(&prepared, &plan)?;
             scan_line.left_out(&view).iter().for_each(|what| eprintln!("warning: by scan line, {what}"));
@@ -135,6 +150,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Kind::RayTracing | Kind::TwoWay => {
             let tracer = RayTracer::new(&prepared, &plan)?;
+            books = tracer.radiosity().map(|solution| solution.report);
             let build_seconds = start.elapsed().as_secs_f64();
             if let Some(pixel) = arguments.pixel {
                 progress.finish();
@@ -149,7 +165,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         true => rendering.film.write_layers(path, &prepared),
         false => rendering.picture.write(path),
     })?;
-    report(arguments, &outputs, &prepared, &rendering, build_seconds)?;
+    report(arguments, &outputs, &prepared, (&rendering, books), build_seconds)?;
     if rendering.complete {
         Ok(())
     } else {
@@ -168,14 +184,22 @@ impl Arguments {
             ("--resume", self.resume.is_some()),
             ("--pixel", self.pixel.is_some()),
         ];
-        match given.iter().find(|(_, given)| *given && self.renderer == Kind::ScanLine) {
+        match given.iter().find(|(_, given)| *given && self.renderer != Kind::RayTracing) {
             Some((name, _)) => {
-                let message = format!("scan line has no {name}: it takes all samples at once");
+                let word = if self.renderer == Kind::ScanLine { "scan line" } else { "radiosity" };
+                let message = format!("{word} has no {name}: it takes all samples at once");
                 Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
             }
             None => Ok(()),
         }
     }
+}
+
+/// Solves for the light of all surfaces.
+fn radiosity(arguments: &Arguments, prepared: &Prepared, plan: &Plan, watch: &Watch<'_>) -> Result<Radiosity, Failure> {
+    let threads = arguments.threads.map_or(0, |n| n.get());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
+    Ok(pool.install(|| Radiosity::new(prepared, plan, &prepared.settings.into(), None, watch))?)
 }
 
 /// Traces rays, after those of a file if there is one to go on with.
@@ -261,7 +285,7 @@ fn report(
     arguments: &Arguments,
     outputs: &[PathBuf],
     prepared: &Prepared,
-    rendering: &Rendering,
+    (rendering, books): (&Rendering, Option<Report>),
     build_seconds: f64,
 ) -> Result<(), Failure> {
     let picture = &rendering.picture;
@@ -280,6 +304,7 @@ fn report(
             "rays": rendering.rays,
             "caught_light": rendering.balance,
             "spans": rendering.spans,
+            "radiosity": books,
             "complete": rendering.complete,
         });
         say!("{}", serde_json::to_string_pretty(&json)?);
@@ -300,8 +325,9 @@ fn report(
     if let Some(balance) = &rendering.balance {
         say!("{balance}");
     }
+    books.iter().flat_map(Report::lines).for_each(|line| say!("{line}"));
     let Rendering { rays, spans, seconds, threads, .. } = rendering;
-    if arguments.renderer == Kind::ScanLine {
+    if matches!(arguments.renderer, Kind::ScanLine | Kind::Radiosity) {
         let (all, shadows) = (spans.surfaces, spans.shadows);
         say!("{all} spans of surfaces, {shadows} of shadow polygons in {seconds:.3} s on {threads} threads");
         return Ok(());

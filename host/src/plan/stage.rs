@@ -34,6 +34,8 @@ pub enum Stage {
     CaughtLight,
     /// Rays from mirrors, through glass, and from rough surfaces.
     Reflection,
+    /// Light that diffuse surfaces send each other, found before for all views.
+    Radiosity,
     /// A time for each sample, at which it sees what moves.
     Motion,
     /// More than one sample in a pixel.
@@ -95,7 +97,8 @@ impl<'a> Facts<'a> {
 
     pub(super) fn reflection(&self) -> Decision {
         let mirrors = self.count(carries_on);
-        let spread = self.prepared.settings.interreflection && self.count(has_diffuse) > 0;
+        let settings = &self.prepared.settings;
+        let spread = (settings.interreflection || settings.radiosity) && self.count(has_diffuse) > 0;
         if mirrors == 0 && !spread {
             Decision::new(false, "no material is a mirror, transparent, or rough and shiny")
         } else if self.prepared.settings.reflection_depth == 0 {
@@ -139,7 +142,7 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 14] = [
+    pub const ALL: [Stage; 15] = [
         Stage::Octree,
         Stage::Normals,
         Stage::ExactSurfaces,
@@ -152,6 +155,7 @@ impl Stage {
         Stage::LightBuffer,
         Stage::CaughtLight,
         Stage::Reflection,
+        Stage::Radiosity,
         Stage::Motion,
         Stage::AntiAliasing,
     ];
@@ -171,6 +175,7 @@ impl Stage {
             Stage::LightBuffer => "light buffer",
             Stage::CaughtLight => "caught light",
             Stage::Reflection => "reflected and refracted rays",
+            Stage::Radiosity => "radiosity",
             Stage::Motion => "motion",
             Stage::AntiAliasing => "anti-aliasing",
         }
@@ -178,7 +183,7 @@ impl Stage {
 
     /// Whether running it without need changes nothing.
     pub(super) fn is_forcible(self) -> bool {
-        !matches!(self, Stage::Spectra | Stage::CaughtLight)
+        !matches!(self, Stage::Spectra | Stage::CaughtLight | Stage::Radiosity)
     }
 
     pub(super) fn decide(self, facts: &Facts<'_>) -> Decision {
@@ -195,6 +200,7 @@ impl Stage {
             Stage::LightBuffer => light_buffer(facts),
             Stage::CaughtLight => caught_light(facts),
             Stage::Reflection => facts.reflection(),
+            Stage::Radiosity => radiosity(facts),
             Stage::Motion => motion(facts),
             Stage::AntiAliasing => match facts.prepared.settings.samples {
                 1 => Decision::new(false, "one sample: the centre of each pixel"),
@@ -241,6 +247,20 @@ fn caught_light(facts: &Facts<'_>) -> Decision {
     } else {
         let from = format!("{} through {}", counted(lamps, "lamp"), counted(throwers, "object"));
         Decision::new(true, format!("light of {from} to {}", counted(takers, "receiver")))
+    }
+}
+
+fn radiosity(facts: &Facts<'_>) -> Decision {
+    let diffuse = facts.kept().filter(|object| object.materials.iter().any(has_diffuse));
+    let (objects, triangles) = diffuse.fold((0, 0), |(objects, all), object| (objects + 1, all + object.count));
+    if !facts.prepared.settings.radiosity {
+        Decision::new(false, "the scene does not ask for it")
+    } else if facts.lights() == 0 {
+        Decision::new(false, "no light has power")
+    } else if triangles < 2 {
+        Decision::new(false, "nothing diffuse sees anything diffuse")
+    } else {
+        Decision::new(true, format!("{} may send each other light", counted(objects, "diffuse object")))
     }
 }
 

@@ -109,10 +109,10 @@ fn a_forced_plan_leaves_nothing_out_and_says_so() {
     scene.lights.clear();
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::everything(&prepared, &prepared.view());
-    // Spectra and caustics are another picture: they are not forced.
-    let others = [Stage::Spectra, Stage::CaughtLight];
+    // Spectra, caustics and radiosity are another picture: they are not forced.
+    let others = [Stage::Spectra, Stage::CaughtLight, Stage::Radiosity];
     let all = plan.entries.iter().filter(|e| others.iter().all(|stage| e.name != stage.word()));
-    assert!(all.clone().count() + 2 == plan.entries.len() && all.clone().all(|e| e.needed));
+    assert!(all.clone().count() + others.len() == plan.entries.len() && all.clone().all(|e| e.needed));
     assert!(Stage::ALL.into_iter().all(|s| plan.needs(s) != others.contains(&s)));
     assert!(plan.entries.iter().any(|e| e.reason.starts_with("forced; no light")));
     assert!(plan.table().lines().count() == plan.entries.len() + 1);

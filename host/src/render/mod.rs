@@ -7,6 +7,7 @@ mod eye;
 mod film;
 mod layers;
 mod ready;
+pub mod radiosity;
 pub mod ray_tracing;
 pub mod scan_line;
 mod state;
@@ -186,6 +187,9 @@ pub enum RenderError {
     /// The view flattens space to a line or a point, or is not finite.
     #[error("the view has no directions for the pixels: its matrix is singular or not finite")]
     View,
+    /// Radiosity has no solution.
+    #[error("radiosity: {0}")]
+    Radiosity(#[from] radiosity::Unsolvable),
     /// The threads cannot be started.
     #[error("threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

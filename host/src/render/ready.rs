@@ -74,7 +74,8 @@ impl<'a> Appearance<'a> {
                     Some(number) => number,
                     None => {
                         let failed = |source| RenderError::Material { object: object.name.clone(), source };
-                        let spreads = self.prepared.settings.interreflection;
+                        // What radiosity knows is not looked for again.
+                        let spreads = self.prepared.settings.interreflection && !plan.needs(Stage::Radiosity);
                         self.optics.push(library.optics(material, spreads).map_err(failed)?);
                         known.push(material);
                         known.len() - 1

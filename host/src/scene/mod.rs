@@ -97,6 +97,12 @@ pub struct Settings {
     pub light_samples: u32,
     /// Whether diffuse light is carried on from surface to surface, up to the same depth.
     pub interreflection: bool,
+    /// Whether ray tracing reads light that diffuse surfaces send each other from a solution by radiosity.
+    pub radiosity: bool,
+    /// Error of the light that one pair of patches brings in radiosity, as a part of the mean irradiance, above 0.
+    pub patch_error: f64,
+    /// Patches are not divided below this length in radiosity, as a part of the diagonal of the scene, above 0.
+    pub finest_patch: f64,
     /// Whether light counts that a mirror or glass throws from a lamp on what is neither. Rays from the eye find it by
     /// chance only: such pictures take very many samples. Without it, too, highlights of lamps are cut off on what is seen
     /// by spread light. Light of a sky always counts.
@@ -136,6 +142,9 @@ impl Default for Settings {
             reflection_depth: 6,
             light_samples: 1,
             interreflection: false,
+            radiosity: false,
+            patch_error: 0.02,
+            finest_patch: 1.0 / 256.0,
             caustics: false,
             two_way: false,
             photons: 200_000,

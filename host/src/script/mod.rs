@@ -64,7 +64,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 13] = [
+pub const EMBEDDED: [Embedded; 14] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -114,6 +114,11 @@ pub const EMBEDDED: [Embedded; 13] = [
         name: "room",
         summary: "a living room with the sun in its window, a mirror and glass; three views",
         text: include_str!("../../scenes/room.rhai"),
+    },
+    Embedded {
+        name: "cornell",
+        summary: "the box of Cornell's Program of Computer Graphics, for light that goes from surface to surface",
+        text: include_str!("../../scenes/cornell.rhai"),
     },
     Embedded {
         name: "vases",

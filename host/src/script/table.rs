@@ -274,6 +274,33 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
+        name: "radiosity",
+        summary: "Lets ray tracing read the light that diffuse surfaces send each other from a solution by radiosity, found before for all views; leave ambient light out then. Sets how good solutions are.",
+        parameters: &[
+            parameter("on", Kind::Flag, Is("true"), "whether ray tracing does"),
+            parameter(
+                "error",
+                Kind::Number(1e-6, 10.0),
+                Is("0.02"),
+                "of the light that one pair of patches brings, as a part of the mean irradiance",
+            ),
+            parameter(
+                "finest",
+                Kind::Number(1e-5, 1.0),
+                Is("0.0039"),
+                "shortest edge of a patch that is divided, as a part of the diagonal of the scene",
+            ),
+        ],
+        example: "radiosity(#{ error: 0.01 });",
+        action: |builder, bound| {
+            let settings = &mut builder.scene.settings;
+            settings.radiosity = bound.flag("on").unwrap_or(true);
+            settings.patch_error = bound.number("error").unwrap_or(settings.patch_error);
+            settings.finest_patch = bound.number("finest").unwrap_or(settings.finest_patch);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
         name: "caustics",
         summary: "Lets light count that mirrors and glass throw from lamps; rays from the eye find it by chance only, and need very many samples.",
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does")],

@@ -157,6 +157,11 @@ impl Ground {
         }
     }
 
+    /// What it reflects of light from all around: π D T̄² of the D without its two T.
+    pub(super) fn mean(&self, sighting: &Sighting) -> Channels {
+        self.fraction(sighting) * (std::f64::consts::PI * self.mean * self.mean)
+    }
+
     /// About what it reflects.
     pub(super) fn strength(&self, sighting: &Sighting) -> f64 {
         self.fraction(sighting).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)

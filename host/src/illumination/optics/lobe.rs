@@ -111,6 +111,15 @@ impl Lobe {
         }
     }
 
+    /// The part of light from all around that it reflects alike to everywhere.
+    pub(super) fn diffuse(&self, sighting: &Sighting) -> Channels {
+        match self {
+            Lobe::Diffuse(fraction) => fraction.of(sighting),
+            Lobe::Ground(ground) => ground.mean(sighting),
+            _ => Channels::ZERO,
+        }
+    }
+
     /// The density of its samples, 1/sr.
     pub(super) fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
         let view = sighting.view;

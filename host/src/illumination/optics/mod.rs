@@ -198,6 +198,17 @@ impl Optics {
         self.ambient.of(sighting)
     }
 
+    /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under a
+    /// coat gives in the mean.
+    pub fn diffuse(&self, sighting: &Sighting) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.diffuse(sighting))
+    }
+
+    /// Whether some light is reflected alike to everywhere.
+    pub fn is_diffuse(&self) -> bool {
+        self.lobes.iter().any(|(_, lobe)| matches!(lobe, Lobe::Diffuse(_) | Lobe::Ground(_)))
+    }
+
     /// Whether it changes from place to place.
     pub fn is_textured(&self) -> bool {
         !self.patterns.is_empty() || self.relief.is_some()

@@ -29,7 +29,7 @@ const MOST_BYTES: usize = 256 << 20;
 
 /// What stands between a voxel and a light.
 #[derive(Debug)]
-pub(super) enum Way {
+pub(in crate::render) enum Way {
     /// Something opaque, before all of the light.
     Dark,
     /// These triangles, if any.

@@ -11,7 +11,7 @@ mod light_buffer;
 mod media;
 mod tracer;
 mod two_way;
-mod world;
+pub(super) mod world;
 
 #[cfg(test)]
 mod exact_tests;
@@ -32,6 +32,7 @@ pub use two_way::Balance;
 
 use super::eye::Eye;
 use super::film::{Film, Sample, Tally};
+use super::radiosity::Radiosity;
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::octree::Octree;
 use crate::plan::{Plan, Stage};
@@ -76,7 +77,10 @@ impl<'a> RayTracer<'a> {
     /// # Errors
     /// [`RenderError::Octree`], [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
-        let world = World::new(prepared, plan)?;
+        let mut world = World::new(prepared, plan)?;
+        if plan.needs(Stage::Radiosity) {
+            world.indirect = Some(Radiosity::new(prepared, plan, &prepared.settings.into(), None, &Watch::NOBODY)?);
+        }
         let keeps = |object| plan.keeps_object(object);
         let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps)).flatten();
         Ok(RayTracer { plan, world, two_way })
@@ -85,6 +89,11 @@ impl<'a> RayTracer<'a> {
     /// The scene.
     pub fn prepared(&self) -> &Prepared {
         self.world.appearance.prepared
+    }
+
+    /// The light that diffuse surfaces send each other, if it was found before.
+    pub fn radiosity(&self) -> Option<&Radiosity> {
+        self.world.indirect.as_ref()
     }
 
     /// The octree, if the plan needs one.

@@ -235,6 +235,10 @@ impl<'a> Tracer<'a> {
             sum += radiance;
             log.note(|| Note::term(leg.depth, "ambient light", radiance));
         }
+        if let Some(radiance) = self.world.indirect(found, comb) {
+            sum += leg.passed * radiance;
+            log.note(|| Note::term(leg.depth, "light of other surfaces", leg.passed * radiance));
+        }
         let is_worth = |onward: Onward| (leg.passed * onward.weight).max() > WORTH_PARTING;
         let (count, all_worth) =
             optics.mirrored(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));

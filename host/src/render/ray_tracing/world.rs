@@ -13,14 +13,15 @@ use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
 use crate::render::element::Element;
 use crate::render::eye::Sight;
+use crate::render::radiosity::{Part, Radiosity, diffuse};
 use crate::render::ready::Appearance;
 use crate::scene::{Motion, Moved, Prepared, footprint};
 use glam::DVec3;
 use std::collections::HashMap;
 
 /// A scene as rays meet it.
-pub(super) struct World<'a> {
-    pub(super) appearance: Appearance<'a>,
+pub(in crate::render) struct World<'a> {
+    pub(in crate::render) appearance: Appearance<'a>,
     /// None if the plan needs no octree, or everything moves.
     pub(super) octree: Option<Octree>,
     /// The triangle of the scene behind each triangle of the octree; empty if they are the same.
@@ -28,6 +29,8 @@ pub(super) struct World<'a> {
     /// What moves while the shutter is open, each motion with an octree of its own.
     moving: Vec<Moving>,
     light_buffer: Option<LightBuffer>,
+    /// Light that diffuse surfaces send each other, if it is known already.
+    pub(super) indirect: Option<Radiosity>,
 }
 
 /// Objects of one motion, where they are in the middle of the time in which the shutter is open.
@@ -105,7 +108,7 @@ impl<'a> World<'a> {
     ///
     /// # Errors
     /// [`RenderError`].
-    pub(super) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
+    pub(in crate::render) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
         let (octree, triangle_of) = octree(prepared, plan)?;
         let moving = if plan.needs(Stage::Motion) { moving(prepared, plan)? } else { Vec::new() };
         let appearance = Appearance::new(prepared, plan)?;
@@ -119,7 +122,16 @@ impl<'a> World<'a> {
             let opaque = appearance.passing.then(|| triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
-        Ok(World { appearance, octree, triangle_of, moving, light_buffer })
+        Ok(World { appearance, octree, triangle_of, moving, light_buffer, indirect: None })
+    }
+
+    /// Radiance of an element by light of other diffuse ones, as far as it is known already.
+    pub(super) fn indirect(&self, found: &Found<'_>, comb: usize) -> Option<Channels> {
+        let solution = self.indirect.as_ref().filter(|_| found.optics.is_diffuse())?;
+        let corners = self.appearance.prepared.corners(found.triangle);
+        let weights = crate::numeric::triangle::weights(corners, found.element.position);
+        let irradiance = solution.irradiance(found.triangle, found.element.outside, weights, Part::Indirect);
+        Some(diffuse(found.optics, comb, found.painted()) * irradiance * std::f64::consts::FRAC_1_PI)
     }
 
     /// What stands still between a point and a light, if the light buffer knows.
@@ -133,24 +145,29 @@ impl<'a> World<'a> {
     }
 
     /// The first triangle in sight at a time, and where what it belongs to has moved to.
-    fn first(&self, sight: &Sight, time: f64) -> Option<(Hit, u32, Option<Moved>)> {
-        let hit = self.octree.as_ref().and_then(|octree| octree.closest(&sight.ray, sight.t_min, sight.t_max));
+    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Moved>)> {
+        let hit = self.octree.as_ref().and_then(|octree| octree.closest(ray, t_min, t_max));
         let of =
             |triangle_of: &[u32], hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
         let mut first = hit.map(|hit| (hit, of(&self.triangle_of, &hit), None));
         for Moving { motion, octree, triangle_of } in &self.moving {
             let moved = motion.at(time);
-            let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
-            if let Some(hit) = octree.closest(&moved.still(&sight.ray), sight.t_min, t_max) {
+            let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
+            if let Some(hit) = octree.closest(&moved.still(ray), t_min, t_max) {
                 first = Some((hit, of(triangle_of, &hit), Some(moved)));
             }
         }
         first
     }
 
+    /// The first triangle that a ray meets in the middle of the time in which the shutter is open.
+    pub(in crate::render) fn struck(&self, ray: &Ray, t_min: f64) -> Option<(Hit, u32)> {
+        self.first(ray, [t_min, f64::INFINITY], 0.0).map(|(hit, triangle, _)| (hit, triangle))
+    }
+
     /// What is first in sight at a time.
     pub(super) fn meet(&self, sight: &Sight, comb: usize, time: f64) -> Met<'_> {
-        let first = self.first(sight, time);
+        let first = self.first(&sight.ray, [sight.t_min, sight.t_max], time);
         let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
         if let Some((index, glow)) = self.appearance.glow(&sight.ray, sight.t_min, t_max, comb) {
             return Met::Glow(index, glow);
@@ -211,7 +228,7 @@ impl<'a> World<'a> {
     ///
     /// - `index`: of the light that the way leads to, which is not in the way of itself. `way`: what is known of what stands
     ///   still there. `time`: when.
-    pub(super) fn passed(
+    pub(in crate::render) fn passed(
         &self,
         ray: &Ray,
         t_max: f64,

@@ -26,6 +26,7 @@ mod visibility;
 
 use super::eye::Eye;
 use super::film::{Film, Tally};
+use super::radiosity::Radiosity;
 use super::ready::Appearance;
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
@@ -89,6 +90,8 @@ pub struct ScanLine<'a> {
     /// What each group of casters lets through, comb by comb; the first is opaque.
     passing: Vec<Vec<Channels>>,
     lamps: Vec<Lamp>,
+    /// In the place of lamps and shadows.
+    solution: Option<&'a Radiosity>,
 }
 
 /// What the threads share while a picture is made.
@@ -119,31 +122,54 @@ impl<'a> ScanLine<'a> {
     /// # Errors
     /// [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<ScanLine<'a>, RenderError> {
+        ScanLine::lit(prepared, plan, None)
+    }
+
+    /// As [`ScanLine::new`], but shows the light of a solution by radiosity: no highlights and no ambient light, and no
+    /// shadows but those that are in it.
+    ///
+    /// # Errors
+    /// [`RenderError::Material`].
+    pub fn showing(
+        solution: &'a Radiosity,
+        prepared: &'a Prepared,
+        plan: &'a Plan,
+    ) -> Result<ScanLine<'a>, RenderError> {
+        ScanLine::lit(prepared, plan, Some(solution))
+    }
+
+    fn lit(
+        prepared: &'a Prepared,
+        plan: &'a Plan,
+        solution: Option<&'a Radiosity>,
+    ) -> Result<ScanLine<'a>, RenderError> {
         let appearance = Appearance::new(prepared, plan)?;
         let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
         let (groups, passing) = groups(&appearance);
         let passable: Vec<bool> = groups.iter().map(|group| *group > 0).collect();
-        let shadows = plan.needs(Stage::Shadows);
+        let shadows = plan.needs(Stage::Shadows) && solution.is_none();
         let casters = Casters::new(prepared, if shadows { triangles.clone() } else { Vec::new() }, groups);
         let samples = prepared.settings.light_samples.max(1);
         let mut lamps = Vec::new();
-        for (source, (_, light)) in appearance.sources.iter().enumerate() {
+        for (source, (_, light)) in appearance.sources.iter().enumerate().filter(|_| solution.is_none()) {
             for point in light.points(samples) {
                 let light = point.at.map_or(Light::Direction(point.towards), Light::Point);
                 lamps.push(Lamp { source, point, light });
             }
         }
-        Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps })
+        Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps, solution })
     }
 
     /// What of the scene the pictures do not show, in words.
     pub fn left_out(&self, view: &View) -> Vec<&'static str> {
         let mut left_out = Vec::new();
-        if self.plan.needs(Stage::Reflection) {
+        if self.solution.is_some() {
+            left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
+        } else if self.plan.needs(Stage::Reflection) {
             left_out.push("mirrors, glass and rough surfaces reflect and refract nothing but light of lights");
         }
-        if self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
+        if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the sky is seen, but lights nothing");
         }
         if self.plan.needs(Stage::Motion) {
@@ -195,6 +221,7 @@ impl<'a> ScanLine<'a> {
             appearance: &self.appearance,
             casters: &self.casters,
             lamps: &self.lamps,
+            solution: self.solution,
             enclosed,
             passing: &self.passing,
             eye,

@@ -7,10 +7,14 @@ use super::surfaces::{Found, Part, Pixel, Surface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
 use crate::illumination::optics::{Painting, Side, Sighting};
+use crate::numeric::triangle::weights;
 use crate::render::eye::{Eye, Sight};
 use crate::render::film::{Sample, Tally};
+use crate::render::radiosity::diffuse;
+use crate::render::radiosity::{Part as Light, Radiosity};
 use crate::render::ready::Appearance;
 use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
 
 /// What a lamp adds.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +32,8 @@ pub(super) struct Shader<'a> {
     pub(super) appearance: &'a Appearance<'a>,
     pub(super) casters: &'a Casters<'a>,
     pub(super) lamps: &'a [Lamp],
+    /// The light of all surfaces, if lamps are not asked.
+    pub(super) solution: Option<&'a Radiosity>,
     /// For each lamp with shadows.
     pub(super) enclosed: &'a [Option<Enclosed<'a>>],
     /// What each group of casters lets through, comb by comb.
@@ -333,6 +339,12 @@ impl<'a> Shader<'a> {
         let place = || self.appearance.prepared.place(found.triangle, found.weights, found.sides);
         let painting: Option<Painting> = optics.is_textured().then(|| optics.paint(&place(), comb));
         let painted = painting.as_ref().map_or(&[][..], |painting| painting.as_slice());
+        if let Some(solution) = self.solution {
+            // Elements of flat triangles are moved from pixel to pixel without their weights.
+            let weights = weights(self.appearance.prepared.corners(found.triangle), element.position);
+            let irradiance = solution.irradiance(found.triangle, element.outside, weights, Light::All);
+            return own + diffuse(optics, comb, painted) * irradiance * FRAC_1_PI;
+        }
         let index = optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
         let side = match element.outside {
             true => Side { before: Channels::ONE, behind: index },

@@ -1,0 +1,249 @@
+//! The hierarchy that exchanges light: clusters of patches, patches, and elements into which patches are divided.
+//!
+//! A patch is one side of a triangle. Clusters hold patches that are near each other and face the same way, so that light
+//! that a cluster receives may be spread over all of it.
+
+use super::form_factor::Convex;
+use crate::color::Channels;
+use glam::DVec3;
+use std::ops::Range;
+
+/// How much a difference of unit normals counts in clusters, in diagonals of the scene.
+const NORMALS: f64 = 0.35;
+/// Points that stand for a node where visibility is asked for.
+pub(super) const POINTS: usize = 4;
+/// No node.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// One side of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Patch {
+    /// Counter-clockwise about the side.
+    pub(super) corners: [DVec3; 3],
+    /// The triangle of the scene, and whether it is its outer side.
+    pub(super) triangle: u32,
+    pub(super) outside: bool,
+}
+
+/// A cluster, a patch or an element of a patch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// Corners of a patch or element.
+    pub(super) corners: [DVec3; 3],
+    /// The middle of its area.
+    pub(super) middle: DVec3,
+    /// All of it is so near to the middle.
+    pub(super) radius: f64,
+    /// Unit normal, of a cluster the mean one.
+    pub(super) normal: DVec3,
+    /// The greatest angle of a normal to it, radians; 0 unless it is a cluster.
+    pub(super) spread: f64,
+    pub(super) area: f64,
+    /// The first of its children, 0 if there are none.
+    pub(super) child: u32,
+    pub(super) children: u32,
+    /// Of which patch it is; [`NONE`] for a cluster.
+    pub(super) patch: u32,
+}
+
+impl Node {
+    fn triangle(corners: [DVec3; 3], patch: u32) -> Node {
+        let [a, b, c] = corners;
+        let middle = (a + b + c) / 3.0;
+        let (normal, area) = normal_and_area(corners);
+        Node {
+            corners,
+            middle,
+            radius: corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max),
+            normal,
+            spread: 0.0,
+            area,
+            child: 0,
+            children: 0,
+            patch,
+        }
+    }
+
+    pub(super) fn is_cluster(&self) -> bool {
+        self.patch == NONE
+    }
+
+    pub(super) fn is_leaf(&self) -> bool {
+        self.children == 0
+    }
+
+    pub(super) fn children(&self) -> Range<usize> {
+        self.child as usize..(self.child + self.children) as usize
+    }
+
+    pub(super) fn polygon(&self) -> Convex {
+        Convex::new(&self.corners)
+    }
+
+    pub(super) fn longest_edge(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    }
+
+    /// The four triangles that the middles of its edges make: at the corners, and the one in the middle.
+    pub(super) fn quarters(&self) -> [[DVec3; 3]; 4] {
+        let [a, b, c] = self.corners;
+        let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
+    }
+}
+
+/// Unit normal and area; both 0 for a triangle without area.
+pub(super) fn normal_and_area([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let cross = (b - a).cross(c - a);
+    match cross.try_normalize() {
+        Some(normal) if cross.length() > 0.0 => (normal, 0.5 * cross.length()),
+        _ => (DVec3::ZERO, 0.0),
+    }
+}
+
+/// Nodes, parents before their children; the root is the first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hierarchy {
+    pub(super) nodes: Vec<Node>,
+    /// Points and unit normals that stand for each cluster.
+    cluster_points: Vec<[[DVec3; 2]; POINTS]>,
+    pub(super) patches: Vec<Patch>,
+    /// The node of each patch.
+    pub(super) node_of: Vec<u32>,
+}
+
+impl Hierarchy {
+    /// Clusters over patches, each of which has an area.
+    pub(super) fn new(patches: Vec<Patch>) -> Hierarchy {
+        let mut hierarchy = Hierarchy { node_of: vec![NONE; patches.len()], patches, ..Hierarchy::default() };
+        if hierarchy.patches.is_empty() {
+            return hierarchy;
+        }
+        let own: Vec<Node> = (0..).zip(&hierarchy.patches).map(|(i, patch)| Node::triangle(patch.corners, i)).collect();
+        let (low, high) = own.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), node| {
+            (low.min(node.middle), high.max(node.middle))
+        });
+        let scale = NORMALS * low.distance(high);
+        let mut order: Vec<u32> = (0..own.len() as u32).collect();
+        // Breadth first, so that all clusters come before all patches but those that are alone.
+        hierarchy.nodes.push(own[0]);
+        let mut waiting = std::collections::VecDeque::from([(0usize, 0..own.len())]);
+        let mut ranges = Vec::new();
+        while let Some((place, range)) = waiting.pop_front() {
+            let part = &mut order[range.clone()];
+            if let [single] = part {
+                hierarchy.nodes[place] = own[*single as usize];
+                hierarchy.node_of[*single as usize] = place as u32;
+                ranges.push(range);
+                continue;
+            }
+            halve(part, &own, scale);
+            let child = hierarchy.nodes.len() as u32;
+            hierarchy.nodes[place] = Node { child, children: 2, ..cluster(part, &own) };
+            hierarchy.nodes.extend([own[0]; 2]);
+            let middle = range.start + range.len() / 2;
+            waiting.extend([(child as usize, range.start..middle), (child as usize + 1, middle..range.end)]);
+            ranges.push(range);
+        }
+        hierarchy.cluster_points = ranges.into_iter().map(|range| representatives(&order[range], &own)).collect();
+        hierarchy
+    }
+
+    /// Divides a leaf into four; tells the first.
+    pub(super) fn divide(&mut self, node: u32) -> u32 {
+        let parent = self.nodes[node as usize];
+        let child = self.nodes.len() as u32;
+        self.nodes.extend(parent.quarters().map(|corners| Node::triangle(corners, parent.patch)));
+        let parent = &mut self.nodes[node as usize];
+        (parent.child, parent.children) = (child, 4);
+        child
+    }
+
+    /// Points and unit normals that stand for a node, each for the same part of its area.
+    pub(super) fn points(&self, node: u32) -> [[DVec3; 2]; POINTS] {
+        let of = &self.nodes[node as usize];
+        match of.is_cluster() {
+            true => self.cluster_points[node as usize],
+            false => of.quarters().map(|[a, b, c]| [(a + b + c) / 3.0, of.normal]),
+        }
+    }
+
+    /// The leaves, and the place of each node among them; [`NONE`] for those that are none.
+    pub(super) fn leaves(&self) -> Vec<u32> {
+        (0..self.nodes.len() as u32).filter(|node| self.nodes[*node as usize].is_leaf()).collect()
+    }
+
+    /// The leaf of a patch at a place of it, and the weights of the corners of the leaf there.
+    pub(super) fn leaf_at(&self, patch: u32, mut weights: [f64; 3]) -> (u32, [f64; 3]) {
+        let mut at = self.node_of[patch as usize];
+        while self.nodes[at as usize].children == 4 {
+            let corner = weights.iter().position(|weight| *weight >= 0.5);
+            weights = match corner {
+                Some(corner) => std::array::from_fn(|i| 2.0 * weights[i] - if i == corner { 1.0 } else { 0.0 }),
+                None => weights.map(|weight| 1.0 - 2.0 * weight),
+            };
+            at = self.nodes[at as usize].child + corner.unwrap_or(3) as u32;
+        }
+        (at, weights)
+    }
+
+    /// Sums of what leaves have, from the leaves up to the root: of their values times their areas, over the area.
+    pub(super) fn pull(&self, values: &mut [Channels]) {
+        for place in (0..self.nodes.len()).rev().filter(|place| !self.nodes[*place].is_leaf()) {
+            let node = &self.nodes[place];
+            let sum = node.children().map(|child| values[child] * self.nodes[child].area);
+            let sum = sum.fold(Channels::ZERO, |a, b| a + b);
+            values[place] = sum * node.area.recip();
+        }
+    }
+}
+
+/// Orders the members so that the two halves are well apart.
+fn halve(part: &mut [u32], own: &[Node], scale: f64) {
+    let place = |node: &Node| {
+        let normal = node.normal * scale;
+        let at = node.middle;
+        [at.x, at.y, at.z, normal.x, normal.y, normal.z]
+    };
+    let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 6];
+    for member in part.iter() {
+        for (range, at) in range.iter_mut().zip(place(&own[*member as usize])) {
+            *range = [range[0].min(at), range[1].max(at)];
+        }
+    }
+    let axis = (0..6).max_by(|a, b| (range[*a][1] - range[*a][0]).total_cmp(&(range[*b][1] - range[*b][0])));
+    let axis = axis.unwrap_or(0);
+    let key = |member: &u32| place(&own[*member as usize])[axis];
+    let middle = part.len() / 2;
+    part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
+}
+
+fn cluster(part: &[u32], own: &[Node]) -> Node {
+    let members = || part.iter().map(|member| &own[*member as usize]);
+    let area: f64 = members().map(|node| node.area).sum();
+    let middle = members().map(|node| node.middle * node.area).sum::<DVec3>() / area;
+    let normal =
+        members().map(|node| node.normal * node.area).sum::<DVec3>().normalize_or(own[part[0] as usize].normal);
+    let spread = members().map(|node| node.normal.dot(normal).clamp(-1.0, 1.0).acos()).fold(0.0, f64::max);
+    let radius = members().flat_map(|node| node.corners).map(|corner| corner.distance(middle)).fold(0.0, f64::max);
+    Node { corners: [middle; 3], middle, radius, normal, spread, area, child: 0, children: 0, patch: NONE }
+}
+
+/// A few members at even steps of the area, by their middles.
+fn representatives(part: &[u32], own: &[Node]) -> [[DVec3; 2]; POINTS] {
+    let all: f64 = part.iter().map(|member| own[*member as usize].area).sum();
+    let mut found = [[DVec3::ZERO; 2]; POINTS];
+    let (mut below, mut next) = (0.0, 0);
+    for member in part {
+        let node = &own[*member as usize];
+        below += node.area;
+        while next < POINTS && below >= all * (next as f64 + 0.5) / POINTS as f64 {
+            found[next] = [node.middle, node.normal];
+            next += 1;
+        }
+    }
+    let last = &own[part[part.len() - 1] as usize];
+    found[next..].fill([last.middle, last.normal]);
+    found
+}

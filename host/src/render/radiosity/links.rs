@@ -1,0 +1,249 @@
+//! Which nodes exchange light with which: links are divided until what each of them brings is known well enough.
+//!
+//! # Source
+//! Hanrahan, Salzman and Aupperle 1991, with the radiosity in the bound; clusters as Smits, Arvo and Greenberg 1994, here of
+//! patches that face alike as Willmott, Heckbert and Garland 1999.
+
+use super::elements::Elements;
+use super::exchange::Link;
+use super::form_factor::{self, kernel};
+use super::hierarchy::{Node, POINTS};
+use super::sight::Sight;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+/// Error of form factors, as a part of the smaller element.
+const FORM_FACTOR_ERROR: f64 = 1e-4;
+/// How uncertain the light is that a link brings, as a part of it: where rays disagree, where none comes through, where
+/// all do.
+const PARTLY_SEEN: f64 = 0.5;
+const NOT_SEEN: f64 = 0.1;
+const SEEN: f64 = 0.02;
+/// Elements at the most; beyond them nothing is divided any more.
+const MOST_NODES: usize = 3_000_000;
+
+/// A link, and how uncertain it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Judged {
+    pub(super) link: Link,
+    /// The error of its exchange, square units.
+    doubt: f64,
+}
+
+/// What is to be done with two nodes.
+enum Verdict {
+    Keep(Judged),
+    Drop,
+    /// Divides one of them.
+    Divide {
+        divided: u32,
+        other: u32,
+    },
+    /// Looks at what is in a cluster.
+    Within(u32),
+}
+
+/// How far links are divided.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bound {
+    /// The greatest error of an irradiance by one link, W/m².
+    pub(super) irradiance: f64,
+    /// No edge is divided that is shorter than twice this.
+    pub(super) finest: f64,
+}
+
+/// Goes through all links again and divides those that bring too uncertain light; at first, the root with itself.
+pub(super) fn refine(
+    sight: &Sight<'_>,
+    elements: &mut Elements<'_>,
+    links: &mut Vec<Judged>,
+    bound: Bound,
+    stopped: &dyn Fn() -> bool,
+) {
+    let mut pending: Vec<[u32; 2]> = Vec::new();
+    if links.is_empty() {
+        pending.push([0, 0]);
+    }
+    links.retain(|judged| {
+        let Link { a, b, .. } = judged.link;
+        let is_sure = uncertainty(elements, a, b, judged.doubt) <= bound.irradiance;
+        if !is_sure {
+            pending.push([a, b]);
+        }
+        is_sure
+    });
+    while !pending.is_empty() {
+        let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
+        let bound = if may_divide { bound } else { Bound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
+        let judge = |&[a, b]: &[u32; 2]| Judge { sight, elements, bound }.judge(a, b);
+        let verdicts: Vec<Verdict> = pending.par_iter().map(judge).collect();
+        let divided: Vec<u32> = verdicts
+            .iter()
+            .filter_map(|verdict| match verdict {
+                Verdict::Divide { divided, .. } => Some(*divided),
+                _ => None,
+            })
+            .collect();
+        elements.divide(sight, divided);
+        pending.clear();
+        for verdict in verdicts {
+            match verdict {
+                Verdict::Keep(judged) => links.push(judged),
+                Verdict::Drop => {}
+                Verdict::Divide { divided, other } => {
+                    let children = elements.hierarchy.nodes[divided as usize].children();
+                    pending.extend(children.map(|child| [child as u32, other]));
+                }
+                Verdict::Within(cluster) => {
+                    let children = elements.hierarchy.nodes[cluster as usize].children();
+                    for first in children.clone() {
+                        pending.extend((first..children.end).map(|second| [first as u32, second as u32]));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The error of the irradiance of either by an error of their exchange, W/m².
+fn uncertainty(elements: &Elements<'_>, a: u32, b: u32, exchange: f64) -> f64 {
+    let side =
+        |to: u32, from: u32| elements.sent[from as usize].max() * exchange / elements.hierarchy.nodes[to as usize].area;
+    side(a, b).max(side(b, a))
+}
+
+struct Judge<'j, 'a> {
+    sight: &'j Sight<'a>,
+    elements: &'j Elements<'a>,
+    bound: Bound,
+}
+
+impl Judge<'_, '_> {
+    fn node(&self, node: u32) -> &Node {
+        &self.elements.hierarchy.nodes[node as usize]
+    }
+
+    fn is_fine(&self, a: u32, b: u32, exchange: f64) -> bool {
+        uncertainty(self.elements, a, b, exchange) <= self.bound.irradiance
+    }
+
+    fn judge(&self, a: u32, b: u32) -> Verdict {
+        let (first, second) = (self.node(a), self.node(b));
+        if a == b {
+            return self.within(a, first);
+        }
+        if is_behind(first, second) || is_behind(second, first) {
+            return Verdict::Drop;
+        }
+        let distance = first.middle.distance(second.middle);
+        let sizes = first.radius + second.radius;
+        let are_elements = !first.is_cluster() && !second.is_cluster();
+        let most = form_factor::limit(first.area, second.area, (distance - sizes).max(0.0));
+        if !are_elements && distance < sizes && !self.is_fine(a, b, most) {
+            return self.divide(a, b).unwrap_or(Verdict::Drop);
+        }
+        let unoccluded = match are_elements {
+            true => form_factor::exchange(&first.polygon(), &second.polygon(), FORM_FACTOR_ERROR).min(most),
+            false => self.sampled(a, b).min(most),
+        };
+        if unoccluded <= 0.0 {
+            let is_sure = are_elements || self.is_fine(a, b, 0.25 * most);
+            return if is_sure { Verdict::Drop } else { self.divide(a, b).unwrap_or(Verdict::Drop) };
+        }
+        let seen = self.visibility(a, b, self.is_fine(a, b, NOT_SEEN * unoccluded));
+        let variation = (0.5 * sizes / distance + first.spread + second.spread).min(1.0);
+        let unsure = match seen {
+            0.0 => NOT_SEEN,
+            seen if seen < 1.0 => PARTLY_SEEN,
+            _ => SEEN,
+        };
+        let doubt = unoccluded * (variation * seen + unsure);
+        let link = Link { a, b, exchange: unoccluded * seen };
+        if self.is_fine(a, b, doubt) {
+            return Verdict::Keep(Judged { link, doubt });
+        }
+        self.divide(a, b).unwrap_or(match seen {
+            0.0 => Verdict::Drop,
+            _ => Verdict::Keep(Judged { link, doubt: 0.0 }),
+        })
+    }
+
+    /// What a node exchanges with itself: an element nothing, a cluster little if it is nearly flat.
+    fn within(&self, at: u32, node: &Node) -> Verdict {
+        if !node.is_cluster() {
+            return Verdict::Drop;
+        }
+        let steepest = if node.spread < FRAC_PI_4 { (2.0 * node.spread).sin().powi(2) } else { 1.0 };
+        match self.is_fine(at, at, steepest * node.area) && node.spread < FRAC_PI_4 {
+            true => Verdict::Drop,
+            false => Verdict::Within(at),
+        }
+    }
+
+    /// The larger of both that can be divided.
+    fn divide(&self, a: u32, b: u32) -> Option<Verdict> {
+        let can = |node: &Node| !node.is_leaf() || node.longest_edge() >= 2.0 * self.bound.finest;
+        let (first, second) = (self.node(a), self.node(b));
+        let takes_first = can(first) && (first.radius >= second.radius || !can(second));
+        if takes_first {
+            Some(Verdict::Divide { divided: a, other: b })
+        } else {
+            can(second).then_some(Verdict::Divide { divided: b, other: a })
+        }
+    }
+
+    /// The exchange of two nodes by their points.
+    fn sampled(&self, a: u32, b: u32) -> f64 {
+        let hierarchy = &self.elements.hierarchy;
+        let (from, to) = (hierarchy.points(a), hierarchy.points(b));
+        let sum: f64 = from.iter().flat_map(|from| to.iter().map(|to| kernel(*from, *to))).sum();
+        let each = self.node(a).area * self.node(b).area / (POINTS * POINTS) as f64;
+        if sum.is_finite() { sum * each } else { self.node(a).area.min(self.node(b).area) }
+    }
+
+    /// The part of light that comes from points of one to points of the other.
+    ///
+    /// - `roughly`: a few rays will do.
+    fn visibility(&self, a: u32, b: u32, roughly: bool) -> f64 {
+        let hierarchy = &self.elements.hierarchy;
+        let (from, to) = (hierarchy.points(a), hierarchy.points(b));
+        // Which go together differs from link to link.
+        let shift = (a.wrapping_mul(0x9e37_79b9) ^ b.wrapping_mul(0x85eb_ca6b)) as usize >> 7;
+        let (mut seen, mut all) = (0.0, 0.0);
+        let mut ask = |round: usize| {
+            for (i, from) in from.iter().enumerate() {
+                let to = to[(i + shift + round) % POINTS];
+                let weight = kernel(*from, to);
+                if weight > 0.0 && weight.is_finite() {
+                    seen += weight * self.sight.between(*from, to);
+                    all += weight;
+                }
+            }
+            (seen, all)
+        };
+        let (mut seen, mut all) = ask(0);
+        let agree = |seen: f64, all: f64| seen <= 0.0 || seen >= all * (1.0 - 1e-12);
+        if !(roughly && agree(seen, all)) {
+            (seen, all) = ask(1);
+            if !agree(seen, all) {
+                ask(2);
+                (seen, all) = ask(3);
+            }
+        }
+        if all > 0.0 { if agree(seen, all) { f64::from(seen > 0.0) } else { seen / all } } else { 0.0 }
+    }
+}
+
+/// Whether all of a node is behind all of another.
+fn is_behind(node: &Node, other: &Node) -> bool {
+    if !node.is_cluster() && !other.is_cluster() {
+        return node.corners.iter().all(|corner| (*corner - other.corners[0]).dot(other.normal) <= 0.0);
+    }
+    let offset = node.middle - other.middle;
+    let distance = offset.length();
+    let sizes = node.radius + other.radius;
+    // The directions from one to the other are in a cone.
+    let cone = if distance > sizes { (sizes / distance).asin() } else { return false };
+    let angle = (offset.dot(other.normal) / distance).clamp(-1.0, 1.0).acos();
+    angle - cone - other.spread > FRAC_PI_2
+}

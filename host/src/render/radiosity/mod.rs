@@ -1,0 +1,220 @@
+//! Radiosity: light that goes from diffuse surface to diffuse surface, any number of times, for all views at once.
+//!
+//! Each side of a triangle that reflects diffusely is a patch. Patches are divided into elements where the light of lights
+//! varies and where what they exchange is not known well enough; above them, clusters exchange light that goes far. Form
+//! factors are those of unoccluded polygons, times what rays find to be visible. Rows of form factors are then balanced:
+//! where nothing escapes, they add up to 1, and stay symmetric.
+//!
+//! What light cannot come to is left out first: rays join patches that see each other, and only what is joined to a lit
+//! one takes part. A closed dark room stays dark to the last bit.
+//!
+//! *Not modelled*: light that mirrors, glass and gloss pass on; what such surfaces take counts as escaped. Light through
+//! coloured surfaces loses as much in all bands as in the mean. What moves stands where it is in the middle of the time.
+//! Of spectra, eight bands are known, each 59 nm wide: within a band, light of other surfaces has the same strength
+//! everywhere.
+
+mod direct;
+mod elements;
+mod exchange;
+mod form_factor;
+mod hierarchy;
+mod links;
+mod report;
+mod sight;
+mod solver;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod visible;
+
+pub use elements::Exitance;
+pub(in crate::render) use elements::diffuse;
+pub use report::Report;
+pub use solver::Unsolvable;
+pub use surface::Part;
+
+use super::ray_tracing::world::World;
+use super::{RenderError, Watch};
+use crate::color::Channels;
+use crate::plan::{Plan, Stage};
+use crate::scene::Prepared;
+use elements::Elements;
+use exchange::{Exchange, Link};
+use hierarchy::{Hierarchy, Patch, normal_and_area};
+use links::{Bound, Judged, refine};
+use sight::Sight;
+use solver::{Solved, solve};
+use std::time::Instant;
+use surface::SurfaceLight;
+
+/// Elements at the most.
+const MOST_ELEMENTS: usize = 2_000_000;
+/// How often links are looked at with the light that was found.
+const ROUNDS: u64 = 3;
+/// The longest edge of an element, in shortest ones.
+const COARSEST: f64 = 16.0;
+/// The light of lights may vary over an element by so many errors: it is linear between its corners.
+const VARIATION: f64 = 4.0;
+
+/// How good a solution is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Error of the light that one link brings, as a part of the mean irradiance, above 0.
+    pub error: f64,
+    /// Elements are not divided below this length, as a part of the diagonal of the scene, above 0.
+    pub finest: f64,
+    /// Error of the solver, as a part of the greatest irradiance, above 0.
+    pub tolerance: f64,
+    /// Directions in which each element looks around, 1 and more.
+    pub directions: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { error: 0.02, finest: 1.0 / 256.0, tolerance: 1e-6, directions: 32 }
+    }
+}
+
+impl From<crate::scene::Settings> for Settings {
+    fn from(scene: crate::scene::Settings) -> Settings {
+        Settings { error: scene.patch_error, finest: scene.finest_patch, ..Settings::default() }
+    }
+}
+
+/// The light of a scene, for all views.
+#[derive(Clone, Debug)]
+pub struct Radiosity {
+    light: SurfaceLight,
+    /// What it took.
+    pub report: Report,
+}
+
+impl Radiosity {
+    /// Solves for the light of all surfaces, on the threads of the pool in which it is called. The same bytes for any
+    /// number of threads.
+    ///
+    /// When it is stopped, nothing is divided any more and the light is that of the elements as they are.
+    ///
+    /// # Errors
+    /// [`RenderError`], when the octree cannot be built, a material is impossible, or light grows without end.
+    pub fn new(
+        prepared: &Prepared,
+        plan: &Plan,
+        settings: &Settings,
+        exitance: Option<Exitance<'_>>,
+        watch: &Watch<'_>,
+    ) -> Result<Radiosity, RenderError> {
+        let start = Instant::now();
+        let stopped = || watch.is_cancelled();
+        let world = World::new(prepared, plan)?;
+        let sight = Sight::new(&world);
+        let shadows = plan.needs(Stage::Shadows);
+        let diagonal = prepared.bounds.diagonal();
+        let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
+        let lengths = [finest, COARSEST * finest];
+        let patches = visible::lit_patches(&sight, patches(prepared, plan, &sight), (exitance, shadows), lengths);
+        if patches.is_empty() {
+            return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: Report::default() });
+        }
+        let mut elements = Elements::new(Hierarchy::new(patches), &sight, exitance, shadows);
+        let mean = elements.mean_irradiance();
+        elements.divide_where_light_varies(&sight, VARIATION * settings.error * mean, lengths);
+        let mut links: Vec<Judged> = Vec::new();
+        let mut report = Report { patches: elements.hierarchy.patches.len(), ..Report::default() };
+        let mut leaves = Vec::new();
+        let mut dark = Vec::new();
+        for round in 0..ROUNDS {
+            let bound = Bound { irradiance: settings.error * elements.mean_irradiance(), finest };
+            refine(&sight, &mut elements, &mut links, bound, &stopped);
+            (watch.progress)(2 * round + 1, 2 * ROUNDS);
+            let is_last = round + 1 == ROUNDS || stopped();
+            leaves = elements.hierarchy.leaves();
+            let seen = match is_last {
+                true => visible::seen(&sight, &elements, &leaves, settings.directions),
+                false => vec![[0.0, 1.0]; leaves.len()],
+            };
+            let tolerance = if is_last { settings.tolerance } else { 1e-2 };
+            let solved = light(&mut elements, &links, &seen, (tolerance, &stopped), &mut report)?;
+            elements.take(&leaves, &solved.irradiance);
+            (watch.progress)(2 * round + 2, 2 * ROUNDS);
+            if is_last {
+                dark = seen.iter().map(|[_, most]| *most < 0.0).collect();
+                break;
+            }
+        }
+        report.elements = leaves.len();
+        report.links = links.len();
+        let light = SurfaceLight::new(prepared, elements, &leaves, &dark);
+        report.seconds = start.elapsed().as_secs_f64();
+        Ok(Radiosity { light, report })
+    }
+
+    /// Irradiance at a place of a side of a triangle, W/m²: in bands, or in spectra the means over eight parts of the
+    /// wavelengths.
+    ///
+    /// - `outside`: whether it is the outer side. `weights`: of the corners, each 0..=1, their sum 1.
+    pub fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: Part) -> Channels {
+        self.light.at(triangle, outside, weights, part)
+    }
+}
+
+/// All sides of triangles that reflect diffusely or send light from elsewhere.
+fn patches(prepared: &Prepared, plan: &Plan, sight: &Sight<'_>) -> Vec<Patch> {
+    let appearance = &sight.world.appearance;
+    let sides = |triangle: u32| {
+        let object = prepared.object_of[triangle as usize];
+        let is_diffuse = || appearance.optics(object, prepared.material_number(triangle)).is_diffuse();
+        let [a, b, c] = prepared.corners(triangle);
+        let takes_part = plan.keeps_object(object as usize) && is_diffuse() && normal_and_area([a, b, c]).1 > 0.0;
+        let side = |corners, outside| Patch { corners, triangle, outside };
+        let sides = takes_part.then(|| [side([a, b, c], true), side([a, c, b], false)]);
+        sides.into_iter().flatten()
+    };
+    (0..prepared.triangles.len() as u32).flat_map(sides).collect()
+}
+
+/// Solves for the light of the elements as they are, and keeps the books.
+fn light(
+    elements: &mut Elements<'_>,
+    links: &[Judged],
+    seen: &[[f64; 2]],
+    (tolerance, stopped): (f64, &dyn Fn() -> bool),
+    report: &mut Report,
+) -> Result<Solved, RenderError> {
+    let links: Vec<Link> = links.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
+    let mut exchange = Exchange::new(&elements.hierarchy, &links);
+    let leaves = exchange.leaves.clone();
+    let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };
+    let (reflectance, direct, extra) = (of(&elements.reflectance), of(&elements.direct), of(&elements.extra));
+    report.unbalanced = exchange.balance(seen);
+    let first: Vec<Channels> = (0..leaves.len()).map(|i| extra[i] + reflectance[i] * direct[i]).collect();
+    let solved = solve(&exchange, &reflectance, &first, tolerance, stopped)?;
+    report.steps = solved.steps;
+    report.solver_error = solved.error;
+    let areas = exchange.areas();
+    let rows = exchange.apply(&vec![Channels::ONE; areas.len()]);
+    let total = |part: &dyn Fn(usize) -> Channels| -> f64 {
+        (0..areas.len()).map(|i| part(i).0.iter().sum::<f64>() * areas[i]).sum()
+    };
+    let all = |i: usize| direct[i] + solved.irradiance[i];
+    report.arrived = total(&|i| direct[i] + extra[i]);
+    report.absorbed = total(&|i| (Channels::ONE - reflectance[i]) * all(i));
+    report.escaped = total(&|i| (extra[i] + reflectance[i] * all(i)) * (Channels::ONE - rows[i] * areas[i].recip()));
+    report.left = report.arrived - report.absorbed - report.escaped;
+    Ok(solved)
+}
+
+impl Elements<'_> {
+    /// The mean irradiance of all elements, or what they send if that is more: W/m².
+    fn mean_irradiance(&self) -> f64 {
+        (self.direct[0] + self.indirect[0]).max().max(self.extra[0].max())
+    }
+
+    /// Takes up a solution.
+    fn take(&mut self, leaves: &[u32], irradiance: &[Channels]) {
+        for (leaf, irradiance) in leaves.iter().zip(irradiance) {
+            self.indirect[*leaf as usize] = *irradiance;
+        }
+        self.pull();
+    }
+}

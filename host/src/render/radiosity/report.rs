@@ -1,0 +1,45 @@
+//! What a solution took, how good it is, and where the light went.
+
+use serde::Serialize;
+
+/// What a solution took, how good it is, and where the light went.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// Sides of triangles that light may come to.
+    pub patches: usize,
+    /// Elements into which they are divided.
+    pub elements: usize,
+    /// Pairs of nodes that exchange light.
+    pub links: usize,
+    /// Steps of the solver, the last time.
+    pub steps: u32,
+    /// A bound of the error of the solver, as a part of the greatest irradiance by other elements.
+    pub solver_error: f64,
+    /// The part of all light exchanged that elements keep to themselves because form factors did not add up.
+    pub unbalanced: f64,
+    /// Flux that comes to elements straight from lights, and that they send from elsewhere: W, all bands together.
+    pub arrived: f64,
+    /// Flux that they absorb.
+    pub absorbed: f64,
+    /// Flux that leaves them and comes to no other element.
+    pub escaped: f64,
+    /// What is left of the flux that arrived: the error of the balance.
+    pub left: f64,
+    /// Wall-clock time, seconds.
+    pub seconds: f64,
+}
+
+impl Report {
+    /// It in words, a line each.
+    pub fn lines(&self) -> [String; 2] {
+        let Report { patches, elements, links, steps, solver_error, unbalanced, seconds, .. } = *self;
+        let Report { arrived, absorbed, escaped, left, .. } = *self;
+        [
+            format!(
+                "{elements} elements of {patches} patches, {links} links, {steps} steps of the solver in {seconds:.3} s; \
+                 error of the solver at most {solver_error:.1e}, form factors out of balance by {unbalanced:.1e}"
+            ),
+            format!("flux {arrived:.6} = {absorbed:.6} absorbed + {escaped:.6} escaped + {left:.1e} left"),
+        ]
+    }
+}

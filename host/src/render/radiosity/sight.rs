@@ -1,0 +1,98 @@
+//! What elements see: whether something is between two points, and what is met in all directions.
+
+use super::super::ray_tracing::world::World;
+use super::hierarchy::Patch;
+use crate::numeric::ray::Ray;
+use crate::numeric::sampling::cosine_hemisphere;
+use crate::numeric::sequence::Sequence;
+use glam::DVec3;
+
+/// Rounding errors, in units of the last place of the largest coordinate, that rays keep clear of.
+const CLEARANCE_ULPS: f64 = 64.0;
+/// Surfaces that let light straight through and that a ray is led through, at the most.
+const MOST_PASSED: usize = 64;
+
+/// Asks rays.
+pub(super) struct Sight<'a> {
+    pub(super) world: &'a World<'a>,
+    pub(super) clearance: f64,
+    seed: u64,
+}
+
+/// What is seen from an element in a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Seen {
+    /// Nothing: light escapes.
+    Nothing,
+    /// A lamp that is no object.
+    Lamp,
+    /// A side of a triangle, and the weights of its corners, as the scene orders them.
+    Side { triangle: u32, outside: bool, weights: [f64; 3] },
+}
+
+impl<'a> Sight<'a> {
+    pub(super) fn new(world: &'a World<'a>) -> Sight<'a> {
+        let prepared = world.appearance.prepared;
+        let largest = prepared.vertices.iter().fold(0.0f64, |most, vertex| most.max(vertex.abs().max_element()));
+        let clearance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+        Sight { world, clearance, seed: prepared.settings.seed }
+    }
+
+    /// The part of light that comes from one point to another, in the mean over what light carries, 0..=1.
+    ///
+    /// Each with its unit normal, on the sides that see each other.
+    pub(super) fn between(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
+        let origin = from + from_normal * self.clearance;
+        let direction = to + to_normal * self.clearance - origin;
+        let passed = self.world.passed(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0));
+        let lanes = self.world.appearance.wavelengths.lanes();
+        passed.0[..lanes].iter().sum::<f64>() / lanes as f64
+    }
+
+    /// Looks from points of a triangle in directions that are as dense as their cosine.
+    ///
+    /// - `number`: of the triangle: each has directions of its own. `count`: of directions.
+    pub(super) fn around(&self, corners: [DVec3; 3], normal: DVec3, number: u64, count: u32) -> Vec<Seen> {
+        let sequence = Sequence::new(self.seed, number);
+        let [a, b, c] = corners;
+        let look = |index: u32| {
+            let [u, v] = crate::numeric::sampling::triangle(sequence.point(index, 0));
+            let towards = cosine_hemisphere(sequence.point(index, 1), normal);
+            // Points that are on an edge may lie in another surface.
+            let [u, v] = [u, v].map(|weight| weight * 0.998 + 0.001 / 1.5);
+            let origin = a + (b - a) * u + (c - a) * v + normal * self.clearance;
+            self.along(&Ray { origin, direction: towards })
+        };
+        (0..count).map(look).collect()
+    }
+
+    /// What a ray meets first that light does not go straight through.
+    fn along(&self, ray: &Ray) -> Seen {
+        let (world, prepared) = (self.world, self.world.appearance.prepared);
+        let mut from = 0.0;
+        for _ in 0..MOST_PASSED {
+            let struck = world.struck(ray, from);
+            let t_max = struck.map_or(f64::INFINITY, |(hit, _)| hit.t);
+            if world.appearance.glow(ray, from, t_max, 0).is_some() {
+                return Seen::Lamp;
+            }
+            let Some((hit, triangle)) = struck else { return Seen::Nothing };
+            let optics =
+                world.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+            if !optics.is_passable() {
+                let [a, b, c] = prepared.corners(triangle);
+                let outside = (b - a).cross(c - a).dot(ray.direction) < 0.0;
+                return Seen::Side { triangle, outside, weights: [1.0 - hit.u - hit.v, hit.u, hit.v] };
+            }
+            from = hit.t;
+        }
+        Seen::Nothing
+    }
+}
+
+impl Patch {
+    /// Weights of the corners of the triangle, as the scene orders them, in the order of the patch.
+    pub(super) fn weights(&self, [a, b, c]: [f64; 3]) -> [f64; 3] {
+        if self.outside { [a, b, c] } else { [a, c, b] }
+    }
+}

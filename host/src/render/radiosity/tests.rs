@@ -1,0 +1,266 @@
+//! Facts about radiosity.
+
+use super::*;
+use crate::color::Color;
+use crate::illumination::material::Classic;
+use crate::illumination::{Light, Material, Paint};
+use crate::mesh::Mesh;
+use crate::scene::{Object, Scene, Shape};
+use crate::solid::Primitive;
+use glam::{DMat4, DVec3};
+use std::f64::consts::PI;
+
+fn matt(reflectance: f64) -> Material {
+    Classic { diffuse: Paint::grey(reflectance), ..Classic::default() }.into()
+}
+
+fn object(name: &str, shape: Shape, reflectance: f64) -> Object {
+    let transform = DMat4::IDENTITY;
+    Object { name: name.into(), shape, transform, material: Some(matt(reflectance)), tolerance: Some(0.05) }
+}
+
+fn cube(name: &str, size: f64, reflectance: f64) -> Object {
+    object(name, Shape::Solid(Primitive::Box { size: DVec3::splat(size) }), reflectance)
+}
+
+fn sphere(name: &str, radius: f64, reflectance: f64) -> Object {
+    object(name, Shape::Solid(Primitive::Sphere { radius }), reflectance)
+}
+
+fn prepared(objects: Vec<Object>, lights: Vec<Light>) -> Prepared {
+    let mut scene = Scene { objects, lights, ..Scene::default() };
+    // Light that goes from surface to surface needs what is out of view.
+    scene.settings.interreflection = true;
+    Prepared::new(&scene).expect("a scene")
+}
+
+fn solved(prepared: &Prepared, settings: &Settings, exitance: Option<Exitance<'_>>) -> Radiosity {
+    let plan = Plan::new(prepared, &prepared.view());
+    Radiosity::new(prepared, &plan, settings, exitance, &Watch::NOBODY).expect("a solution")
+}
+
+fn coarse() -> Settings {
+    Settings { error: 0.1, finest: 1.0 / 16.0, ..Settings::default() }
+}
+
+fn lamp(at: DVec3) -> Light {
+    Light::Point { at, intensity: Color::grey(1.0) }
+}
+
+/// Irradiance in the middle of a side of a triangle.
+fn middle(radiosity: &Radiosity, triangle: u32, outside: bool, part: Part) -> f64 {
+    radiosity.irradiance(triangle, outside, [1.0 / 3.0; 3], part).0[0]
+}
+
+/// Mean irradiance of a side of some triangles.
+fn mean(prepared: &Prepared, radiosity: &Radiosity, object: usize, outside: bool, part: Part) -> f64 {
+    let of = &prepared.objects[object];
+    let (mut sum, mut all) = (0.0, 0.0);
+    for triangle in of.first..of.first + of.count {
+        let area = normal_and_area(prepared.corners(triangle)).1;
+        sum += area * middle(radiosity, triangle, outside, part);
+        all += area;
+    }
+    sum / all
+}
+
+#[test]
+fn in_a_closed_sphere_light_grows_by_one_over_what_is_lost() {
+    for loss in [0.5, 0.1, 1e-3, 1e-6] {
+        let prepared = prepared(vec![sphere("sphere", 1.0, 1.0 - loss)], vec![]);
+        let inside = |_: u32, outside: bool, _: DVec3| if outside { Channels::ZERO } else { Channels::splat(2.0) };
+        let radiosity = solved(&prepared, &coarse(), Some(&inside));
+        let Report { steps, solver_error, left, arrived, unbalanced, .. } = radiosity.report;
+        for triangle in 0..prepared.triangles.len() as u32 {
+            let found = 2.0 + (1.0 - loss) * middle(&radiosity, triangle, false, Part::All);
+            assert!((found * loss / 2.0 - 1.0).abs() < 1e-6, "{loss}: {found}");
+            assert_eq!(middle(&radiosity, triangle, true, Part::All), 0.0, "outside it is dark");
+        }
+        assert!(steps < 100 && solver_error < 1e-6, "{loss}: {:?}", radiosity.report);
+        assert!((left / arrived).abs() < 1e-6 && unbalanced < 1e-6, "{loss}: {:?}", radiosity.report);
+    }
+}
+
+#[test]
+fn a_closed_room_that_reflects_nearly_all_is_solved_in_few_steps() {
+    for loss in [1e-2, 1e-4, 1e-6] {
+        let room = prepared(vec![cube("room", 2.0, 1.0 - loss), sphere("ball", 0.4, 1.0 - loss)], vec![]);
+        // One wall glows on its inner side.
+        let wall = |_: u32, outside: bool, at: DVec3| Channels::splat(if !outside && at.y > 0.99 { 1.0 } else { 0.0 });
+        let radiosity = solved(&room, &coarse(), Some(&wall));
+        let report = radiosity.report;
+        assert!(report.steps < 100 && report.solver_error < 1e-6, "{loss}: {report:?}");
+        assert!(
+            (report.left / report.arrived).abs() < 1e-6 && report.escaped.abs() < 1e-6 * report.arrived,
+            "{report:?}"
+        );
+        // All that is sent is absorbed, in the mean over all surfaces.
+        let all = 24.0 + 4.0 * PI * 0.16;
+        let mean = report.absorbed / 3.0 / (loss * all);
+        let ball = super::tests::mean(&room, &radiosity, 1, true, Part::All);
+        assert!((ball / mean - 1.0).abs() < 0.05 + loss * 100.0, "{loss}: {ball} {mean}");
+    }
+}
+
+#[test]
+fn light_that_nothing_takes_away_is_refused_and_no_light_is_none() {
+    let mirror = prepared(vec![sphere("sphere", 1.0, 1.0)], vec![]);
+    let plan = Plan::new(&mirror, &mirror.view());
+    let of = |exitance: f64| {
+        let inside = move |_: u32, _: bool, _: DVec3| Channels::splat(exitance);
+        Radiosity::new(&mirror, &plan, &coarse(), Some(&inside), &Watch::NOBODY)
+    };
+    assert!(matches!(of(1.0), Err(RenderError::Radiosity(Unsolvable::NoLoss))));
+    let dark = of(0.0).expect("no light is an answer");
+    assert_eq!(mean(&mirror, &dark, 0, false, Part::All), 0.0);
+}
+
+#[test]
+fn a_sphere_in_a_sphere_sends_all_its_light_to_it_and_gets_its_share_back() {
+    let (r1, r2) = (0.5f64, 1.5f64);
+    let spheres = prepared(vec![sphere("inner", r1, 0.0), sphere("outer", r2, 0.0)], vec![]);
+    let material_has_diffuse = |prepared: &mut Prepared| {
+        prepared.objects.iter_mut().for_each(|object| object.materials = vec![matt(1e-9)]);
+    };
+    let mut spheres = spheres;
+    material_has_diffuse(&mut spheres);
+    let inner = spheres.objects[0].count;
+    let area = |object: usize| -> f64 {
+        let of = &spheres.objects[object];
+        (of.first..of.first + of.count).map(|t| normal_and_area(spheres.corners(t)).1).sum()
+    };
+    let ratio = area(0) / area(1);
+    assert!((ratio / (r1 * r1 / (r2 * r2)) - 1.0).abs() < 0.1);
+    let from_inner =
+        |triangle: u32, outside: bool, _: DVec3| Channels::splat(if triangle < inner && outside { 1.0 } else { 0.0 });
+    let radiosity = solved(&spheres, &coarse(), Some(&from_inner));
+    assert!((mean(&spheres, &radiosity, 1, false, Part::All) / ratio - 1.0).abs() < 0.01);
+    assert!(mean(&spheres, &radiosity, 0, true, Part::All) < 1e-6, "a convex body sees nothing of itself");
+    let from_outer =
+        |triangle: u32, outside: bool, _: DVec3| Channels::splat(if triangle >= inner && !outside { 1.0 } else { 0.0 });
+    let radiosity = solved(&spheres, &coarse(), Some(&from_outer));
+    assert!((mean(&spheres, &radiosity, 0, true, Part::All) - 1.0).abs() < 0.02);
+    let own = mean(&spheres, &radiosity, 1, false, Part::All);
+    assert!((own - (1.0 - ratio)).abs() < 0.02, "{own} {ratio}");
+}
+
+#[test]
+fn a_closed_dark_room_with_lights_outside_stays_dark_to_the_last_bit() {
+    // Two rooms that touch, a slab below both, and lamps all around and in one of them.
+    let mut lit = cube("lit room", 2.0, 0.7);
+    lit.transform = DMat4::from_translation(DVec3::new(2.0, 0.0, 0.0));
+    let mut slab = object("slab", Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 0.5, 9.0) }), 0.6);
+    slab.transform = DMat4::from_translation(DVec3::new(0.0, -1.5, 0.0));
+    let lights = vec![
+        lamp(DVec3::new(3.0, 4.0, 2.0)),
+        lamp(DVec3::new(-2.0, 0.5, 0.3)),
+        lamp(DVec3::new(2.0, 0.3, 0.2)),
+        Light::Sky { map: None, radiance: Color::grey(0.3), turned: 0.0 },
+    ];
+    let scene = prepared(vec![cube("dark room", 2.0, 0.7), lit, slab], lights);
+    let radiosity = solved(&scene, &coarse(), None);
+    let room = &scene.objects[0];
+    for triangle in room.first..room.first + room.count {
+        for weights in [[1.0 / 3.0; 3], [0.98, 0.01, 0.01], [0.01, 0.01, 0.98], [1.0, 0.0, 0.0], [0.5, 0.5, 0.0]] {
+            assert_eq!(radiosity.irradiance(triangle, false, weights, Part::All), Channels::ZERO);
+        }
+    }
+    assert!(mean(&scene, &radiosity, 0, true, Part::All) > 0.0);
+    assert!(mean(&scene, &radiosity, 1, false, Part::Indirect) > 0.0);
+    let Report { arrived, left, .. } = radiosity.report;
+    assert!((left / arrived).abs() < 1e-6);
+}
+
+#[test]
+fn the_hierarchy_gives_what_a_full_matrix_gives() {
+    let room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.3, 0.5, -0.2))]);
+    let plan = Plan::new(&room, &room.view());
+    let world = World::new(&room, &plan).expect("a world");
+    let sight = Sight::new(&world);
+    let inside: Vec<Patch> = patches(&room, &plan, &sight).into_iter().filter(|patch| !patch.outside).collect();
+    let mut elements = Elements::new(Hierarchy::new(inside), &sight, None, true);
+    elements.divide_where_light_varies(&sight, f64::INFINITY, [0.1, 0.6]);
+    let mut links = Vec::new();
+    let mut found = Vec::new();
+    for error in [0.05, 0.002] {
+        let bound = Bound { irradiance: error * elements.mean_irradiance(), finest: 0.6 };
+        refine(&sight, &mut elements, &mut links, bound, &|| false);
+        let ones = vec![[1.0; 2]; elements.hierarchy.leaves().len()];
+        let mut report = Report::default();
+        let solved = light(&mut elements, &links, &ones, (1e-9, &|| false), &mut report).expect("a solution");
+        found.push((links.len(), solved.irradiance));
+    }
+    let leaves = elements.hierarchy.leaves();
+    // All pairs, and Gauss and Seidel's sweeps.
+    let nodes: Vec<_> = leaves.iter().map(|leaf| elements.hierarchy.nodes[*leaf as usize]).collect();
+    let polygons: Vec<_> = nodes.iter().map(|node| node.polygon()).collect();
+    let full: Vec<Vec<f64>> = nodes
+        .iter()
+        .zip(&polygons)
+        .map(|(node, a)| polygons.iter().map(|b| form_factor::exchange(a, b, 1e-6) / node.area).collect())
+        .collect();
+    let rows = full.iter().map(|row| row.iter().sum::<f64>());
+    assert!(rows.into_iter().all(|sum| (sum - 1.0).abs() < 2e-3), "a room is closed");
+    let direct: Vec<f64> = leaves.iter().map(|leaf| elements.direct[*leaf as usize].0[0]).collect();
+    let mut exact = vec![0.0; nodes.len()];
+    for _ in 0..60 {
+        for i in 0..nodes.len() {
+            exact[i] = (0..nodes.len()).map(|j| full[i][j] * 0.6 * (direct[j] + exact[j])).sum();
+        }
+    }
+    let greatest = exact.iter().fold(0.0f64, |a, b| a.max(*b));
+    let [coarse, fine] = [0, 1].map(|i| {
+        let off = exact.iter().zip(&found[i].1).map(|(a, b)| (a - b.0[0]).abs());
+        (found[i].0, off.fold(0.0, f64::max) / greatest)
+    });
+    assert!(fine.1 < 0.02 && coarse.1 < 0.2, "{coarse:?} {fine:?}");
+    assert!(coarse.0 < fine.0, "{coarse:?} {fine:?}");
+}
+
+#[test]
+fn the_solution_is_the_same_for_any_number_of_threads() {
+    let room = prepared(vec![cube("room", 2.0, 0.6), sphere("ball", 0.5, 0.8)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let radiosity = pool.install(|| solved(&room, &coarse(), None));
+        let at = |triangle: u32| radiosity.irradiance(triangle, false, [0.2, 0.3, 0.5], Part::All);
+        let values: Vec<u64> = (0..room.triangles.len() as u32).map(|t| at(t).0[0].to_bits()).collect();
+        (values, Report { seconds: 0.0, ..radiosity.report })
+    };
+    assert_eq!(with(1), with(2));
+}
+
+#[test]
+fn nothing_breaks_without_objects_lights_reflectance_or_area() {
+    let solved = |objects: Vec<Object>, lights: Vec<Light>| solved(&prepared(objects, lights), &coarse(), None).report;
+    assert_eq!(solved(vec![], vec![]), Report::default());
+    assert_eq!(solved(vec![cube("cube", 1.0, 0.5)], vec![]), Report::default());
+    assert_eq!(solved(vec![cube("cube", 1.0, 0.0)], vec![lamp(DVec3::Y)]), Report::default());
+    let sliver = Mesh {
+        vertices: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0, DVec3::new(0.0, 1e-160, 0.0)],
+        triangles: vec![[0, 1, 2], [0, 1, 1], [0, 1, 3]],
+        corner_normals: vec![[DVec3::Z; 3]; 3],
+        ..Mesh::default()
+    };
+    let file = tempfile::tempdir().expect("a folder");
+    let path = file.path().join("sliver.obj");
+    let lines = sliver.vertices.iter().map(|v| format!("v {:e} {:e} {:e}\n", v.x, v.y, v.z));
+    let text: String = lines.chain(["f 1 2 3\n".into(), "f 1 2 2\n".into(), "f 1 2 4\n".into()]).collect();
+    std::fs::write(&path, text).expect("a file");
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::new(0.0, 1e-160, 0.0)];
+    assert!(normal_and_area(corners).1.is_finite());
+}
+
+#[test]
+fn scenes_of_any_size_have_the_same_light() {
+    let of = |scale: f64| {
+        let room = cube("room", 2.0 * scale, 0.5);
+        let light = Light::Point { at: DVec3::new(0.2, 0.3, 0.1) * scale, intensity: Color::grey(scale * scale) };
+        let room = prepared(vec![room], vec![light]);
+        mean(&room, &solved(&room, &coarse(), None), 0, false, Part::Indirect)
+    };
+    let one = of(1.0);
+    for scale in [1e-6, 1e6] {
+        assert!((of(scale) / one - 1.0).abs() < 1e-3, "{scale}: {} {one}", of(scale));
+    }
+}

@@ -1,0 +1,157 @@
+//! What sees what: which patches light can come to, and how much of what elements see exchanges light.
+
+use super::elements::{Elements, Exitance};
+use super::hierarchy::{Hierarchy, NONE, Patch, normal_and_area};
+use super::sight::{Seen, Sight};
+use crate::color::Channels;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Directions in which a patch looks around for each of its parts, and at the most.
+const LOOKS: u32 = 16;
+const MOST_LOOKS: u32 = 1024;
+/// How many standard deviations a part that was counted may be off.
+const DEVIATIONS: f64 = 3.0;
+
+/// Sets of what is joined.
+struct Joined(Vec<u32>);
+
+impl Joined {
+    fn new(count: usize) -> Joined {
+        Joined((0..count as u32).collect())
+    }
+
+    fn root(&mut self, mut at: u32) -> u32 {
+        while self.0[at as usize] != at {
+            let next = self.0[self.0[at as usize] as usize];
+            self.0[at as usize] = next;
+            at = next;
+        }
+        at
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = (a.min(b), a.max(b));
+        self.0[high as usize] = low;
+    }
+
+    /// Whether each is joined to one that is lit.
+    fn alight(&mut self, is_lit: &[bool]) -> Vec<bool> {
+        let mut root_lit = vec![false; self.0.len()];
+        for (at, _) in (0..).zip(is_lit).filter(|(_, is_lit)| **is_lit) {
+            root_lit[self.root(at) as usize] = true;
+        }
+        (0..self.0.len() as u32).map(|at| root_lit[self.root(at) as usize]).collect()
+    }
+}
+
+/// The patches to which light comes, straight or from others.
+///
+/// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
+pub(super) fn lit_patches(
+    sight: &Sight<'_>,
+    patches: Vec<Patch>,
+    (exitance, shadows): (Option<Exitance<'_>>, bool),
+    [_, coarsest]: [f64; 2],
+) -> Vec<Patch> {
+    let is_lit = |patch: &Patch| {
+        let (normal, _) = normal_and_area(patch.corners);
+        let at = |point: DVec3| {
+            let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
+            extra.max() > 0.0 || sight.light_at(point, normal, shadows).max() > 0.0
+        };
+        is_any_lit(patch.corners, coarsest, &at)
+    };
+    let is_lit: Vec<bool> = patches.par_iter().map(is_lit).collect();
+    let patch_of = numbers(sight, &patches);
+    let looked = |(number, patch): (usize, &Patch)| {
+        let (normal, area) = normal_and_area(patch.corners);
+        let parts = (area / (coarsest * coarsest)).ceil().max(1.0);
+        let count = (f64::from(LOOKS) * parts).min(f64::from(MOST_LOOKS)) as u32;
+        let seen = sight.around(patch.corners, normal, number as u64, count);
+        let mut seen: Vec<u32> = seen.into_iter().map(|seen| side(&patch_of, seen).0).filter(|n| *n != NONE).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        seen
+    };
+    let seen: Vec<Vec<u32>> = patches.par_iter().enumerate().map(looked).collect();
+    let mut joined = Joined::new(patches.len());
+    for (number, seen) in (0..).zip(&seen) {
+        seen.iter().for_each(|other| joined.join(number, *other));
+    }
+    let alight = joined.alight(&is_lit);
+    patches.into_iter().zip(alight).filter(|(_, alight)| *alight).map(|(patch, _)| patch).collect()
+}
+
+fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
+    let [a, b, c] = corners;
+    let middle = (a + b + c) / 3.0;
+    if at(middle) || corners.iter().any(|corner| at(*corner * 0.8 + middle * 0.2)) {
+        return true;
+    }
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+    longest > coarsest
+        && [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].iter().any(|part| is_any_lit(*part, coarsest, at))
+}
+
+/// The patch of each side of each triangle, outer and inner.
+fn numbers(sight: &Sight<'_>, patches: &[Patch]) -> Vec<[u32; 2]> {
+    let mut numbers = vec![[NONE; 2]; sight.world.appearance.prepared.triangles.len()];
+    for (number, patch) in (0..).zip(patches) {
+        numbers[patch.triangle as usize][usize::from(!patch.outside)] = number;
+    }
+    numbers
+}
+
+/// The patch that is seen, and where.
+fn side(patch_of: &[[u32; 2]], seen: Seen) -> (u32, [f64; 3]) {
+    match seen {
+        Seen::Side { triangle, outside, weights } => (patch_of[triangle as usize][usize::from(!outside)], weights),
+        _ => (NONE, [0.0; 3]),
+    }
+}
+
+/// For each leaf the least and the greatest part of what it sees that exchanges light; below 0 for leaves to which no light
+/// can come.
+pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], directions: u32) -> Vec<[f64; 2]> {
+    let hierarchy: &Hierarchy = &elements.hierarchy;
+    let patch_of = numbers(sight, &hierarchy.patches);
+    let mut place = vec![NONE; hierarchy.nodes.len()];
+    (0..).zip(leaves).for_each(|(number, leaf)| place[*leaf as usize] = number);
+    let looked = |(number, leaf): (usize, &u32)| {
+        let node = &hierarchy.nodes[*leaf as usize];
+        // Beyond the numbers of all patches.
+        let own = (1 << 40) + number as u64;
+        let of = |seen: Seen| {
+            let (patch, weights) = side(&patch_of, seen);
+            if patch == NONE {
+                return NONE;
+            }
+            let weights = hierarchy.patches[patch as usize].weights(weights);
+            place[hierarchy.leaf_at(patch, weights).0 as usize]
+        };
+        sight.around(node.corners, node.normal, own, directions.max(1)).into_iter().map(of).collect::<Vec<u32>>()
+    };
+    let seen: Vec<Vec<u32>> = leaves.par_iter().enumerate().map(looked).collect();
+    let mut joined = Joined::new(leaves.len());
+    for (number, seen) in (0..).zip(&seen) {
+        seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
+    }
+    let sends = |leaf: &u32| (elements.direct[*leaf as usize] + elements.extra[*leaf as usize]).max() > 0.0;
+    let alight = joined.alight(&leaves.iter().map(sends).collect::<Vec<bool>>());
+    let part = |(seen, alight): (&Vec<u32>, bool)| {
+        if !alight {
+            return [-1.0; 2];
+        }
+        let count = seen.len() as f64;
+        let part = seen.iter().filter(|other| **other != NONE).count() as f64 / count;
+        if part == 1.0 {
+            return [1.0; 2];
+        }
+        let off = DEVIATIONS * (part * (1.0 - part) / count).sqrt() + 1.0 / count;
+        [(part - off).max(0.0), (part + off).min(1.0)]
+    };
+    seen.iter().zip(alight).map(part).collect()
+}
