@@ -80,7 +80,8 @@ struct Arguments {
     /// be added at any time
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too
+    /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too; by ray tracing
+    /// without --resume also emitted, direct, caustic and indirect light, which together are the picture
     #[arg(long)]
     layers: bool,
     /// Leaves the background out where nothing stands before it, so that `peris compose` can put another one there; it
@@ -210,7 +211,11 @@ fn trace(
     (view, order): (&View, &Order),
     watch: &Watch<'_>,
 ) -> Result<Rendering, Failure> {
-    let Some(path) = &arguments.resume else { return Ok(tracer.render(view, order, watch)?) };
+    let Some(path) = &arguments.resume else {
+        let film = Film::new(order.width, order.height)?;
+        let film = if arguments.layers { film.with_classes() } else { film };
+        return Ok(tracer.go_on(film, view, order, watch)?);
+    };
     let fingerprint = Fingerprint::of(scene, tracer.prepared(), order);
     let film = match path.exists() {
         true => Film::read_state(path, order, fingerprint)?,

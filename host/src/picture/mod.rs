@@ -8,7 +8,7 @@ mod flip;
 
 pub use compose::{Operator, compose, compose_by_depth};
 pub use depth::Deep;
-pub use difference::{Difference, difference};
+pub use difference::{Difference, RELATIVE_FLOOR, difference};
 pub use file::PictureError;
 pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip};
 

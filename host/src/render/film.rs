@@ -17,7 +17,43 @@ pub struct Film {
     width: u32,
     height: u32,
     tallies: Vec<Tally>,
+    /// Sums of each class of light; none unless they are asked for.
+    classes: Vec<ByClass>,
 }
+
+/// Light by the ways on which it comes to the eye: each way is in one class.
+///
+/// A turn of light is broad where it is spread about everywhere, as by Lambert's term, and narrow where it is passed on as a
+/// beam: by mirrors, glass and highlights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Of lamps and skies, straight or by narrow turns alone.
+    Emitted,
+    /// By one broad turn, straight from the lamp; narrow ones may follow.
+    Direct,
+    /// By narrow turns first, and then one broad one; narrow ones may follow.
+    Caustic,
+    /// By several broad turns, and ambient light.
+    Indirect,
+}
+
+impl Class {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Class; 4] = [Class::Emitted, Class::Direct, Class::Caustic, Class::Indirect];
+
+    /// The word for it in layers.
+    pub fn word(self) -> &'static str {
+        match self {
+            Class::Emitted => "emitted",
+            Class::Direct => "direct",
+            Class::Caustic => "caustic",
+            Class::Indirect => "indirect",
+        }
+    }
+}
+
+/// Radiance of each class, linear sRGB.
+pub type ByClass = [DVec3; Class::ALL.len()];
 
 /// What is known of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, bytemuck::Zeroable)]
@@ -118,13 +154,19 @@ impl Film {
     /// makes the system give each page twice.
     pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
         let tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
-        Ok(Film { width, height, tallies })
+        Ok(Film { width, height, tallies, classes: Vec::new() })
+    }
+
+    /// The same that keeps the classes of light apart, from now on.
+    pub fn with_classes(mut self) -> Film {
+        self.classes = vec![ByClass::default(); self.tallies.len()];
+        self
     }
 
     /// A film of pixels that are known; none if there are not as many as that.
     pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>) -> Option<Film> {
         let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
-        possible.then_some(Film { width, height, tallies })
+        possible.then_some(Film { width, height, tallies, classes: Vec::new() })
     }
 
     /// Columns.
@@ -145,6 +187,18 @@ impl Film {
     /// All pixels, row by row from the top.
     pub fn tallies_mut(&mut self) -> &mut [Tally] {
         &mut self.tallies
+    }
+
+    /// Sums of the radiance of each class over all samples, pixel by pixel; none unless they are kept.
+    pub fn classes(&self) -> &[ByClass] {
+        &self.classes
+    }
+
+    /// All rows: their pixels, and the sums of each class if these are kept.
+    pub(super) fn rows_mut(&mut self) -> Vec<(&mut [Tally], Option<&mut [ByClass]>)> {
+        let width = self.width as usize;
+        let mut classes = self.classes.chunks_exact_mut(width);
+        self.tallies.chunks_exact_mut(width).map(|row| (row, classes.next())).collect()
     }
 
     /// The picture so far; pixels without samples are black and uncovered.

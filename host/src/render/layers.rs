@@ -1,6 +1,6 @@
 //! Films as EXR files with layers: what is known of each pixel beside its radiance.
 
-use super::film::{Film, Tally};
+use super::film::{Class, Film, Tally};
 use crate::picture::PictureError;
 use crate::scene::Prepared;
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
@@ -32,7 +32,8 @@ fn seen(tally: &Tally, sum: f64) -> Option<f64> {
 
 impl Film {
     /// Writes an EXR file with layers: R, G, B and A; the distance Z of what is seen first, its normal, its object and
-    /// material, counted from 1; the number of samples, and the variance of the mean luminance.
+    /// material, counted from 1; the number of samples, and the variance of the mean luminance; and the radiance of each
+    /// [`Class`] of light, if these were kept apart: together they are R, G and B.
     ///
     /// # Errors
     /// [`PictureError::Layers`].
@@ -42,6 +43,19 @@ impl Film {
             let values = tallies.iter().map(|tally| (layer.value)(tally) as f32).collect();
             AnyChannel::new(layer.name, FlatSamples::F32(values))
         });
+        let of_class = |class: Class| {
+            let value = move |axis: usize| {
+                let pixels = self.classes().iter().zip(tallies);
+                pixels
+                    .map(|(sums, tally)| (sums[class as usize][axis] / f64::from(tally.count.max(1))) as f32)
+                    .collect()
+            };
+            let name = move |band: &str| format!("{}.{band}", class.word());
+            ["R", "G", "B"].into_iter().zip(0..).map(move |(band, axis)| {
+                AnyChannel::new(exr::meta::attribute::Text::new_or_panic(name(band)), FlatSamples::F32(value(axis)))
+            })
+        };
+        let classes = Class::ALL.into_iter().filter(|_| !self.classes().is_empty()).flat_map(of_class);
         // Materials are counted over all objects.
         let firsts: Vec<u32> = prepared
             .objects
@@ -64,7 +78,7 @@ impl Film {
             ),
             AnyChannel::new("samples.count", FlatSamples::U32(tallies.iter().map(|tally| tally.count).collect())),
         ];
-        let channels = AnyChannels::sort(floats.chain(numbers).collect());
+        let channels = AnyChannels::sort(floats.chain(classes).chain(numbers).collect());
         let size = (self.width() as usize, self.height() as usize);
         let written = Image::from_channels(size, channels).write().to_file(path);
         written.map_err(|error| PictureError::Layers { path: path.into(), problem: error.to_string() })

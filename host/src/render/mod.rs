@@ -12,7 +12,7 @@ pub mod ray_tracing;
 pub mod scan_line;
 mod state;
 
-pub use film::{Film, LUMINANCE, Sample, Tally};
+pub use film::{ByClass, Class, Film, LUMINANCE, Sample, Tally};
 pub use state::{Fingerprint, StateError};
 
 use crate::illumination::material::MaterialError;

@@ -119,10 +119,10 @@ impl<'a> Appearance<'a> {
         direction: DVec3,
         normal: Option<DVec3>,
         comb: usize,
-        part: impl Fn(f64) -> f64,
+        part: impl Fn(&Source, f64) -> f64,
     ) -> Channels {
-        let skies = self.sources.iter().filter_map(|(_, source)| source.sky(direction, normal, comb));
-        let sum = skies.map(|glow| glow.radiance * part(glow.density)).reduce(|a, b| a + b);
+        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky(direction, normal, comb)?)));
+        let sum = skies.map(|(sky, glow)| glow.radiance * part(sky, glow.density)).reduce(|a, b| a + b);
         sum.unwrap_or_else(|| self.background.of(comb))
     }
 

@@ -64,7 +64,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 14] = [
+pub const EMBEDDED: [Embedded; 20] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -119,6 +119,36 @@ pub const EMBEDDED: [Embedded; 14] = [
         name: "cornell",
         summary: "the box of Cornell's Program of Computer Graphics, for light that goes from surface to surface",
         text: include_str!("../../scenes/cornell.rhai"),
+    },
+    Embedded {
+        name: "caustic",
+        summary: "a glass ball over a plane under a small lamp, which it gathers to a bright spot",
+        text: include_str!("../../scenes/caustic.rhai"),
+    },
+    Embedded {
+        name: "ring",
+        summary: "a gold ring and a glass ball on paper, with the caustics of the textbooks",
+        text: include_str!("../../scenes/ring.rhai"),
+    },
+    Embedded {
+        name: "spectrum",
+        summary: "a prism that paints a spectrum on a screen",
+        text: include_str!("../../scenes/spectrum.rhai"),
+    },
+    Embedded {
+        name: "mirror",
+        summary: "a hand mirror that throws the sun on the wall of a room",
+        text: include_str!("../../scenes/mirror.rhai"),
+    },
+    Embedded {
+        name: "pool",
+        summary: "a swimming pool with a net of light on its tiles",
+        text: include_str!("../../scenes/pool.rhai"),
+    },
+    Embedded {
+        name: "flowers",
+        summary: "a vase of coloured glass in the evening sun",
+        text: include_str!("../../scenes/flowers.rhai"),
     },
     Embedded {
         name: "vases",

@@ -39,7 +39,7 @@ impl<'a> Direct<'a> {
         self.world.appearance.sources.iter().any(|(_, source)| source.is_sky())
     }
 
-    /// Radiance towards the viewer by the light of all lights.
+    /// Radiance towards the viewer by the light of all lights, of broad lobes and of narrow ones.
     ///
     /// - `add`: is told what each light brings, by its number.
     pub(super) fn light(
@@ -47,45 +47,47 @@ impl<'a> Direct<'a> {
         encounter: &Encounter<'_>,
         counts: &mut RayCounts,
         mut add: impl FnMut(usize, Channels),
-    ) -> Channels {
+    ) -> [Channels; 2] {
         let Encounter { found, sighting, draws, leg, .. } = encounter;
-        let mut sum = Channels::ZERO;
+        let mut sum = [Channels::ZERO; 2];
         for (index, (number, source)) in self.world.appearance.sources.iter().enumerate() {
             let samples = if source.is_sharp() { 1 } else { self.samples };
             if self.is_dark(encounter, index) {
                 counts.spared += u64::from(samples);
                 continue;
             }
-            let mut part = Channels::ZERO;
+            let mut part = [Channels::ZERO; 2];
             for sample in 0..samples {
                 let purpose = (*number as u32).wrapping_mul(self.samples).wrapping_add(sample);
                 let uniform = draws.leg(*leg, Purpose::Lights, purpose);
                 if let Some(beam) =
                     source.beam(found.element.position, Some(found.element.normal), uniform, sighting.comb)
                 {
-                    part += self.arriving(encounter, index, &beam, counts);
+                    let arriving = self.arriving(encounter, index, &beam, counts);
+                    part.iter_mut().zip(arriving).for_each(|(part, light)| *part += light);
                 }
             }
-            if part != Channels::ZERO {
-                part *= f64::from(samples).recip();
-                add(*number, part);
-                sum += part;
+            if part != [Channels::ZERO; 2] {
+                part.iter_mut().for_each(|part| *part *= f64::from(samples).recip());
+                add(*number, part[0] + part[1]);
+                sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
             }
         }
         sum
     }
 
-    /// What a beam adds.
-    fn arriving(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, counts: &mut RayCounts) -> Channels {
+    /// What a beam adds by broad lobes and by narrow ones.
+    fn arriving(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, counts: &mut RayCounts) -> [Channels; 2] {
         let Encounter { found, frame, sighting, among, highest, .. } = encounter;
         let optics = found.optics;
         let light = frame.local(beam.towards);
         let source = &self.world.appearance.sources[index].1;
-        let mut value = optics.value(Which::Ended, sighting, light);
-        for which in Which::CONTINUED {
+        let mut values = [optics.value(Which::Ended, sighting, light), Channels::ZERO];
+        for (which, value) in Which::CONTINUED.into_iter().zip(&mut values) {
             let mut continued = optics.value(which, sighting, light);
             let most = continued.max();
-            if which == Which::Narrow && most > *highest && !source.is_sky() {
+            let is_cut = if *highest > 0.0 { !source.is_sky() } else { source.is_caught() };
+            if which == Which::Narrow && most > *highest && is_cut {
                 continued *= highest / most;
             }
             if let Some(density) = beam.density
@@ -94,16 +96,18 @@ impl<'a> Direct<'a> {
                 // The rest is what a further leg brings that meets the light.
                 continued *= counted(Some(density), optics.density(which, sighting, light, *among));
             }
-            value += continued;
+            *value += continued;
         }
-        let radiance = value * beam.irradiance * light.z.abs();
-        if radiance == Channels::ZERO || !radiance.is_finite() || !self.shadows {
-            return if radiance.is_finite() { radiance } else { Channels::ZERO };
+        let radiance = values.map(|value| value * beam.irradiance * light.z.abs());
+        let is_finite = radiance.iter().all(|radiance| radiance.is_finite());
+        if radiance == [Channels::ZERO; 2] || !is_finite || !self.shadows {
+            return if is_finite { radiance } else { [Channels::ZERO; 2] };
         }
         counts.shadow += 1;
         let (ray, t_max) = self.ray(encounter, index, beam, light.z > 0.0);
         let way = self.world.way(ray.origin, index);
-        radiance * self.world.passed(&ray, t_max, (index, way), (sighting.comb, encounter.draws.time))
+        let passed = self.world.passed(&ray, t_max, (index, way), (sighting.comb, encounter.draws.time));
+        radiance.map(|radiance| radiance * passed)
     }
 
     /// Whether nothing comes from a light to an element, as far as the light buffer knows.

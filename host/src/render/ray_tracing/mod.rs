@@ -31,7 +31,7 @@ pub use tracer::ENERGY_CUTOFF;
 pub use two_way::Balance;
 
 use super::eye::Eye;
-use super::film::{Film, Sample, Tally};
+use super::film::{ByClass, Film, Sample, Tally};
 use super::radiosity::Radiosity;
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::octree::Octree;
@@ -39,6 +39,7 @@ use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use draws::{Draws, Purpose};
 use explain::Log;
+use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -160,15 +161,17 @@ impl<'a> RayTracer<'a> {
             balance = balance.or(caught.as_ref().map(CaughtLight::balance));
             let tracer = self.tracer(caught.as_ref());
             let counted: Vec<Option<RayCounts>> = pool.install(|| {
-                let rows = film.tallies_mut().par_chunks_exact_mut(width).enumerate();
-                rows.map(|(y, row)| {
+                let rows = film.rows_mut().into_par_iter().enumerate();
+                rows.map(|(y, (row, mut classes))| {
                     if stopped() {
                         return None;
                     }
                     let mut work = Work::default();
                     for (x, tally) in row.iter_mut().enumerate() {
                         if wanted.as_ref().is_none_or(|wanted| wanted[y * width + x]) {
-                            self.add_samples((&tracer, &eye, order), [x as u32, y as u32], *samples, tally, &mut work);
+                            let classes = classes.as_mut().map(|row| &mut row[x]);
+                            let pixel = ([x as u32, y as u32], *samples);
+                            self.add_samples((&tracer, &eye, order), pixel, (tally, classes), &mut work);
                         }
                     }
                     let all = passes.len() as u64 * u64::from(order.height);
@@ -229,19 +232,24 @@ impl<'a> RayTracer<'a> {
     fn add_samples(
         &self,
         (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
-        pixel: [u32; 2],
-        samples: u32,
-        tally: &mut Tally,
+        (pixel, samples): ([u32; 2], u32),
+        (tally, mut sums): (&mut Tally, Option<&mut ByClass>),
         work: &mut Work,
     ) {
         while tally.count < samples {
             let index = tally.count;
-            let (sample, _) = self.sample((tracer, eye, order), pixel, index, work, Log::SILENT);
+            let (sample, classes, _) = self.sample((tracer, eye, order), pixel, index, work, Log::SILENT);
             tally.add(&sample);
+            if let Some(sums) = &mut sums {
+                sums.iter_mut()
+                    .zip(classes)
+                    .filter(|(_, light)| light.is_finite())
+                    .for_each(|(sum, light)| *sum += light);
+            }
         }
     }
 
-    /// One sample, and the comb of wavelengths that it carries.
+    /// One sample, its light by classes, and the comb of wavelengths that it carries.
     fn sample(
         &self,
         (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
@@ -249,7 +257,7 @@ impl<'a> RayTracer<'a> {
         index: u32,
         work: &mut Work,
         log: Log<'_>,
-    ) -> (Sample, usize) {
+    ) -> (Sample, ByClass, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let draws = Draws::new(order.seed, pixel, index, order.samples);
         let draws = if self.world.moves() { draws.within(self.prepared().settings.shutter) } else { draws };
@@ -258,16 +266,18 @@ impl<'a> RayTracer<'a> {
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
-            let radiance = wavelengths.seen(comb, self.world.beyond(glam::DVec3::NEG_Z, None, None, comb));
-            let radiance = if order.matte { glam::DVec3::ZERO } else { radiance };
-            return (Sample { radiance, covered: false, first: None }, comb);
+            let background = self.world.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0);
+            let radiance = if order.matte { DVec3::ZERO } else { wavelengths.seen(comb, background) };
+            let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
+            return (Sample { radiance, covered: false, first: None }, classes, comb);
         };
         let seen = tracer.radiance(&sight, comb, &draws, work, log);
         let first =
             seen.first.map(|First { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !seen.covered;
-        let radiance = if left_out { glam::DVec3::ZERO } else { wavelengths.seen(comb, seen.radiance) + seen.other };
-        (Sample { radiance, covered: seen.covered, first }, comb)
+        let light = |class: usize| wavelengths.seen(comb, seen.radiance[class]) + seen.other[class];
+        let classes = if left_out { ByClass::default() } else { [0, 1, 2, 3].map(light) };
+        (Sample { radiance: classes.into_iter().sum(), covered: seen.covered, first }, classes, comb)
     }
 
     /// Tells how the samples of a pixel come to their radiance.
@@ -290,7 +300,7 @@ impl<'a> RayTracer<'a> {
             let caught = two_way.and_then(|two_way| two_way.caught(&self.world, pass, &Watch::NOBODY));
             let tracer = self.tracer(caught.as_ref());
             let (mut notes, mut work) = (Vec::new(), Work::default());
-            let (sample, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
+            let (sample, _, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;
             let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(comb).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }

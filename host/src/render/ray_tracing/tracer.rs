@@ -7,10 +7,11 @@ use super::media::Media;
 use super::two_way::CaughtLight;
 use super::world::{Encounter, Found, Met, World};
 use crate::color::Channels;
+use crate::illumination::light::Source;
 use crate::illumination::optics::{Among, Onward, Sighting};
 use crate::numeric::ray::Ray;
-use crate::render::RayCounts;
 use crate::render::eye::{Cone, Sight};
+use crate::render::{Class, RayCounts};
 use glam::DVec3;
 
 /// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.
@@ -50,20 +51,62 @@ struct Leg {
     lane: Option<usize>,
     /// Whether it only looks for lights: it is one too many for anything else.
     for_lights: bool,
-    /// Whether a broad lobe carried it on: a light that is met behind a narrow one is then a caustic.
-    after_spread: bool,
+    /// Which turns its light takes from here to the eye.
+    course: Course,
+}
+
+/// Which turns light takes to the eye, by the lobes that it goes on from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Course {
+    /// No broad one.
+    Seen,
+    /// A broad one first, and none but narrow ones behind.
+    Spread,
+    /// The same, with narrow ones before: what is met behind is a caustic.
+    Thrown,
+    /// Several broad ones.
+    Carried,
+}
+
+impl Course {
+    /// With a turn before those that it has.
+    fn after(self, is_broad: bool) -> Course {
+        match (self, is_broad) {
+            (Course::Seen, true) => Course::Spread,
+            (_, true) => Course::Carried,
+            (Course::Spread, false) => Course::Thrown,
+            (course, false) => course,
+        }
+    }
+
+    /// The class of light that leaves a lamp on it.
+    fn of_lamps(self) -> Class {
+        match self {
+            Course::Seen => Class::Emitted,
+            Course::Spread => Class::Direct,
+            Course::Thrown => Class::Caustic,
+            Course::Carried => Class::Indirect,
+        }
+    }
 }
 
 /// What a sample found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Seen {
-    pub(super) radiance: Channels,
-    /// Radiance at other wavelengths than those of the sample, linear sRGB.
-    pub(super) other: DVec3,
+    /// Radiance of each class.
+    pub(super) radiance: [Channels; Class::ALL.len()],
+    /// The same at other wavelengths than those of the sample, linear sRGB.
+    pub(super) other: [DVec3; Class::ALL.len()],
     /// Whether the first leg met an object or light.
     pub(super) covered: bool,
     /// What it met: distance from the eye, normal, object and material.
     pub(super) first: Option<First>,
+}
+
+impl Seen {
+    fn add(&mut self, class: Class, radiance: Channels) {
+        self.radiance[class as usize] += radiance;
+    }
 }
 
 /// The first element in sight.
@@ -88,8 +131,7 @@ pub(super) struct Work {
 struct Counting<'a, 'b> {
     counts: &'a mut RayCounts,
     log: &'a mut Log<'b>,
-    /// Light at other wavelengths than those of the sample, linear sRGB.
-    other: &'a mut DVec3,
+    seen: &'a mut Seen,
 }
 
 /// Follows rays through a scene as its plan tells.
@@ -155,7 +197,7 @@ impl<'a> Tracer<'a> {
             media: Media::default(),
             lane: None,
             for_lights: false,
-            after_spread: false,
+            course: Course::Seen,
         };
         let Work { counts, waiting } = work;
         waiting.push(first);
@@ -169,19 +211,23 @@ impl<'a> Tracer<'a> {
                 Met::Nothing => {
                     let radiance = match leg.for_lights && !self.direct.has_sky() {
                         true => Channels::ZERO,
-                        false => self.world.beyond(direction.normalize(), leg.density, leg.normal, comb),
+                        false => {
+                            self.world.appearance.beyond(direction.normalize(), leg.normal, comb, |sky, density| {
+                                self.part(&leg, sky, density)
+                            })
+                        }
                     };
-                    seen.radiance += leg.passed * radiance;
+                    seen.add(leg.course.of_lamps(), leg.passed * radiance);
                     seen.covered |= leg.depth > 0;
                     log.note(|| Note::term(leg.depth, "meets nothing", leg.passed * radiance));
                 }
                 Met::Glow(index, glow) => {
                     let absorbed = leg.media.absorbed(self.world, glow.t * direction.length() - leg.begin, comb);
-                    let part = self.part(&leg, glow.density);
-                    let radiance = absorbed * glow.radiance * part;
-                    seen.radiance += leg.passed * radiance;
+                    let (number, source) = &self.world.appearance.sources[index];
+                    let radiance = absorbed * glow.radiance * self.part(&leg, source, glow.density);
+                    seen.add(leg.course.of_lamps(), leg.passed * radiance);
                     seen.covered = true;
-                    log.note(|| Note::light(leg.depth, self.world.appearance.sources[index].0, leg.passed * radiance));
+                    log.note(|| Note::light(leg.depth, *number, leg.passed * radiance));
                 }
                 Met::Element(found) => {
                     if leg.depth == 0 {
@@ -189,8 +235,8 @@ impl<'a> Tracer<'a> {
                         seen.first = Some(First { distance: depth, normal: found.element.normal, object, material });
                     }
                     seen.covered = true;
-                    let counting = &mut Counting { counts, log: &mut log, other: &mut seen.other };
-                    seen.radiance += self.arrive(leg, &found, (comb, draws), counting, waiting);
+                    let counting = &mut Counting { counts, log: &mut log, seen: &mut seen };
+                    self.arrive(leg, &found, (comb, draws), counting, waiting);
                 }
             }
         }
@@ -203,20 +249,22 @@ impl<'a> Tracer<'a> {
         mut leg: Leg,
         found: &Found<'_>,
         (comb, draws): (usize, &Draws),
-        Counting { counts, log, other }: &mut Counting<'_, '_>,
+        Counting { counts, log, seen }: &mut Counting<'_, '_>,
         waiting: &mut Vec<Leg>,
-    ) -> Channels {
+    ) {
         let optics = found.optics;
         let towards = leg.sight.ray.direction.normalize();
         leg.passed *= leg.media.absorbed(self.world, found.distance - leg.begin, comb);
         log.note(|| Note::element(leg.depth, self.world.appearance.prepared, found));
-        let mut sum = Channels::ZERO;
-        if let Some((emission, density)) = self.world.emitted(found, towards, comb) {
-            sum += leg.passed * emission * self.part(&leg, density);
-            log.note(|| Note::term(leg.depth, "emits", sum));
+        if let Some((emission, factor)) =
+            self.world.emitted(found, towards, comb, |source, density| self.part(&leg, source, density))
+        {
+            let radiance = leg.passed * emission * factor;
+            seen.add(leg.course.of_lamps(), radiance);
+            log.note(|| Note::term(leg.depth, "emits", radiance));
         }
         if leg.for_lights && !optics.is_passable() {
-            return sum;
+            return;
         }
         let frame = found.frame();
         let lanes = self.world.appearance.wavelengths.lanes();
@@ -228,15 +276,15 @@ impl<'a> Tracer<'a> {
         if leg.for_lights {
             let onward = optics.straight(&sighting);
             waiting.extend(onward.and_then(|onward| self.straight(&leg, found, (onward, 0), draws)));
-            return sum;
+            return;
         }
         if let Some(ambient) = &self.world.appearance.ambient {
             let radiance = leg.passed * optics.ambient(&sighting) * ambient.of(comb);
-            sum += radiance;
+            seen.add(Class::Indirect, radiance);
             log.note(|| Note::term(leg.depth, "ambient light", radiance));
         }
         if let Some(radiance) = self.world.indirect(found, comb) {
-            sum += leg.passed * radiance;
+            seen.add(Class::Indirect, leg.passed * radiance);
             log.note(|| Note::term(leg.depth, "light of other surfaces", leg.passed * radiance));
         }
         let is_worth = |onward: Onward| (leg.passed * onward.weight).max() > WORTH_PARTING;
@@ -249,12 +297,16 @@ impl<'a> Tracer<'a> {
         let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, among, highest };
         if optics.answers_lights() {
             let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
-            sum += leg.passed * self.direct.light(&encounter, counts, add);
+            let light = self.direct.light(&encounter, counts, add);
+            for (is_broad, radiance) in [true, false].into_iter().zip(light) {
+                seen.add(leg.course.after(is_broad).of_lamps(), leg.passed * radiance);
+            }
         }
         if let Some(caught) = self.caught.filter(|_| optics.takes()) {
             let (radiance, elsewhere) = caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()));
-            sum += radiance;
-            **other += elsewhere;
+            let class = leg.course.after(true).after(false).of_lamps();
+            seen.add(class, radiance);
+            seen.other[class as usize] += elsewhere;
             log.note(|| Note::term(leg.depth, "caught light", radiance));
         }
         if optics.carries_on() {
@@ -269,21 +321,27 @@ impl<'a> Tracer<'a> {
                 waiting.extend(drawn.and_then(|onward| self.onward(&leg, &encounter, onward, 0)));
             }
         }
-        sum
     }
 
     /// How much a light counts that a leg meets.
-    fn part(&self, leg: &Leg, light: f64) -> f64 {
-        let is_caustic = leg.density.is_none() && leg.after_spread;
-        let counts = !is_caustic || self.caustics == Caustics::Met;
-        if counts { leg.lamps * counted(leg.density, light) } else { 0.0 }
+    ///
+    /// - `density`: with which the light would have drawn the leg's direction.
+    fn part(&self, leg: &Leg, source: &Source, density: f64) -> f64 {
+        let is_caustic = leg.density.is_none() && leg.course != Course::Seen;
+        match self.caustics {
+            // What is not followed from lamps counts wherever it is met.
+            Caustics::Caught if !source.is_caught() => counted(leg.density, density),
+            Caustics::LeftOut if source.is_sky() => counted(leg.density, density),
+            Caustics::Caught | Caustics::LeftOut if is_caustic => 0.0,
+            _ => leg.lamps * counted(leg.density, density),
+        }
     }
 
     /// The greatest value with which narrow lobes may reflect a lamp where a leg arrives, 1/sr.
     fn highest(&self, leg: &Leg) -> f64 {
         match self.caustics {
-            Caustics::Caught if leg.after_spread => 0.0,
-            Caustics::LeftOut if leg.after_spread => HIGHEST,
+            Caustics::Caught if leg.course != Course::Seen => 0.0,
+            Caustics::LeftOut if leg.course != Course::Seen => HIGHEST,
             _ => f64::INFINITY,
         }
     }
@@ -343,7 +401,7 @@ impl<'a> Tracer<'a> {
             media,
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,
-            after_spread: leg.after_spread || onward.is_broad,
+            course: leg.course.after(onward.is_broad),
         })
     }
 

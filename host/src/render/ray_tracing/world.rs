@@ -2,7 +2,6 @@
 
 use super::draws::Draws;
 use super::light_buffer::{LightBuffer, Way};
-use super::tracer::counted;
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
 use crate::illumination::light::{Glow, Source};
@@ -209,19 +208,23 @@ impl<'a> World<'a> {
         Met::Element(Found { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
     }
 
-    /// The light that an element emits, and the density with which its light would have drawn it.
-    pub(super) fn emitted(&self, found: &Found<'_>, towards: DVec3, comb: usize) -> Option<(Channels, f64)> {
+    /// The light that an element emits, and how much of it counts.
+    ///
+    /// - `part`: how much a source counts that would have drawn the direction with a density.
+    pub(super) fn emitted(
+        &self,
+        found: &Found<'_>,
+        towards: DVec3,
+        comb: usize,
+        part: impl Fn(&Source, f64) -> f64,
+    ) -> Option<(Channels, f64)> {
         let (emission, index) = self.appearance.emission(found.object, found.material, comb)?;
         let cosine = towards.dot(found.element.face);
-        let density = |index: usize| self.appearance.sources[index].1.density_on_triangle(found.distance, cosine);
-        Some((emission, index.map_or(0.0, density)))
-    }
-
-    /// Radiance where there is nothing: of the skies, or the background without any.
-    ///
-    /// - `leg`: the density with which the direction was drawn, if it was. `normal`: of the element from which it goes on.
-    pub(super) fn beyond(&self, direction: DVec3, leg: Option<f64>, normal: Option<DVec3>, comb: usize) -> Channels {
-        self.appearance.beyond(direction, normal, comb, |density| counted(leg, density))
+        let counted = |index: usize| {
+            let source = &self.appearance.sources[index].1;
+            part(source, source.density_on_triangle(found.distance, cosine))
+        };
+        Some((emission, index.map_or(1.0, counted)))
     }
 
     /// The part of light that comes along a way: nothing, if something opaque is in between.

@@ -214,7 +214,7 @@ impl<'a> ScanLine<'a> {
         let (has_surfaces, has_sky) = (sources().any(Source::is_surface), sources().any(Source::is_sky));
         let wavelengths = &self.appearance.wavelengths;
         let background = || {
-            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(DVec3::NEG_Z, None, comb, |_| 1.0));
+            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0));
             (0..wavelengths.combs()).map(seen).sum::<DVec3>() / wavelengths.combs() as f64
         };
         Shader {

@@ -272,7 +272,7 @@ impl<'a> Shader<'a> {
         }
         let at = pixel.place(i);
         let direction = self.eye.ray(at, [0.5; 2]).map_or(DVec3::NEG_Z, |sight| sight.ray.direction.normalize());
-        sum + passed * self.appearance.beyond(direction, None, comb, |_| 1.0)
+        sum + passed * self.appearance.beyond(direction, None, comb, |_, _| 1.0)
     }
 
     /// In how many volumes of a group of casters a sample is.

@@ -16,8 +16,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_PI;
 
-/// Caught light that is looked at around a place, at the most.
-const MOST: usize = 384;
+/// Caught light that is looked at around a place, at the least, if there is so much.
+const FEW: usize = 256;
+/// Where there is much, it is as this times the power 2/3 of all: discs then become as small, and chance in them as
+/// little, as makes the error fall fastest.
+const SHARE: f64 = 0.3;
 /// The least that a disc holds, if there is so much around the place.
 const LEAST: u32 = 10;
 /// Rings of equal area around a place.
@@ -39,6 +42,8 @@ pub(super) struct Captured {
     lanes: usize,
     /// Their mean.
     strength: Vec<f32>,
+    /// How much is looked at around a place, at the most.
+    most: usize,
     combs: Vec<u8>,
 }
 
@@ -125,6 +130,7 @@ impl Captured {
             strength: sorted().map(|c| (c.flux.0[..lanes].iter().sum::<f64>() / lanes as f64) as f32).collect(),
             combs: sorted().map(|c| c.comb).collect(),
             lanes,
+            most: FEW.max((SHARE * (caught.len() as f64).powf(2.0 / 3.0)) as usize),
             points,
         }
     }
@@ -140,10 +146,8 @@ impl Captured {
     }
 
     /// Visits the light that arrives around a place, as if it arrived at it.
-    ///
-    /// - `aside`: the square of how far the middle of the discs may be off counts as distance.
     pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) {
-        let around = self.points.around(place.position, surroundings.reach, MOST);
+        let around = self.points.around(place.position, surroundings.reach, self.most);
         if around.count == 0 {
             return;
         }
