@@ -112,7 +112,6 @@ impl Convex {
 ///
 /// # Source
 /// Lambert 1760, in the form of Baum, Rushmeier and Winget 1989.
-#[cfg(test)]
 pub(super) fn from_point(point: DVec3, normal: DVec3, polygon: &Convex) -> f64 {
     let above = polygon.before(point, normal);
     let edge = |[from, to]: [DVec3; 2]| {

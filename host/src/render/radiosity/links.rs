@@ -28,6 +28,8 @@ pub(super) struct Judged {
     pub(super) link: Link,
     /// The error of its exchange, square units.
     doubt: f64,
+    /// The part of light that comes through.
+    pub(super) seen: f64,
 }
 
 /// What is to be done with two nodes.
@@ -160,11 +162,11 @@ impl Judge<'_, '_> {
         let doubt = unoccluded * (variation * seen + unsure);
         let link = Link { a, b, exchange: unoccluded * seen };
         if self.is_fine(a, b, doubt) {
-            return Verdict::Keep(Judged { link, doubt });
+            return Verdict::Keep(Judged { link, doubt, seen });
         }
         self.divide(a, b).unwrap_or(match seen {
             0.0 => Verdict::Drop,
-            _ => Verdict::Keep(Judged { link, doubt: 0.0 }),
+            _ => Verdict::Keep(Judged { link, doubt: 0.0, seen }),
         })
     }
 
