@@ -60,7 +60,7 @@ fn object(shape: Shape, at: DVec3, grey: f64) -> Object {
         shape,
         transform: DMat4::from_translation(at),
         material: Some(Classic { diffuse: Paint::grey(grey), ..Classic::default() }.into()),
-        tolerance: None,
+        tolerance: Some(0.01),
     }
 }
 
