@@ -281,17 +281,17 @@ pub(super) const FUNCTIONS: &[Function] = &[
             parameter(
                 "error",
                 Kind::Number(1e-6, 10.0),
-                Is("0.02"),
+                Is("0.005"),
                 "of the light that one pair of patches brings, as a part of the mean irradiance",
             ),
             parameter(
                 "finest",
                 Kind::Number(1e-5, 1.0),
-                Is("0.0039"),
+                Is("0.005"),
                 "shortest edge of a patch that is divided, as a part of the diagonal of the scene",
             ),
         ],
-        example: "radiosity(#{ error: 0.01 });",
+        example: "radiosity(#{ error: 0.002 });",
         action: |builder, bound| {
             let settings = &mut builder.scene.settings;
             settings.radiosity = bound.flag("on").unwrap_or(true);

@@ -13,6 +13,22 @@ const BALANCED: f64 = 1e-12;
 /// A row is not multiplied by more, and not by less than one over it.
 const MOST_FACTOR: f64 = 4.0;
 
+/// As many rays tell how much light is lost in a neighbourhood.
+const NEIGHBOURING_RAYS: u64 = 2048;
+/// How many standard deviations a part that was counted may be off.
+const DEVIATIONS: f64 = 3.0;
+
+/// What leaves see in directions that are as dense as their cosine.
+#[derive(Clone, Debug)]
+pub(super) struct Looks {
+    /// In how many directions each looks.
+    pub(super) directions: u32,
+    /// For each leaf, in which part of them it sees something that exchanges light.
+    pub(super) part: Vec<f64>,
+    /// Whether no light can come to it.
+    pub(super) is_dark: Vec<bool>,
+}
+
 /// Two nodes that exchange light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Link {
@@ -72,14 +88,20 @@ impl<'a> Exchange<'a> {
         self.leaves.iter().map(|leaf| self.hierarchy.nodes[*leaf as usize].area).collect()
     }
 
-    /// Flux that comes to each leaf from radiosities of all leaves, M b.
-    pub(super) fn apply(&self, radiosity: &[Channels]) -> Vec<Channels> {
-        let nodes = &self.hierarchy.nodes;
-        let mut values = vec![Channels::ZERO; nodes.len()];
+    /// The means of what leaves send over each node, with the factors that balance them.
+    pub(super) fn means(&self, radiosity: &[Channels]) -> Vec<Channels> {
+        let mut values = vec![Channels::ZERO; self.hierarchy.nodes.len()];
         for ((leaf, value), factor) in self.leaves.iter().zip(radiosity).zip(&self.factor) {
             values[*leaf as usize] = *value * *factor;
         }
         self.hierarchy.pull(&mut values);
+        values
+    }
+
+    /// Flux that comes to each leaf from radiosities of all leaves, M b.
+    pub(super) fn apply(&self, radiosity: &[Channels]) -> Vec<Channels> {
+        let nodes = &self.hierarchy.nodes;
+        let values = self.means(radiosity);
         let row = |node: usize| {
             let entries = &self.entries[self.rows[node]..self.rows[node + 1]];
             entries.iter().fold(Channels::ZERO, |sum, (other, exchange)| sum + values[*other as usize] * *exchange)
@@ -101,23 +123,24 @@ impl<'a> Exchange<'a> {
     /// Each row and its column are multiplied by the root of what is missing, again and again. What remains in the end the
     /// leaf exchanges with itself.
     ///
-    /// - `seen`: for each leaf, the least and the greatest part of what it sees that exchanges light. A leaf that sees
-    ///   none exchanges nothing.
-    /// - Returns what leaves exchange with themselves, as a part of all area.
+    /// - `looks`: what leaves see; without it rows are made no greater than 1.
+    /// - Returns what leaves exchange with themselves, as a part of their areas.
     ///
     /// # Source
     /// Sinkhorn and Knopp 1967, symmetric; ours as to what remains.
-    pub(super) fn balance(&mut self, seen: &[[f64; 2]]) -> f64 {
+    pub(super) fn balance(&mut self, looks: Option<&Looks>) -> Vec<f64> {
         let areas = self.areas();
         let ones = vec![Channels::ONE; areas.len()];
         let sums = |exchange: &Self| -> Vec<f64> { exchange.apply(&ones).iter().map(|sum| sum.0[0]).collect() };
-        for (factor, [_, most]) in self.factor.iter_mut().zip(seen) {
-            *factor = if *most > 0.0 { 1.0 } else { 0.0 };
+        if let Some(looks) = looks {
+            let factor = |is_dark: &bool| if *is_dark { 0.0 } else { 1.0 };
+            self.factor = looks.is_dark.iter().map(factor).collect();
         }
-        let first = sums(self);
-        let goal: Vec<f64> = (0..areas.len())
-            .map(|i| areas[i] * (first[i] / areas[i]).max(seen[i][0]).min(seen[i][1]).max(0.0))
-            .collect();
+        let rows: Vec<f64> = sums(self).iter().zip(&areas).map(|(sum, area)| sum / area).collect();
+        let goal: Vec<f64> = match looks {
+            Some(looks) => self.goals(looks, &rows).iter().zip(&areas).map(|(goal, area)| goal * area).collect(),
+            None => rows.iter().zip(&areas).map(|(row, area)| row.min(1.0) * area).collect(),
+        };
         for _ in 0..MOST_ROUNDS {
             let mut worst = 0.0f64;
             for (i, sum) in sums(self).into_iter().enumerate().filter(|(_, sum)| *sum > 0.0) {
@@ -134,7 +157,46 @@ impl<'a> Exchange<'a> {
         }
         let last = sums(self);
         self.own = (0..areas.len()).map(|i| goal[i] - last[i]).collect();
-        let all: f64 = areas.iter().sum();
-        self.own.iter().map(|own| own.abs()).sum::<f64>() / all.max(f64::MIN_POSITIVE)
+        self.own.iter().zip(&areas).map(|(own, area)| own.abs() / area).collect()
+    }
+
+    /// What the rows should add up to: 1 where no ray of many in the neighbourhood is lost, else in proportion to what they
+    /// do, as much in the mean over the neighbourhood as rays tell.
+    fn goals(&self, looks: &Looks, rows: &[f64]) -> Vec<f64> {
+        let nodes = &self.hierarchy.nodes;
+        // Of each node: rays, whether one is lost, and areas times what rays find and what rows add up to.
+        let mut sums = vec![(0u64, false, [0.0; 2]); nodes.len()];
+        for (i, leaf) in self.leaves.iter().enumerate().filter(|(i, _)| !looks.is_dark[*i]) {
+            let (leaf, part) = (*leaf as usize, looks.part[i]);
+            sums[leaf] = (u64::from(looks.directions), part < 1.0, [part, rows[i]].map(|x| x * nodes[leaf].area));
+        }
+        for place in (0..nodes.len()).rev() {
+            for child in nodes[place].children() {
+                let (rays, lost, [found, row]) = sums[child];
+                let sum = &mut sums[place];
+                *sum = (sum.0 + rays, sum.1 | lost, [sum.2[0] + found, sum.2[1] + row]);
+            }
+        }
+        let mut around: Vec<usize> = (0..nodes.len()).collect();
+        for place in 0..nodes.len() {
+            for child in nodes[place].children() {
+                around[child] = if sums[child].0 >= NEIGHBOURING_RAYS { child } else { around[place] };
+            }
+        }
+        let goal = |(i, leaf): (usize, &u32)| {
+            let (_, lost, [found, row]) = sums[around[*leaf as usize]];
+            match (looks.is_dark[i], lost) {
+                (true, _) => 0.0,
+                (_, false) => 1.0,
+                _ if row <= 0.0 => 0.0,
+                _ => {
+                    let part = looks.part[i];
+                    let count = f64::from(looks.directions);
+                    let off = DEVIATIONS * (part * (1.0 - part) / count).sqrt() + 2.0 / count;
+                    (rows[i] * found / row).max(part - off).min(part + off).clamp(0.0, 1.0)
+                }
+            }
+        };
+        self.leaves.iter().enumerate().map(goal).collect()
     }
 }

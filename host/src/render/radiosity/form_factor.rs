@@ -8,7 +8,9 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
 /// Halvings of an edge of the contour at the most.
-const MOST_HALVINGS: u32 = 24;
+const MOST_HALVINGS: u32 = 20;
+/// Rounding error of the integral over an edge, in units of the square of the size of the polygons.
+const ROUNDING: f64 = 1e-14;
 
 /// Points of the rule of degree 5 in a triangle, as weights of two corners, with the part of the area that each stands for.
 ///
@@ -112,7 +114,6 @@ impl Convex {
 ///
 /// # Source
 /// Lambert 1760, in the form of Baum, Rushmeier and Winget 1989.
-#[cfg(test)]
 pub(super) fn from_point(point: DVec3, normal: DVec3, polygon: &Convex) -> f64 {
     let above = polygon.before(point, normal);
     let edge = |[from, to]: [DVec3; 2]| {
@@ -210,7 +211,8 @@ fn halved(value: &impl Fn(f64) -> f64, [from, to]: [f64; 2], whole: f64, toleran
     let halves = [[from, middle], [middle, to]];
     let parts = halves.map(|range| gauss(value, range));
     let sum = parts[0] + parts[1];
-    if left == 0 || (sum - whole).abs() <= tolerance {
+    // Below that, halves differ by rounding errors only.
+    if left == 0 || (sum - whole).abs() <= tolerance.max(ROUNDING * (to - from)) {
         return sum;
     }
     let tolerance = 0.6 * tolerance;

@@ -10,10 +10,10 @@ use super::form_factor::{self, kernel};
 use super::hierarchy::{Node, POINTS};
 use super::sight::Sight;
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Error of form factors, as a part of the smaller element.
-const FORM_FACTOR_ERROR: f64 = 1e-4;
+const FORM_FACTOR_ERROR: f64 = 1e-3;
 /// How uncertain the light is that a link brings, as a part of it: where rays disagree, where none comes through, where
 /// all do.
 const PARTLY_SEEN: f64 = 0.5;
@@ -28,6 +28,8 @@ pub(super) struct Judged {
     pub(super) link: Link,
     /// The error of its exchange, square units.
     doubt: f64,
+    /// The part of light that comes through.
+    pub(super) seen: f64,
 }
 
 /// What is to be done with two nodes.
@@ -139,6 +141,15 @@ impl Judge<'_, '_> {
         let sizes = first.radius + second.radius;
         let are_elements = !first.is_cluster() && !second.is_cluster();
         let most = form_factor::limit(first.area, second.area, (distance - sizes).max(0.0));
+        // Light between two planes goes within the angle that their normals make, from both sides.
+        let turn = first.normal.angle_between(second.normal) + first.spread + second.spread;
+        let most = most.min(first.area.min(second.area) * within_turn(turn));
+        if self.is_fine(a, b, most) {
+            let unoccluded = self.sampled(a, b).min(most);
+            let seen = if unoccluded > 0.0 { self.visibility(a, b, true) } else { 0.0 };
+            let link = Link { a, b, exchange: unoccluded * seen };
+            return Verdict::Keep(Judged { link, doubt: most, seen });
+        }
         if !are_elements && distance < sizes && !self.is_fine(a, b, most) {
             return self.divide(a, b).unwrap_or(Verdict::Drop);
         }
@@ -160,11 +171,11 @@ impl Judge<'_, '_> {
         let doubt = unoccluded * (variation * seen + unsure);
         let link = Link { a, b, exchange: unoccluded * seen };
         if self.is_fine(a, b, doubt) {
-            return Verdict::Keep(Judged { link, doubt });
+            return Verdict::Keep(Judged { link, doubt, seen });
         }
         self.divide(a, b).unwrap_or(match seen {
             0.0 => Verdict::Drop,
-            _ => Verdict::Keep(Judged { link, doubt: 0.0 }),
+            _ => Verdict::Keep(Judged { link, doubt: 0.0, seen }),
         })
     }
 
@@ -173,8 +184,7 @@ impl Judge<'_, '_> {
         if !node.is_cluster() {
             return Verdict::Drop;
         }
-        let steepest = if node.spread < FRAC_PI_4 { (2.0 * node.spread).sin().powi(2) } else { 1.0 };
-        match self.is_fine(at, at, steepest * node.area) && node.spread < FRAC_PI_4 {
+        match self.is_fine(at, at, within_turn(2.0 * node.spread) * node.area) {
             true => Verdict::Drop,
             false => Verdict::Within(at),
         }
@@ -232,6 +242,11 @@ impl Judge<'_, '_> {
         }
         if all > 0.0 { if agree(seen, all) { f64::from(seen > 0.0) } else { seen / all } } else { 0.0 }
     }
+}
+
+/// The greatest form factor between elements whose normals differ by an angle: that of all between their planes.
+fn within_turn(turn: f64) -> f64 {
+    0.5 * (1.0 - turn.min(PI).cos())
 }
 
 /// Whether all of a node is behind all of another.

@@ -17,6 +17,7 @@ mod direct;
 mod elements;
 mod exchange;
 mod form_factor;
+mod gather;
 mod hierarchy;
 mod links;
 mod report;
@@ -39,7 +40,7 @@ use crate::color::Channels;
 use crate::plan::{Plan, Stage};
 use crate::scene::Prepared;
 use elements::Elements;
-use exchange::{Exchange, Link};
+use exchange::{Exchange, Link, Looks};
 use hierarchy::{Hierarchy, Patch, normal_and_area};
 use links::{Bound, Judged, refine};
 use sight::Sight;
@@ -54,7 +55,7 @@ const ROUNDS: u64 = 3;
 /// The longest edge of an element, in shortest ones.
 const COARSEST: f64 = 16.0;
 /// The light of lights may vary over an element by so many errors: it is linear between its corners.
-const VARIATION: f64 = 4.0;
+const VARIATION: f64 = 16.0;
 
 /// How good a solution is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +72,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { error: 0.02, finest: 1.0 / 256.0, tolerance: 1e-6, directions: 32 }
+        Settings { error: 0.005, finest: 1.0 / 200.0, tolerance: 1e-6, directions: 32 }
     }
 }
 
@@ -129,16 +130,13 @@ impl Radiosity {
             (watch.progress)(2 * round + 1, 2 * ROUNDS);
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
-            let seen = match is_last {
-                true => visible::seen(&sight, &elements, &leaves, settings.directions),
-                false => vec![[0.0, 1.0]; leaves.len()],
-            };
+            let looks = is_last.then(|| visible::seen(&sight, &elements, &leaves, settings.directions));
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
-            let solved = light(&mut elements, &links, &seen, (tolerance, &stopped), &mut report)?;
+            let solved = light(&elements, &links, looks.as_ref(), (tolerance, &stopped), &mut report)?;
             elements.take(&leaves, &solved.irradiance);
             (watch.progress)(2 * round + 2, 2 * ROUNDS);
-            if is_last {
-                dark = seen.iter().map(|[_, most]| *most < 0.0).collect();
+            if let Some(looks) = looks {
+                dark = looks.is_dark;
                 break;
             }
         }
@@ -175,20 +173,20 @@ fn patches(prepared: &Prepared, plan: &Plan, sight: &Sight<'_>) -> Vec<Patch> {
 
 /// Solves for the light of the elements as they are, and keeps the books.
 fn light(
-    elements: &mut Elements<'_>,
-    links: &[Judged],
-    seen: &[[f64; 2]],
+    elements: &Elements<'_>,
+    judged: &[Judged],
+    looks: Option<&Looks>,
     (tolerance, stopped): (f64, &dyn Fn() -> bool),
     report: &mut Report,
 ) -> Result<Solved, RenderError> {
-    let links: Vec<Link> = links.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
+    let links: Vec<Link> = judged.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
     let mut exchange = Exchange::new(&elements.hierarchy, &links);
     let leaves = exchange.leaves.clone();
     let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };
     let (reflectance, direct, extra) = (of(&elements.reflectance), of(&elements.direct), of(&elements.extra));
-    report.unbalanced = exchange.balance(seen);
+    let own = exchange.balance(looks);
     let first: Vec<Channels> = (0..leaves.len()).map(|i| extra[i] + reflectance[i] * direct[i]).collect();
-    let solved = solve(&exchange, &reflectance, &first, tolerance, stopped)?;
+    let mut solved = solve(&exchange, &reflectance, &first, tolerance, stopped)?;
     report.steps = solved.steps;
     report.solver_error = solved.error;
     let areas = exchange.areas();
@@ -197,10 +195,17 @@ fn light(
         (0..areas.len()).map(|i| part(i).0.iter().sum::<f64>() * areas[i]).sum()
     };
     let all = |i: usize| direct[i] + solved.irradiance[i];
+    let sent = |i: usize| extra[i] + reflectance[i] * all(i);
+    let exchanged = total(&|i| sent(i) * (rows[i] * areas[i].recip())).max(f64::MIN_POSITIVE);
+    report.unbalanced = total(&|i| sent(i) * own[i]) / exchanged;
     report.arrived = total(&|i| direct[i] + extra[i]);
     report.absorbed = total(&|i| (Channels::ONE - reflectance[i]) * all(i));
-    report.escaped = total(&|i| (extra[i] + reflectance[i] * all(i)) * (Channels::ONE - rows[i] * areas[i].recip()));
+    report.escaped = total(&|i| sent(i) * (Channels::ONE - rows[i] * areas[i].recip()));
     report.left = report.arrived - report.absorbed - report.escaped;
+    if looks.is_some() {
+        let sent: Vec<Channels> = (0..areas.len()).map(sent).collect();
+        solved.irradiance = gather::gathered(&elements.hierarchy, judged, &exchange, &sent);
+    }
     Ok(solved)
 }
 

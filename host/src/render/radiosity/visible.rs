@@ -1,6 +1,7 @@
 //! What sees what: which patches light can come to, and how much of what elements see exchanges light.
 
 use super::elements::{Elements, Exitance};
+use super::exchange::Looks;
 use super::hierarchy::{Hierarchy, NONE, Patch, normal_and_area};
 use super::sight::{Seen, Sight};
 use crate::color::Channels;
@@ -10,8 +11,6 @@ use rayon::prelude::*;
 /// Directions in which a patch looks around for each of its parts, and at the most.
 const LOOKS: u32 = 16;
 const MOST_LOOKS: u32 = 1024;
-/// How many standard deviations a part that was counted may be off.
-const DEVIATIONS: f64 = 3.0;
 
 /// Sets of what is joined.
 struct Joined(Vec<u32>);
@@ -113,9 +112,9 @@ fn side(patch_of: &[[u32; 2]], seen: Seen) -> (u32, [f64; 3]) {
     }
 }
 
-/// For each leaf the least and the greatest part of what it sees that exchanges light; below 0 for leaves to which no light
-/// can come.
-pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], directions: u32) -> Vec<[f64; 2]> {
+/// What leaves see.
+pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], directions: u32) -> Looks {
+    let directions = directions.max(1);
     let hierarchy: &Hierarchy = &elements.hierarchy;
     let patch_of = numbers(sight, &hierarchy.patches);
     let mut place = vec![NONE; hierarchy.nodes.len()];
@@ -132,7 +131,7 @@ pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], d
             let weights = hierarchy.patches[patch as usize].weights(weights);
             place[hierarchy.leaf_at(patch, weights).0 as usize]
         };
-        sight.around(node.corners, node.normal, own, directions.max(1)).into_iter().map(of).collect::<Vec<u32>>()
+        sight.around(node.corners, node.normal, own, directions).into_iter().map(of).collect::<Vec<u32>>()
     };
     let seen: Vec<Vec<u32>> = leaves.par_iter().enumerate().map(looked).collect();
     let mut joined = Joined::new(leaves.len());
@@ -141,17 +140,6 @@ pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], d
     }
     let sends = |leaf: &u32| (elements.direct[*leaf as usize] + elements.extra[*leaf as usize]).max() > 0.0;
     let alight = joined.alight(&leaves.iter().map(sends).collect::<Vec<bool>>());
-    let part = |(seen, alight): (&Vec<u32>, bool)| {
-        if !alight {
-            return [-1.0; 2];
-        }
-        let count = seen.len() as f64;
-        let part = seen.iter().filter(|other| **other != NONE).count() as f64 / count;
-        if part == 1.0 {
-            return [1.0; 2];
-        }
-        let off = DEVIATIONS * (part * (1.0 - part) / count).sqrt() + 1.0 / count;
-        [(part - off).max(0.0), (part + off).min(1.0)]
-    };
-    seen.iter().zip(alight).map(part).collect()
+    let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
+    Looks { directions, part: seen.iter().map(part).collect(), is_dark: alight.iter().map(|alight| !alight).collect() }
 }
