@@ -56,21 +56,24 @@ fn along_the_axis(scene: &Scene) -> Vec<(f64, f64)> {
     (0..ACROSS).map(|x| (place(x), mean(x) * PI / 0.5)).collect()
 }
 
-/// Compares irradiance along an axis where a closed form is smooth; and asks for the brightest place.
-fn compare(found: &[(f64, f64)], expected: impl Fn(f64) -> f64, smooth: [[f64; 2]; 2], cusp: f64) {
+/// Compares irradiance along an axis where a closed form is smooth.
+fn compare(found: &[(f64, f64)], expected: impl Fn(f64) -> f64, smooth: &[[f64; 2]]) {
     let (mut squares, mut count) = (0.0, 0.0);
     for (x, e) in found.iter().filter(|(x, _)| smooth.iter().any(|[from, to]| (from..=to).contains(&x))) {
         let error = e / expected(*x) - 1.0;
-        eprintln!("{x:.3}: {e:.4} {:.4} {error:+.3}", expected(*x));
         assert!(error.abs() < 0.1, "{x}: {e} {}", expected(*x));
         (squares, count) = (squares + error * error, count + 1.0);
     }
     let mean = f64::sqrt(squares / count);
-    eprintln!("rms {mean}");
-    assert!(mean < 0.04 && count > 10.0, "{mean} {count}");
-    let brightest = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)).expect("a row").0;
-    eprintln!("brightest {brightest} {cusp}");
-    assert!((brightest - cusp).abs() < 2.0 / f64::from(ACROSS), "{brightest} {cusp}");
+    assert!(mean < 0.03 && count > 9.0, "{mean} {count}");
+}
+
+/// Where the straight line through some points comes to 0.
+fn zero(points: &[(f64, f64)]) -> f64 {
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let slope = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2));
+    x - y / slope
 }
 
 #[test]
@@ -84,7 +87,12 @@ fn a_hollow_mirror_bends_parallel_light_to_a_nephroid() {
         let others = if x > 0.5 { 2.0 / (4.0 * x * x - 1.0) } else { 0.0 };
         direct * (1.0 + 1.0 / (1.0 - 2.0 * x).abs() + others)
     };
-    compare(&found, expected, [[-0.1, 0.36], [0.66, 0.8]], 0.5);
+    compare(&found, expected, &[[-0.1, 0.36], [0.66, 0.8]]);
+    // What is thrown grows beyond all bounds towards the cusp.
+    let before = found.iter().filter(|(x, _)| (-0.1..0.3).contains(x));
+    let inverse: Vec<(f64, f64)> = before.map(|(x, e)| (*x, direct / (e - direct))).collect();
+    let cusp = zero(&inverse);
+    assert!((cusp - 0.5).abs() < 0.02, "{cusp}");
 }
 
 #[test]
@@ -97,17 +105,13 @@ fn a_hollow_mirror_bends_light_from_its_rim_to_a_cardioid() {
     let thrown = |before: f64, behind: f64| {
         plain(before + behind) * (before + behind) / (before * (1.0 - 3.0 * behind / before).abs())
     };
-    let expected = |x: f64| {
-        let cosine = 0.5 * (1.0 / x - 1.0);
-        let others = if x > 1.0 / 3.0 && cosine < 1.0 {
-            let angle = cosine.acos();
-            2.0 * thrown(2.0 * (0.5 * angle).cos(), angle.sin() / (1.5 * angle).sin())
-        } else {
-            0.0
-        };
-        plain(1.0 + x) + thrown(2.0, 1.0 - x) + others
-    };
-    compare(&found, expected, [[-0.2, 0.23], [0.43, 0.48]], 1.0 / 3.0);
+    let expected = |x: f64| plain(1.0 + x) + thrown(2.0, 1.0 - x);
+    compare(&found, expected, &[[-0.2, 0.24]]);
+    let before = found.iter().filter(|(x, _)| (-0.2..0.17).contains(x));
+    let inverse: Vec<(f64, f64)> =
+        before.map(|(x, e)| (*x, plain(3.0 - x) * (3.0 - x) / (e - plain(1.0 + x)))).collect();
+    let cusp = zero(&inverse);
+    assert!((cusp - 1.0 / 3.0).abs() < 0.03, "{cusp}");
 }
 
 #[test]
@@ -134,7 +138,6 @@ fn irradiance_behind_a_lens_grows_as_its_light_draws_together() {
         let found = pixels.iter().map(|p| f64::from(p.radiance[0])).sum::<f64>() / pixels.len() as f64 * PI / 0.5;
         let once = ((1.0 - height / inside) * drawn).powi(-2);
         let expected = (1.0 - reflected).powi(2) * (once + (reflected / (1.0 - behind / ghost)).powi(2));
-        eprintln!("lens {behind}: {found} {expected} {:+.4}", found / expected - 1.0);
         assert!((found / expected - 1.0).abs() < 0.01, "{behind}: {found} {expected}");
     }
 }
@@ -148,12 +151,13 @@ fn deviation(index: f64, apex: f64, incidence: f64) -> f64 {
 #[test]
 fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
     let flint = shipped::glass("SF11").expect("a glass");
-    let (apex, incidence, below) = (PI / 3.0, 63f64.to_radians(), 10.0);
+    let (apex, incidence, below) = (PI / 3.0, 58f64.to_radians(), 10.0);
     let corners = [90.0f64, 210.0, 330.0].map(|angle| DVec2::from_angle(angle.to_radians()) * 0.01);
     let prism = Primitive::Prism { contours: vec![corners.to_vec()], height: 0.02 };
     let material = Transparent { index: Index::Dispersive(flint.clone()), roughness: 0.0, absorption: Color::BLACK };
     let material = Material::from(Body::Transparent(material));
-    // The outside of its left face looks towards 150 degrees.
+    // The outside of its left face looks towards 150 degrees. Not at the least deviation: there the base mirrors light
+    // to the same place.
     let turned = DMat4::from_rotation_z(PI / 6.0 - incidence);
     for wavelength in [480.0, 546.0, 588.0, 650.0] {
         let line = [(-6.0, 0.0), (0.0, 1.0), (6.0, 0.0)].map(|(by, of)| (wavelength + by, of));
@@ -166,14 +170,13 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
         (scene.settings.samples, scene.settings.photons) = (4, 100_000);
         (scene.settings.spectral, scene.settings.photon_radius) = (Some(true), Some(0.03));
         let expected = below / deviation(flint.index(wavelength).expect("an index"), apex, incidence).tan();
-        let rendering = two_way(&scene, Some(down_on(DVec3::new(expected, -below, 0.0), 0.3, 1.0)), 2);
+        let rendering = two_way(&scene, Some(down_on(DVec3::new(expected, -below, 0.0), 0.15, 1.0)), 2);
         let (mut all, mut moment) = (0.0, 0.0);
         for (x, y) in (0..41u32).flat_map(|x| (0..41).map(move |y| (x, y))) {
             let radiance = rendering.picture.get(x, y).expect("inside").radiance;
             let light = radiance.iter().map(|band| f64::from(band.abs())).sum::<f64>();
-            (all, moment) = (all + light, moment + light * (f64::from(x) - 20.0) * 0.6 / 41.0);
+            (all, moment) = (all + light, moment + light * (f64::from(x) - 20.0) * 0.3 / 41.0);
         }
-        eprintln!("prism {wavelength}: {expected} {:+.4} {all}", moment / all);
         assert!(all > 0.0 && (moment / all).abs() < 0.015, "{wavelength}: {expected} {:+}", moment / all);
     }
 }
@@ -203,7 +206,6 @@ fn a_slab_lets_through_what_fresnel_tells() {
         // With all reflections between the faces.
         let reflected = fresnel(index, cos);
         let expected = (1.0 - reflected) / (1.0 + reflected);
-        eprintln!("slab {index} {degrees}: {} {expected}", found.caught);
         assert!((found.caught - expected).abs() < 5e-3, "{index} {degrees}: {} {expected}", found.caught);
         assert!((found.escaped - (1.0 - expected)).abs() < 5e-3 && found.absorbed.abs() < 1e-9);
     }
@@ -222,6 +224,5 @@ fn a_ball_of_dark_glass_absorbs_what_fresnel_and_bouguer_tell() {
         (1.0 - reflected) * (1.0 - passed) / (1.0 - reflected * passed) / 10_000.0
     };
     let expected = (0..10_000).map(term).sum::<f64>();
-    eprintln!("ball {} {expected}", found.absorbed);
     assert!((found.absorbed - expected).abs() < 5e-3, "{} {expected}", found.absorbed);
 }
