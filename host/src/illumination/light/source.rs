@@ -267,6 +267,15 @@ impl Source {
         !matches!(&self.kind, Kind::Sky(sky) if sky.is_even())
     }
 
+    /// The cone out of which nothing is sent: its tip, its axis, unit length, and the cosine of its half angle; none if
+    /// light goes everywhere.
+    pub fn cone(&self) -> Option<(DVec3, DVec3, f64)> {
+        match &self.kind {
+            Kind::Spot { at, axis, outer, .. } => Some((*at, *axis, *outer)),
+            _ => None,
+        }
+    }
+
     /// Whether it surrounds everything.
     pub fn is_sky(&self) -> bool {
         matches!(self.kind, Kind::Sky(_))

@@ -65,6 +65,17 @@ impl Media {
         }
     }
 
+    /// Takes note of the body of an element that is met from inside, if light began there.
+    pub(super) fn notice(&mut self, found: &Found<'_>) {
+        let is_known = || self.bodies[..self.count].iter().any(|(object, _)| *object == found.object);
+        if found.optics.interior.is_some() && !found.element.outside && self.count < MOST && !is_known() {
+            // Around those that it is in.
+            self.bodies.copy_within(0..self.count, 1);
+            self.bodies[0] = (found.object, found.material);
+            self.count += 1;
+        }
+    }
+
     fn leave(&mut self, object: u32) {
         if let Some(place) = self.bodies[..self.count].iter().rposition(|(other, _)| *other == object) {
             self.bodies.copy_within(place + 1..self.count, place);

@@ -14,6 +14,8 @@ mod two_way;
 pub(super) mod world;
 
 #[cfg(test)]
+mod caustic_tests;
+#[cfg(test)]
 mod exact_tests;
 #[cfg(test)]
 mod light_tests;
@@ -21,6 +23,8 @@ mod light_tests;
 mod motion_tests;
 #[cfg(test)]
 mod texture_tests;
+#[cfg(test)]
+mod two_way_extreme_tests;
 #[cfg(test)]
 mod two_way_tests;
 #[cfg(test)]

@@ -13,31 +13,31 @@ use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
-fn glass(index: f64) -> Material {
+pub(super) fn glass(index: f64) -> Material {
     Body::Transparent(Transparent { index: Index::Constant(index), roughness: 0.0, absorption: Color::BLACK }).into()
 }
 
-fn block(size: DVec3, at: DVec3, material: impl Into<Material>) -> Object {
+pub(super) fn block(size: DVec3, at: DVec3, material: impl Into<Material>) -> Object {
     object(Shape::Solid(Primitive::Box { size }), DMat4::from_translation(at), material)
 }
 
-fn ball(radius: f64, at: DVec3, material: impl Into<Material>) -> Object {
+pub(super) fn ball(radius: f64, at: DVec3, material: impl Into<Material>) -> Object {
     object(Shape::Solid(Primitive::Sphere { radius }), DMat4::from_translation(at), material)
 }
 
-fn lamp(at: DVec3, intensity: f64) -> Light {
+pub(super) fn lamp(at: DVec3, intensity: f64) -> Light {
     Light::Point { at, intensity: Color::grey(intensity) }
 }
 
 /// Looks straight up from above the shade at the square -1.5..1.5 of the ceiling, x to the left, z up.
-fn from_below() -> View {
+pub(super) fn from_below() -> View {
     let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
     (camera.from, camera.at, camera.up) = (DVec3::Y * 1.3, DVec3::Y * 3.0, DVec3::Z);
     camera.field_of_view = 2.0 * (1.5f64 / 1.7).atan().to_degrees();
     View::Camera(camera)
 }
 
-fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
+pub(super) fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
     let mut scene = scene.clone();
     scene.settings.two_way = true;
     let prepared = Prepared::new(&scene).unwrap_or_else(|e| panic!("{e}"));
@@ -54,7 +54,7 @@ fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
 }
 
 /// A lamp that a mirror on the floor throws on a ceiling of a size; a shade keeps its own light from there.
-fn mirror_under_a_ceiling(size: f64, side: u32) -> Scene {
+pub(super) fn mirror_under_a_ceiling(size: f64, side: u32) -> Scene {
     let objects = vec![
         block(DVec3::new(2.0, 0.1, 2.0), DVec3::new(0.0, -0.05, 0.0), mirror(0.8)),
         block(DVec3::new(size, 0.1, size), DVec3::new(0.0, 3.05, 0.0), diffuse(0.5)),

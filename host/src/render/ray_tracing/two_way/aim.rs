@@ -22,6 +22,14 @@ pub(super) struct Ball {
 }
 
 impl Ball {
+    /// The ball that fills a cone.
+    ///
+    /// - `way`: from the tip to the middle of the ball. `cosine`: of the half angle, which is known to the last digit of it.
+    pub(super) fn in_cone(tip: DVec3, way: DVec3, cosine: f64) -> Ball {
+        let off = 1.0 - cosine + 2.0 * f64::EPSILON;
+        Ball { center: tip + way, radius: way.length() * (off * (2.0 - off)).sqrt() }
+    }
+
     /// A direction towards it from a point, even in solid angle; every direction from inside.
     pub(super) fn direction(&self, from: DVec3, uniform: [f64; 2]) -> DVec3 {
         let offset = self.center - from;

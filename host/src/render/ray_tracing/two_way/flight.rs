@@ -198,10 +198,14 @@ impl Flight<'_> {
                 Met::Element(found) => found,
             };
             let length = found.distance - leg.t_min * leg.ray.direction.length();
+            leg.media.notice(&found);
             let left = leg.flux * leg.media.absorbed(self.world, length, comb);
             self.balance.absorbed += self.watts(leg.flux) - self.watts(left);
             leg.flux = left;
-            if leg.turns > self.turns || !self.arrive(&mut leg, &found, comb, &(choices, number)) {
+            if leg.turns > self.turns {
+                break;
+            }
+            if !self.arrive(&mut leg, &found, comb, &(choices, number)) {
                 return;
             }
             let part = leg.flux.max() / (first * FAINT);

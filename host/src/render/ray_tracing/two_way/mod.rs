@@ -51,6 +51,9 @@ const CHUNK: u32 = 1024;
 /// The largest disc over which caught light is spread, as a part of the diagonal of the scene.
 const REACH: f64 = 0.05;
 
+/// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
+const NARROW: f64 = 0.9;
+
 /// Memory that caught light takes while it is kept for further views, bytes at the most.
 const MOST_BYTES: usize = 1 << 30;
 
@@ -133,11 +136,19 @@ impl TwoWay {
 
     /// Divides the ways among lamps and balls, as a few of them are of use.
     fn divide(&mut self, world: &World<'_>, lamps: &[usize]) {
-        let pairs = lamps.len() * self.balls.len();
-        let count = (PILOT / pairs as u32).max(LEAST_PILOT);
         let all = |lamp: &usize| (0..self.balls.len()).map(move |ball| (*lamp, ball)).collect::<Vec<_>>();
-        let pairs = lamps.iter().flat_map(all);
-        self.quotas = pairs.map(|(lamp, ball)| Quota { lamp, ball, count, guide: Guide::even() }).collect();
+        let mut pairs: Vec<(usize, usize)> = lamps.iter().flat_map(all).collect();
+        for lamp in lamps {
+            // In the cone of a spot, however thin it is.
+            let cone = world.appearance.sources[*lamp].1.cone().filter(|(.., cosine)| *cosine > NARROW);
+            if let Some((at, axis, cosine)) = cone {
+                let far = world.appearance.prepared.bounds.diagonal();
+                pairs.push((*lamp, self.balls.len()));
+                self.balls.push(Ball::in_cone(at, axis * far, cosine));
+            }
+        }
+        let count = (PILOT / pairs.len() as u32).max(LEAST_PILOT);
+        self.quotas = pairs.into_iter().map(|(lamp, ball)| Quota { lamp, ball, count, guide: Guide::even() }).collect();
         let found: Vec<(f64, Guide)> =
             (0..self.quotas.len()).into_par_iter().map(|quota| self.explore(world, quota, count)).collect();
         let (caught, guides): (Vec<f64>, Vec<Guide>) = found.into_iter().unzip();
