@@ -227,6 +227,12 @@ impl<'a> World<'a> {
         Some((emission, index.map_or(1.0, counted)))
     }
 
+    /// Whether any triangle that counts and stands still is met on the first length of a ray's direction.
+    pub(super) fn any_between(&self, ray: &Ray, counts: impl Fn(u32) -> bool) -> bool {
+        let of = |hit: Hit| self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+        self.octree.as_ref().is_some_and(|octree| octree.each_hit(ray, 0.0, 1.0, |hit| counts(of(hit))))
+    }
+
     /// The part of light that comes along a way: nothing, if something opaque is in between.
     ///
     /// - `index`: of the light that the way leads to, which is not in the way of itself. `way`: what is known of what stands

@@ -14,6 +14,9 @@ const LOOSE: f64 = 0.7;
 const WIDER: f64 = 1.0 + 1e-9;
 const BELOW_ONE: f64 = 1.0_f64.next_down();
 
+/// The density with which a direction or line is drawn, and the point of the square that gives it.
+pub(super) type Aimed = (f64, [f64; 2]);
+
 /// A ball around something that mirrors or refracts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ball {
@@ -45,7 +48,7 @@ impl Ball {
     }
 
     /// The density of [`Ball::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
-    pub(super) fn density(&self, from: DVec3, direction: DVec3) -> Option<(f64, [f64; 2])> {
+    pub(super) fn density(&self, from: DVec3, direction: DVec3) -> Option<Aimed> {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
         let along = offset.dot(direction);
@@ -68,7 +71,7 @@ impl Ball {
     }
 
     /// The density of [`Ball::line`], one over an area, and the point of the square that gives a line; none beside the ball.
-    pub(super) fn line_density(&self, direction: DVec3, on: DVec3) -> Option<(f64, [f64; 2])> {
+    pub(super) fn line_density(&self, direction: DVec3, on: DVec3) -> Option<Aimed> {
         let offset = on - self.center;
         let aside = offset - direction * offset.dot(direction);
         let square = self.radius * self.radius;

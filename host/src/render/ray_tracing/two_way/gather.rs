@@ -4,6 +4,7 @@
 //! that chance shows; a large one blurs. Which is right is different from place to place: discs are tried from small to
 //! large as long as what they tell is the same within what chance allows.
 
+use super::super::world::World;
 use super::flight::Caught;
 use super::surfaces::{Surfaces, part_of_disc};
 use crate::color::{Channels, LANES};
@@ -11,7 +12,6 @@ use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::triangle::Shear;
 use crate::octree::{Points, Sorted};
-use crate::scene::Prepared;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_PI;
@@ -29,6 +29,8 @@ const RINGS: usize = 32;
 const DISCS: [usize; 10] = [1, 2, 3, 4, 6, 8, 11, 16, 22, 32];
 /// Two discs tell the same if they differ by no more than so many standard errors.
 const SAME: f64 = 1.0;
+/// So many triangles around a place are looked at for each light; of more, the octree finds those in the way.
+const MANY_WALLS: usize = 24;
 /// How far above or below the plane at a place light may have arrived to count there, over the radius.
 const HEIGHT: f64 = 0.25;
 
@@ -62,7 +64,7 @@ pub(super) struct Place {
 
 /// What stands around places.
 pub(super) struct Surroundings<'a> {
-    pub(super) prepared: &'a Prepared,
+    pub(super) world: &'a World<'a>,
     pub(super) surfaces: &'a Surfaces,
     /// Triangles that stand in the way of light.
     pub(super) opaque: &'a Sorted,
@@ -170,7 +172,7 @@ impl Captured {
         if near.is_empty() {
             return;
         }
-        self.keep_seen(&mut near, place, surroundings, around.reach);
+        self.keep_seen(&mut near, place, surroundings);
         let Some((square, part)) = self.disc(&near, place, surroundings, around.reach) else { return };
         // In scene units from here on.
         let area = square * side * side;
@@ -189,31 +191,38 @@ impl Captured {
     }
 
     /// Leaves out light that arrived behind something that stands on the surface, as seen from the place.
-    fn keep_seen(&self, near: &mut Vec<(u32, f32)>, place: &Place, surroundings: &Surroundings<'_>, reach: f64) {
-        let prepared = surroundings.prepared;
+    fn keep_seen(&self, near: &mut Vec<(u32, f32)>, place: &Place, surroundings: &Surroundings<'_>) {
         let lift = place.leave - place.position;
         let above = lift.normalize_or(place.outside);
-        let bounds = Bounds { min: place.position - DVec3::splat(reach), max: place.position + DVec3::splat(reach) };
+        // Along the plane: positions are rounded.
+        let way = |number: u32| {
+            let way = self.points.position(number as usize) - place.position;
+            way - above * way.dot(above)
+        };
+        let ends = || near.iter().map(|(number, _)| place.leave + way(*number)).chain([place.leave]);
         let mut walls: Vec<[DVec3; 3]> = Vec::new();
-        surroundings.opaque.touching(bounds, |triangle| {
-            if surroundings.surfaces.of(triangle) != place.surface {
-                let corners = prepared.corners(triangle);
-                let heights = corners.map(|corner| (corner - place.leave).dot(above));
-                if heights.iter().any(|height| *height > 0.0) {
+        let Surroundings { world, surfaces, opaque, .. } = surroundings;
+        opaque.touching(Bounds::of(ends()), |triangle| {
+            if walls.len() <= MANY_WALLS && surfaces.of(triangle) != place.surface {
+                let corners = world.appearance.prepared.corners(triangle);
+                if corners.iter().any(|corner| (*corner - place.leave).dot(above) > 0.0) {
                     walls.push(corners);
                 }
             }
         });
-        if walls.is_empty() {
-            return;
-        }
-        near.retain(|(number, _)| {
-            let direction = self.points.position(*number as usize) + lift - place.leave;
-            // Along the plane: positions are rounded.
-            let direction = direction - above * direction.dot(above);
-            let Some(shear) = Shear::new(&Ray { origin: place.leave, direction }, 1.0) else { return true };
+        let is_seen = |number: u32| {
+            let ray = Ray { origin: place.leave, direction: way(number) };
+            if walls.len() > MANY_WALLS {
+                return !world.any_between(&ray, |triangle| {
+                    surfaces.of(triangle) != place.surface && super::stands(world, triangle)
+                });
+            }
+            let Some(shear) = Shear::new(&ray, 1.0) else { return true };
             !walls.iter().any(|wall| shear.crossing(*wall).is_some_and(|crossing| (0.0..=1.0).contains(&crossing.t)))
-        });
+        };
+        if !walls.is_empty() {
+            near.retain(|(number, _)| is_seen(*number));
+        }
     }
 
     /// The disc that tells most, by the square of its radius in sides of the cube, and how much of it is on the surface.

@@ -29,7 +29,7 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
 use crate::render::Watch;
-use aim::{Ball, Guide};
+use aim::{Aimed, Ball, Guide};
 use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
 use gather::{Captured, Place, Surroundings};
 use glam::DVec3;
@@ -119,10 +119,10 @@ impl TwoWay {
             let materials = 0..prepared.objects[object].materials.len() as u32;
             keeps(object) && materials.into_iter().any(|m| appearance.optics(object as u32, m).takes())
         };
-        let stands = |t: u32| matches!(of(t), (true, optics) if !optics.is_passable() && optics.interior.is_none());
+        let opaque = |triangle: u32| of(triangle).0 && stands(world, triangle);
         let mut two_way = TwoWay {
             surfaces: Surfaces::new(prepared, takes),
-            opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(stands),
+            opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(opaque),
             quotas: Vec::new(),
             turns: settings.reflection_depth.max(LEAST_TURNS),
             reach: settings.photon_radius.unwrap_or(REACH * prepared.bounds.diagonal()),
@@ -154,7 +154,7 @@ impl TwoWay {
         let (caught, guides): (Vec<f64>, Vec<Guide>) = found.into_iter().unzip();
         let all: f64 = caught.iter().sum();
         let photons = f64::from(world.appearance.prepared.settings.photons);
-        if !(all > 0.0) {
+        if all <= 0.0 {
             self.quotas.clear();
             return;
         }
@@ -256,7 +256,7 @@ impl TwoWay {
         let ball = &self.balls[quota.ball];
         // However a way might have been drawn.
         let others = || self.quotas.iter().filter(|other| other.lamp == quota.lamp);
-        let all = |density: &dyn Fn(&Ball) -> Option<(f64, [f64; 2])>| -> f64 {
+        let all = |density: &dyn Fn(&Ball) -> Option<Aimed>| -> f64 {
             let of = |other: &Quota| {
                 let (density, place) = density(&self.balls[other.ball])?;
                 Some(f64::from(other.count) * density * other.guide.density(place))
@@ -283,6 +283,14 @@ impl TwoWay {
             }
         }
     }
+}
+
+/// Whether light does not come through a triangle.
+fn stands(world: &World<'_>, triangle: u32) -> bool {
+    let prepared = world.appearance.prepared;
+    let object = prepared.object_of[triangle as usize];
+    let optics = world.appearance.optics(object, prepared.material_number(triangle));
+    !optics.is_passable() && optics.interior.is_none()
 }
 
 impl CaughtLight<'_> {
@@ -314,7 +322,7 @@ impl CaughtLight<'_> {
         };
         let appearance = &self.world.appearance;
         let surroundings = Surroundings {
-            prepared: appearance.prepared,
+            world: self.world,
             surfaces: &two_way.surfaces,
             opaque: &two_way.opaque,
             reach: two_way.reach,

@@ -119,7 +119,7 @@ fn beyond([a, b]: [DVec2; 2], radius: f64) -> f64 {
     let length = way.length();
     let along = way / length;
     let height = along.perp_dot(-a);
-    if !(length > 0.0) || height.abs() >= radius {
+    if length == 0.0 || height.abs() >= radius {
         return 0.0;
     }
     // From the foot of the perpendicular, cut off at the disc.
