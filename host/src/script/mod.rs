@@ -64,7 +64,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 20] = [
+pub const EMBEDDED: [Embedded; 19] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -139,11 +139,6 @@ pub const EMBEDDED: [Embedded; 20] = [
         name: "mirror",
         summary: "a hand mirror that throws the sun on the wall of a room",
         text: include_str!("../../scenes/mirror.rhai"),
-    },
-    Embedded {
-        name: "pool",
-        summary: "a swimming pool with a net of light on its tiles",
-        text: include_str!("../../scenes/pool.rhai"),
     },
     Embedded {
         name: "flowers",

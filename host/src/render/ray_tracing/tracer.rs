@@ -303,7 +303,8 @@ impl<'a> Tracer<'a> {
             }
         }
         if let Some(caught) = self.caught.filter(|_| optics.takes()) {
-            let (radiance, elsewhere) = caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()));
+            let (radiance, elsewhere) =
+                caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != Course::Seen);
             let class = leg.course.after(true).after(false).of_lamps();
             seen.add(class, radiance);
             seen.other[class as usize] += elsewhere;

@@ -18,6 +18,8 @@ use std::f64::consts::FRAC_2_PI;
 
 /// Caught light that is looked at around a place, at the least, if there is so much.
 const FEW: usize = 256;
+/// As much where a few will do.
+const COARSE: usize = 96;
 /// Where there is much, it is as this times the power 2/3 of all: discs then become as small, and chance in them as
 /// little, as makes the error fall fastest.
 const SHARE: f64 = 0.3;
@@ -70,6 +72,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) opaque: &'a Sorted,
     /// The largest disc, scene units.
     pub(super) reach: f64,
+    /// Whether a few ways of light will do, as for one of the many places that send light to what is seen.
+    pub(super) coarse: bool,
     /// What the areas of discs are multiplied with.
     pub(super) shrink: f64,
 }
@@ -149,7 +153,8 @@ impl Captured {
 
     /// Visits the light that arrives around a place, as if it arrived at it.
     pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) {
-        let around = self.points.around(place.position, surroundings.reach, self.most);
+        let most = if surroundings.coarse { COARSE } else { self.most };
+        let around = self.points.around(place.position, surroundings.reach, most);
         if around.count == 0 {
             return;
         }

@@ -302,12 +302,14 @@ impl CaughtLight<'_> {
     /// Radiance towards the viewer of an element by the light that was caught around it.
     ///
     /// - `passed`: how much of the radiance comes to the eye. `is_parted`: whether a single wavelength is left of it.
+    /// - `coarse`: whether the element is one of many that send light to what is seen.
     /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB.
     pub(super) fn seen(
         &self,
         found: &Found<'_>,
         sighting: &Sighting<'_>,
         (passed, is_parted): (Channels, bool),
+        coarse: bool,
     ) -> (Channels, DVec3) {
         let two_way = self.two_way;
         let element = &found.element;
@@ -326,6 +328,7 @@ impl CaughtLight<'_> {
             surfaces: &two_way.surfaces,
             opaque: &two_way.opaque,
             reach: two_way.reach,
+            coarse,
             shrink: self.shrink,
         };
         let frame = found.frame();
