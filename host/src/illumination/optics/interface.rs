@@ -55,21 +55,14 @@ impl Smooth {
     /// What is reflected and what comes through.
     pub(super) fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
         let view = sighting.view;
-        let onward = |light: DVec3, weight: Channels| Onward {
-            light,
-            weight,
-            density: None,
-            is_straight: false,
-            is_broad: false,
-        };
         let fraction = reflected(sighting, view.z);
-        let reflection = onward(DVec3::new(-view.x, -view.y, view.z), fraction);
+        let reflection = Onward::single(DVec3::new(-view.x, -view.y, view.z), fraction);
         let through = Channels(std::array::from_fn(|lane| {
             interface(sighting, lane).map_or(0.0, |surface| surface.transmittance(view.z).mean())
         }));
         let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction =
-            refracted.filter(|light| light.z < 0.0).map(|light| onward(light, through * thinned(sighting)));
+            refracted.filter(|light| light.z < 0.0).map(|light| Onward::single(light, through * thinned(sighting)));
         [Some(reflection).filter(|onward| onward.weight.max() > 0.0), refraction.filter(|o| o.weight.max() > 0.0)]
     }
 

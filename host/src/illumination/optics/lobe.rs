@@ -167,23 +167,16 @@ impl Lobe {
     pub(super) fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
         let Sighting { view, comb, .. } = *sighting;
         let reflected = DVec3::new(-view.x, -view.y, view.z);
-        let onward = |light: DVec3, weight: Channels| Onward {
-            light,
-            weight,
-            density: None,
-            is_straight: false,
-            is_broad: false,
-        };
         match self {
-            Lobe::Mirror(fraction) => [Some(onward(reflected, fraction.of(sighting))), None],
+            Lobe::Mirror(fraction) => [Some(Onward::single(reflected, fraction.of(sighting))), None],
             Lobe::Polished(metal) => {
-                [Some(onward(reflected, reflectance(&metal[comb.min(metal.len() - 1)], view.z))), None]
+                [Some(Onward::single(reflected, reflectance(&metal[comb.min(metal.len() - 1)], view.z))), None]
             }
             Lobe::Straight(fraction) => {
-                [Some(Onward { is_straight: true, ..onward(-view, fraction.of(sighting)) }), None]
+                [Some(Onward { is_straight: true, ..Onward::single(-view, fraction.of(sighting)) }), None]
             }
             Lobe::Coat(coat) if coat.is_polished() => {
-                [Some(onward(reflected, Channels::splat(coat.reflected(view.z)))), None]
+                [Some(Onward::single(reflected, Channels::splat(coat.reflected(view.z)))), None]
             }
             Lobe::Smooth(smooth) => smooth.mirrored(sighting),
             _ => [None, None],

@@ -132,6 +132,13 @@ pub struct Onward {
     pub is_broad: bool,
 }
 
+impl Onward {
+    /// The one direction of a mirror or a smooth interface.
+    fn single(light: DVec3, weight: Channels) -> Onward {
+        Onward { light, weight, density: None, is_straight: false, is_broad: false }
+    }
+}
+
 impl Optics {
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr: D K / (N·V).
     ///
