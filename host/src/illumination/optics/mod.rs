@@ -55,8 +55,8 @@ pub enum Among {
     All,
     /// Those whose directions are not all known: [`Optics::mirrored`] gives the others.
     Spread,
-    /// The narrow ones.
-    Narrow,
+    /// Those of one kind.
+    Only(Which),
 }
 
 impl Among {
@@ -64,7 +64,7 @@ impl Among {
         match self {
             Among::All => true,
             Among::Spread => !lobe.is_mirror(),
-            Among::Narrow => which == Which::Narrow,
+            Among::Only(kind) => which == kind,
         }
     }
 }
@@ -288,6 +288,11 @@ impl Optics {
             Lobe::Diffuse(_) => Some(sum + lobe.value(sighting, DVec3::Z)),
             _ => None,
         })
+    }
+
+    /// Whether some lobe that carries rays on spreads light about everywhere.
+    pub fn is_broad(&self) -> bool {
+        self.of(Which::Broad).any(|lobe| !lobe.is_black())
     }
 
     /// Whether some lobe that carries rays on does so in more than single directions.

@@ -52,6 +52,9 @@ impl<'a> Direct<'a> {
         let mut sum = [Channels::ZERO; 2];
         for (index, (number, source)) in self.world.appearance.sources.iter().enumerate() {
             let samples = if source.is_sharp() { 1 } else { self.samples };
+            if encounter.is_known && source.is_caught() {
+                continue;
+            }
             if self.is_dark(encounter, index) {
                 counts.spared += u64::from(samples);
                 continue;

@@ -53,6 +53,9 @@ struct Leg {
     for_lights: bool,
     /// Which turns its light takes from here to the eye.
     course: Course,
+    /// Whether light that was followed from lamps counts nothing on it: it was caught where narrow turns bring it to a
+    /// broad one.
+    is_known: bool,
 }
 
 /// Which turns light takes to the eye, by the lobes that it goes on from.
@@ -143,6 +146,8 @@ pub(super) struct Tracer<'a> {
     caustics: Caustics,
     /// Light that was caught on its way from lamps.
     caught: Option<&'a CaughtLight<'a>>,
+    /// Whether there is light that is not followed from where it comes from.
+    has_others: bool,
 }
 
 /// What becomes of light of a lamp that narrow lobes throw on a broad one.
@@ -172,7 +177,11 @@ impl<'a> Tracer<'a> {
             (false, true) => Caustics::Met,
             (false, false) => Caustics::LeftOut,
         };
-        Tracer { world, direct: Direct::new(world, shadows, settings.light_samples.max(1)), depth, caustics, caught }
+        let appearance = &world.appearance;
+        let has_others =
+            appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.is_caught());
+        let direct = Direct::new(world, shadows, settings.light_samples.max(1));
+        Tracer { world, direct, depth, caustics, caught, has_others }
     }
 
     /// The radiance that arrives along a line of sight.
@@ -198,6 +207,7 @@ impl<'a> Tracer<'a> {
             lane: None,
             for_lights: false,
             course: Course::Seen,
+            is_known: false,
         };
         let Work { counts, waiting } = work;
         waiting.push(first);
@@ -283,7 +293,7 @@ impl<'a> Tracer<'a> {
             seen.add(Class::Indirect, radiance);
             log.note(|| Note::term(leg.depth, "ambient light", radiance));
         }
-        if let Some(radiance) = self.world.indirect(found, comb) {
+        if let Some(radiance) = self.world.indirect(found, comb).filter(|_| !leg.is_known) {
             seen.add(Class::Indirect, leg.passed * radiance);
             log.note(|| Note::term(leg.depth, "light of other surfaces", leg.passed * radiance));
         }
@@ -294,7 +304,16 @@ impl<'a> Tracer<'a> {
         let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
         let among = if parts { Among::Spread } else { Among::All };
         let highest = self.highest(&leg);
-        let encounter = Encounter { found, frame, sighting, draws: *draws, leg: leg.number, among, highest };
+        let encounter = Encounter {
+            found,
+            frame,
+            sighting,
+            draws: *draws,
+            leg: leg.number,
+            among,
+            highest,
+            is_known: leg.is_known,
+        };
         if optics.answers_lights() {
             let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
             let light = self.direct.light(&encounter, counts, add);
@@ -302,13 +321,15 @@ impl<'a> Tracer<'a> {
                 seen.add(leg.course.after(is_broad).of_lamps(), leg.passed * radiance);
             }
         }
-        if let Some(caught) = self.caught.filter(|_| optics.takes()) {
-            let (radiance, elsewhere) =
+        if let Some(caught) = self.caught.filter(|_| optics.takes() && !leg.is_known) {
+            let light =
                 caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != Course::Seen);
-            let class = leg.course.after(true).after(false).of_lamps();
-            seen.add(class, radiance);
-            seen.other[class as usize] += elsewhere;
-            log.note(|| Note::term(leg.depth, "caught light", radiance));
+            let first = leg.course.after(true).after(false).of_lamps();
+            for (class, (radiance, elsewhere)) in [first, Class::Indirect].into_iter().zip(light) {
+                seen.add(class, radiance);
+                seen.other[class as usize] += elsewhere;
+                log.note(|| Note::term(leg.depth, "caught light", radiance));
+            }
         }
         if optics.carries_on() {
             let point = draws.leg(leg.number, Purpose::Direction, 0);
@@ -332,6 +353,7 @@ impl<'a> Tracer<'a> {
         match self.caustics {
             // What is not followed from lamps counts wherever it is met.
             Caustics::Caught if !source.is_caught() => counted(leg.density, density),
+            Caustics::Caught if leg.is_known => 0.0,
             Caustics::LeftOut if source.is_sky() => counted(leg.density, density),
             Caustics::Caught | Caustics::LeftOut if is_caustic => 0.0,
             _ => leg.lamps * counted(leg.density, density),
@@ -358,6 +380,11 @@ impl<'a> Tracer<'a> {
         // Beyond the last leg, a direction that might have been drawn for a light still looks for it.
         let is_last = leg.depth >= self.depth;
         if is_last && (onward.density.is_none() || !self.direct.is_spread()) {
+            return None;
+        }
+        let goes_back = self.caustics == Caustics::Caught && !onward.is_broad && leg.course != Course::Seen;
+        let is_known = leg.is_known || goes_back;
+        if is_known && !self.has_others {
             return None;
         }
         let mut passed = leg.passed * onward.weight;
@@ -403,6 +430,7 @@ impl<'a> Tracer<'a> {
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,
             course: leg.course.after(onward.is_broad),
+            is_known,
         })
     }
 

@@ -62,6 +62,8 @@ pub(super) struct Encounter<'a> {
     pub(super) among: Among,
     /// The greatest value with which it may reflect a lamp, 1/sr.
     pub(super) highest: f64,
+    /// Whether lamps that were followed count nothing.
+    pub(super) is_known: bool,
 }
 
 /// An element of an object.

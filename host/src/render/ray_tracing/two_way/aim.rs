@@ -47,6 +47,26 @@ impl Ball {
         ((u * x + v * y) * scale + axis * (1.0 - height)).normalize()
     }
 
+    /// The solid angle under which it is seen from a point, sr; 0 where all of it is below a plane through the point.
+    ///
+    /// - `above`: the normal of the plane, unit length.
+    pub(super) fn solid_angle(&self, from: DVec3, above: DVec3) -> f64 {
+        let offset = self.center - from;
+        match self.cap(offset) {
+            Some(_) if offset.dot(above) <= -self.radius => 0.0,
+            Some(cap) => TAU * cap,
+            None => 2.0 * TAU,
+        }
+    }
+
+    /// Whether a ray from a point in a direction, unit length, meets it; from inside, whether at all.
+    pub(super) fn is_met(&self, from: DVec3, direction: DVec3) -> bool {
+        let offset = self.center - from;
+        let Some(cap) = self.cap(offset) else { return true };
+        // 1 − cos of the angle to the middle, without the loss of digits of a difference.
+        0.5 * (direction - offset.normalize()).length_squared() <= cap * WIDER
+    }
+
     /// The density of [`Ball::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
     pub(super) fn density(&self, from: DVec3, direction: DVec3) -> Option<Aimed> {
         let offset = self.center - from;
@@ -211,6 +231,12 @@ pub(super) fn balls(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<
         parts.extend(halves.map(|triangles| Part::new(prepared, triangles)));
     }
     parts.into_iter().map(|part| part.ball).filter(|ball| ball.radius > 0.0 && ball.radius.is_finite()).collect()
+}
+
+/// The ball around all triangles that a test chooses; none if there are none.
+pub(super) fn everything(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Option<Ball> {
+    let meant: Vec<u32> = (0..prepared.triangles.len() as u32).filter(|triangle| is_meant(*triangle)).collect();
+    (!meant.is_empty()).then(|| Part::new(prepared, meant).ball).filter(|ball| ball.radius > 0.0)
 }
 
 /// Some triangles in a ball.

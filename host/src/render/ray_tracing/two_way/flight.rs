@@ -2,14 +2,17 @@
 
 use super::super::media::Media;
 use super::super::world::{Found, Met, World};
+use super::aim::Ball;
 use super::surfaces::Surfaces;
 use crate::color::Channels;
-use crate::illumination::optics::{Among, Onward, Optics, Sighting, Which};
+use crate::illumination::distribution::Frame;
+use crate::illumination::optics::{Among, Onward, Sighting, Which};
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::render::eye::{Cone, Sight};
 use glam::DVec3;
 use serde::Serialize;
+use std::f64::consts::PI;
 
 /// Turns after which light is followed at least; the scene may ask for more.
 pub(super) const LEAST_TURNS: u32 = 128;
@@ -17,6 +20,10 @@ pub(super) const LEAST_TURNS: u32 = 128;
 const CERTAIN_TURNS: u32 = 8;
 /// Of what has less left than this part, only some is followed, and then counts for more.
 const FAINT: f64 = 1.0 / 64.0;
+/// The same for what was spread, over what is caught in the mean.
+const FAINT_AGAIN: f64 = 0.25;
+/// Parts in which light is spread, and one more.
+const MOST_PARTS: u32 = 17;
 
 /// Light that was caught on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +37,8 @@ pub(super) struct Caught {
     pub(super) side: u32,
     /// Which wavelengths it carries.
     pub(super) comb: u8,
+    /// Whether a broad turn was among those that it took.
+    pub(super) is_again: bool,
 }
 
 /// One side of a smooth surface.
@@ -39,16 +48,18 @@ pub(super) fn side_of(surface: u32, outside: bool) -> u32 {
 
 /// What became of the flux that was sent out, W: the mean over the wavelengths or bands.
 ///
-/// `sent` and `gained` together are all the others together.
+/// `sent`, `again` and `gained` together are all the others together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Balance {
     /// Ways that were followed.
     pub ways: u64,
     /// Sent out towards what mirrors or refracts.
     pub sent: f64,
+    /// Sent again by what spreads light.
+    pub again: f64,
     /// Gained, or lost where negative, by chance: where one of several ways was followed instead of all.
     pub gained: f64,
-    /// Met first what neither mirrors nor refracts: light that goes straight.
+    /// Came to what spreads it without a mirror or glass on the way: light that goes straight.
     pub straight: f64,
     /// Caught on surfaces, behind mirrors and glass.
     pub caught: f64,
@@ -64,7 +75,7 @@ impl Balance {
     /// What is missing on one side, as a part of all.
     pub fn residual(&self) -> f64 {
         let arrived = self.straight + self.caught + self.absorbed + self.escaped + self.stopped;
-        (self.sent + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
+        (self.sent + self.again + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
     }
 }
 
@@ -73,10 +84,11 @@ impl std::fmt::Display for Balance {
         let part = |watts: f64| 100.0 * watts / self.sent.max(f64::MIN_POSITIVE);
         write!(
             f,
-            "{} ways of light followed: {:.5} W sent to what mirrors or refracts ({:+.2} % by chance); caught {:.2} %, \
-             absorbed {:.2} %, escaped {:.2} %, straight {:.2} %, stopped {:.2} %; {:.1e} of it is missing",
+            "{} ways of light followed: {:.5} W sent, {:.2} % again by what spreads it ({:+.2} % by chance); caught \
+             {:.2} %, absorbed {:.2} %, escaped {:.2} %, straight {:.2} %, stopped {:.2} %; {:.1e} of it is missing",
             self.ways,
             self.sent,
+            part(self.again),
             part(self.gained),
             part(self.caught),
             part(self.absorbed),
@@ -95,6 +107,7 @@ impl std::ops::Add for Balance {
         Balance {
             ways: self.ways + other.ways,
             sent: self.sent + other.sent,
+            again: self.again + other.again,
             gained: self.gained + other.gained,
             straight: self.straight + other.straight,
             caught: self.caught + other.caught,
@@ -124,8 +137,11 @@ pub(super) enum Purpose {
     Wavelengths,
     /// Which lobe passes it on, and which lane is left where wavelengths part.
     Choice,
-    /// In which direction.
+    /// In which direction, by a narrow lobe or a broad one.
     Direction,
+    Spread,
+    /// Towards which ball a broad lobe sends it, if towards any.
+    Aimed,
     /// Whether it is followed further.
     Survival,
 }
@@ -153,21 +169,34 @@ pub(super) struct Ray0 {
 pub(super) struct Flight<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) surfaces: &'a Surfaces,
+    /// Around what mirrors or refracts.
+    pub(super) balls: &'a [Ball],
     /// Most turns.
     pub(super) turns: u32,
+    /// The flux of light as it is caught, in the mean, W: more than this is sent on in parts, and of less only some. None if
+    /// it is not known yet.
+    pub(super) typical: Option<f64>,
+    /// Legs to be followed; none between ways.
+    pub(super) waiting: Vec<Leg>,
     pub(super) caught: Vec<Caught>,
     pub(super) balance: Balance,
 }
 
 /// What is known of light on its way.
-struct Leg {
+pub(super) struct Leg {
     ray: Ray,
     t_min: f64,
     flux: Channels,
     media: Media,
     lane: Option<usize>,
-    /// How often a mirror or an interface has sent it on.
+    /// Tells its choices from those of others of the same way.
+    number: u32,
+    /// How many were before it, and how often a surface has sent it on other than straight.
+    legs: u32,
     turns: u32,
+    /// Whether the last of them was narrow, and whether any was broad.
+    is_beam: bool,
+    is_again: bool,
 }
 
 impl Flight<'_> {
@@ -182,146 +211,240 @@ impl Flight<'_> {
         self.balance.ways += 1;
         self.balance.sent += self.watts(flux);
         let first = flux.max();
-        let mut leg = Leg { ray, t_min: 0.0, flux, media: Media::default(), lane: None, turns: 0 };
-        // Straight through panes it goes on as it was; a limit keeps even endless stacks of them from hanging.
-        for number in 0..self.turns.saturating_mul(2) {
-            let sight = Sight { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone: Cone::default() };
-            let found = match self.world.meet(&sight, comb, time) {
-                Met::Nothing => {
-                    self.balance.escaped += self.watts(leg.flux);
-                    return;
-                }
-                Met::Glow(..) => {
-                    self.balance.absorbed += self.watts(leg.flux);
-                    return;
-                }
-                Met::Element(found) => found,
-            };
-            let length = found.distance - leg.t_min * leg.ray.direction.length();
-            leg.media.notice(&found);
-            let left = leg.flux * leg.media.absorbed(self.world, length, comb);
-            self.balance.absorbed += self.watts(leg.flux) - self.watts(left);
-            leg.flux = left;
-            if leg.turns > self.turns {
-                break;
-            }
-            if !self.arrive(&mut leg, &found, comb, &(choices, number)) {
-                return;
-            }
-            let part = leg.flux.max() / (first * FAINT);
-            if leg.turns > CERTAIN_TURNS && part < 1.0 {
-                let before = self.watts(leg.flux);
-                let survives = choices.point(Purpose::Survival, number)[0] < part;
-                leg.flux = if survives { leg.flux * part.recip() } else { Channels::ZERO };
-                self.balance.gained += self.watts(leg.flux) - before;
+        let media = Media::default();
+        let leg = Leg {
+            ray,
+            t_min: 0.0,
+            flux,
+            media,
+            lane: None,
+            number: 1,
+            legs: 0,
+            turns: 0,
+            is_beam: false,
+            is_again: false,
+        };
+        self.waiting.push(leg);
+        while let Some(mut leg) = self.waiting.pop() {
+            self.survive(&mut leg, first, choices);
+            // Straight through panes it goes on as it was; a limit keeps even endless stacks of them from hanging.
+            if leg.turns > self.turns || leg.legs > self.turns.saturating_mul(2) {
+                self.balance.stopped += self.watts(leg.flux);
+                continue;
             }
             if leg.flux.max() <= 0.0 {
-                return;
+                continue;
+            }
+            let sight = Sight { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone: Cone::default() };
+            match self.world.meet(&sight, comb, time) {
+                Met::Nothing => self.balance.escaped += self.watts(leg.flux),
+                Met::Glow(..) => self.balance.absorbed += self.watts(leg.flux),
+                Met::Element(found) => {
+                    let length = found.distance - leg.t_min * leg.ray.direction.length();
+                    leg.media.notice(&found);
+                    let left = leg.flux * leg.media.absorbed(self.world, length, comb);
+                    self.balance.absorbed += self.watts(leg.flux) - self.watts(left);
+                    leg.flux = left;
+                    self.arrive(&leg, &found, comb, choices);
+                }
             }
         }
-        self.balance.stopped += self.watts(leg.flux);
     }
 
-    /// Catches light on an element, or sends it on; whether it goes on.
-    fn arrive(&mut self, leg: &mut Leg, found: &Found<'_>, comb: usize, (choices, number): &(&Choices, u32)) -> bool {
+    /// Ends a leg by chance where it is faint, or gives it what others have lost.
+    fn survive(&mut self, leg: &mut Leg, first: f64, choices: &Choices) {
+        let faint = match leg.is_again {
+            true => (first * FAINT).max(FAINT_AGAIN * self.typical.unwrap_or(0.0)),
+            false if leg.turns > CERTAIN_TURNS => first * FAINT,
+            false => return,
+        };
+        let part = leg.flux.max() / faint;
+        if part < 1.0 {
+            let before = self.watts(leg.flux);
+            let survives = choices.point(Purpose::Survival, leg.number)[0] < part;
+            leg.flux = if survives { leg.flux * part.recip() } else { Channels::ZERO };
+            self.balance.gained += self.watts(leg.flux) - before;
+        }
+    }
+
+    /// Catches light on an element, and sends it on.
+    fn arrive(&mut self, leg: &Leg, found: &Found<'_>, comb: usize, choices: &Choices) {
         let optics = found.optics;
         let incoming = self.watts(leg.flux);
-        let throws = optics.throws() || optics.is_passable();
-        if leg.turns == 0 && !throws {
-            self.balance.straight += incoming;
-            return false;
-        }
         let towards = -leg.ray.direction.normalize();
-        if leg.turns > 0 && optics.takes() {
+        if leg.is_beam && optics.takes() {
             self.caught.push(Caught {
                 position: found.element.position,
                 towards,
                 flux: leg.flux,
                 side: side_of(self.surfaces.of(found.triangle), found.element.outside),
                 comb: comb as u8,
+                is_again: leg.is_again,
             });
         }
-        let onward = if throws { self.onward(leg, found, comb, (towards, choices, *number)) } else { None };
-        // What does not go on is absorbed, or caught; one of several ways that was chosen stands for all of them.
-        let (expected, onward) = onward.unwrap_or((0.0, None));
-        let kept = incoming - expected;
-        match (leg.turns, optics.takes()) {
-            (0, true) => self.balance.straight += kept,
-            (_, true) => self.balance.caught += kept,
-            _ => self.balance.absorbed += kept,
+        let arrival = Arrival { leg, found, frame: found.frame(), comb, towards, choices };
+        let beam = (optics.throws() || optics.is_passable()).then(|| self.beam(&arrival)).flatten();
+        // What does not go on is absorbed, or caught. What is spread was caught, too, and is sent again.
+        let (expected, beam) = beam.unwrap_or((0.0, None));
+        match (leg.is_beam, optics.takes()) {
+            (false, true) => self.balance.straight += incoming - expected,
+            (true, true) => self.balance.caught += incoming - expected,
+            _ => self.balance.absorbed += incoming - expected,
         }
-        self.balance.gained += onward.map_or(0.0, |(flux, _)| self.watts(flux)) - expected;
-        let Some((flux, onward)) = onward else { return false };
-        leg.flux = flux;
-        if onward.is_straight {
-            leg.t_min = found.t;
-            return true;
+        self.balance.gained += beam.as_ref().map_or(0.0, |leg| self.watts(leg.flux)) - expected;
+        self.waiting.extend(beam);
+        if optics.is_broad() {
+            self.spread(&arrival);
         }
-        let element = &found.element;
-        let through = onward.light.z < 0.0;
-        let frame = found.frame();
-        let direction = element.righted(frame.world(onward.light), !through);
-        if through {
-            leg.media.cross(found);
-        }
-        leg.turns += 1;
-        leg.t_min = 0.0;
-        leg.ray = Ray { origin: if through { element.through } else { element.leave }, direction };
-        true
     }
 
-    /// Where light goes on from an element: the flux that is expected to, and one of the ways with its flux.
-    fn onward(
-        &self,
-        leg: &mut Leg,
-        found: &Found<'_>,
-        comb: usize,
-        (towards, choices, number): (DVec3, &Choices, u32),
-    ) -> Option<(f64, Option<(Channels, Onward)>)> {
-        let optics: &Optics = found.optics;
-        let [choice, parting] = choices.point(Purpose::Choice, number);
+    /// Where narrow lobes send light: the flux that is expected to go on, and one of the ways.
+    fn beam(&self, arrival: &Arrival<'_>) -> Option<(f64, Option<Leg>)> {
+        let Arrival { leg, found, comb, choices, .. } = arrival;
+        let optics = found.optics;
+        let [choice, parting] = choices.point(Purpose::Choice, leg.number);
         // Where wavelengths part, the one that is left is drawn as it is seen.
         let alone = match leg.lane {
-            None if found.disperses() => leg.flux.drawn(self.world.appearance.wavelengths.visibility(comb), parting),
+            None if found.disperses() => leg.flux.drawn(self.world.appearance.wavelengths.visibility(*comb), parting),
             _ => None,
         };
         let lane = leg.lane.or(alone.map(|(lane, _)| lane)).unwrap_or(0);
-        let side = leg.media.side(self.world, found, comb);
-        let frame = found.frame();
-        let sighting = Sighting { view: frame.local(towards), comb, side, lane, painted: found.painted() };
-        // Radiance grows as it enters what is denser; flux does not.
-        let flux_of = |onward: &Onward| match onward.light.z < 0.0 && !onward.is_straight {
-            true => {
-                let [before, behind] = [side.before.0, side.behind.0];
-                onward.weight * Channels(std::array::from_fn(|lane| (behind[lane] / before[lane]).powi(2)))
-            }
-            false => onward.weight,
+        let sighting = self.sighting(arrival, lane);
+        let direction = choices.point(Purpose::Direction, leg.number);
+        let drawn = optics.onward(&sighting, choice, direction, Among::Only(Which::Narrow));
+        let Some(mut drawn) = drawn.filter(|drawn| drawn.density.is_none() || arrival.is_sound(drawn)) else {
+            return Some((0.0, None));
         };
-        let drawn = optics.onward(&sighting, choice, choices.point(Purpose::Direction, number), Among::Narrow);
-        let Some(mut drawn) = drawn else { return Some((0.0, None)) };
-        if let Some(density) = drawn.density {
-            let above = drawn.light.z > 0.0;
-            if above {
-                // What goes from here to there, where that is not the same as from there to here.
-                let back = Sighting { view: drawn.light, ..sighting };
-                drawn.weight = optics.value(Which::Narrow, &back, sighting.view) * (drawn.light.z / density);
-            }
-            // Of a spread lobe, what falls on the wrong side of the triangle or its surface is lost.
-            let plane = found.element.plane(above);
-            if (frame.world(drawn.light).dot(plane) > 0.0) != above || !drawn.weight.is_finite() {
-                return Some((0.0, None));
-            }
-        }
-        let mut flux = leg.flux * flux_of(&drawn);
+        arrival.turn(&sighting, Which::Narrow, &mut drawn);
+        let flux = leg.flux * passed(&sighting, &drawn);
         let expected = match drawn.density {
             // Its own weight is all that is known of a spread one.
             Some(_) => self.watts(flux),
-            None => optics.mirrored(&sighting).map(|onward| self.watts(leg.flux * flux_of(&onward))).sum(),
+            None => optics.mirrored(&sighting).map(|onward| self.watts(leg.flux * passed(&sighting, &onward))).sum(),
         };
-        if let Some((lane, alone)) = alone.filter(|_| drawn.light.z < 0.0 && !drawn.is_straight) {
-            flux = alone * flux_of(&drawn);
-            leg.lane = Some(lane);
-        }
-        Some((expected, Some((flux, drawn))))
+        let (flux, lane) = match alone.filter(|_| drawn.light.z < 0.0 && !drawn.is_straight) {
+            Some((lane, alone)) => (alone * passed(&sighting, &drawn), Some(lane)),
+            None => (flux, leg.lane),
+        };
+        Some((expected, Some(arrival.leg_on(&drawn, (flux, lane), leg.number.wrapping_mul(MOST_PARTS)))))
     }
+
+    /// Sends on what broad lobes spread: half of it to what mirrors or refracts, as far as it is known where that is.
+    fn spread(&mut self, arrival: &Arrival<'_>) {
+        let Arrival { leg, found, frame, choices, .. } = arrival;
+        let optics = found.optics;
+        let sighting = self.sighting(arrival, leg.lane.unwrap_or(0));
+        let from = found.element.position;
+        let plane = found.element.plane(true);
+        let balls = self.balls;
+        let angles = || balls.iter().map(|ball| ball.solid_angle(from, plane));
+        // Through what spreads it behind itself, only the lobes know the way.
+        let all: f64 = if optics.interior.is_none() { angles().sum() } else { 0.0 };
+        // Much light is sent in many parts, each of them about as much as others that are caught.
+        let worth = 0.5 * self.watts(leg.flux) * (all / PI).min(1.0);
+        let parts = match self.typical {
+            Some(typical) if !leg.is_again => (worth / typical).clamp(1.0, f64::from(MOST_PARTS - 1)) as u32,
+            _ => 1,
+        };
+        for part in 1..=parts {
+            let number = leg.number.wrapping_mul(MOST_PARTS).wrapping_add(part);
+            let [half, which] = choices.point(Purpose::Aimed, number);
+            let point = choices.point(Purpose::Spread, number);
+            let drawn = if all > 0.0 && half < 0.5 {
+                let mut left = which * all;
+                let is_chosen = |(_, angle): &(&Ball, f64)| {
+                    left -= angle;
+                    left < 0.0
+                };
+                let ball = balls.iter().zip(angles()).find(is_chosen);
+                ball.map(|(ball, _)| Onward {
+                    light: frame.local(ball.direction(from, point)),
+                    weight: Channels::ZERO,
+                    density: Some(0.0),
+                    is_straight: false,
+                    is_broad: true,
+                })
+            } else {
+                let [choice, _] = choices.point(Purpose::Choice, number);
+                optics.onward(&sighting, choice, point, Among::Only(Which::Broad))
+            };
+            let Some(mut drawn) = drawn.filter(|drawn| arrival.is_sound(drawn)) else { continue };
+            if all > 0.0 {
+                let direction = frame.world(drawn.light);
+                let aimed = balls.iter().zip(angles()).filter(|(b, angle)| *angle > 0.0 && b.is_met(from, direction));
+                let lobes = optics.density(Which::Broad, &sighting, drawn.light, Among::Only(Which::Broad));
+                drawn.density = Some(0.5 * (aimed.count() as f64 / all + lobes));
+            }
+            arrival.turn(&sighting, Which::Broad, &mut drawn);
+            let flux = leg.flux * passed(&sighting, &drawn) * f64::from(parts).recip();
+            if flux.max() > 0.0 && flux.is_finite() {
+                self.balance.again += self.watts(flux);
+                let leg = Leg { is_beam: false, is_again: true, ..arrival.leg_on(&drawn, (flux, leg.lane), number) };
+                self.waiting.push(leg);
+            }
+        }
+    }
+
+    fn sighting<'b>(&self, arrival: &Arrival<'b>, lane: usize) -> Sighting<'b> {
+        let Arrival { leg, found, frame, comb, towards, .. } = arrival;
+        let side = leg.media.side(self.world, found, *comb);
+        Sighting { view: frame.local(*towards), comb: *comb, side, lane, painted: found.painted() }
+    }
+}
+
+/// Light that came to an element.
+struct Arrival<'a> {
+    leg: &'a Leg,
+    found: &'a Found<'a>,
+    frame: Frame,
+    comb: usize,
+    /// Towards where it came from, unit length.
+    towards: DVec3,
+    choices: &'a Choices,
+}
+
+impl Arrival<'_> {
+    /// Whether a direction of a spread lobe is on the same side of the triangle and of its surface: what is not is lost.
+    fn is_sound(&self, drawn: &Onward) -> bool {
+        let above = drawn.light.z > 0.0;
+        let plane = self.found.element.plane(above);
+        (self.frame.world(drawn.light).dot(plane) > 0.0) == above && drawn.weight.is_finite()
+    }
+
+    /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the same as
+    /// from there to here.
+    fn turn(&self, sighting: &Sighting<'_>, which: Which, drawn: &mut Onward) {
+        if let Some(density) = drawn.density.filter(|_| drawn.light.z > 0.0) {
+            let back = Sighting { view: drawn.light, ..*sighting };
+            drawn.weight = self.found.optics.value(which, &back, sighting.view) * (drawn.light.z / density);
+        }
+    }
+
+    /// The leg that goes on by a narrow turn.
+    fn leg_on(&self, drawn: &Onward, (flux, lane): (Channels, Option<usize>), number: u32) -> Leg {
+        let Arrival { leg, found, frame, .. } = self;
+        let legs = leg.legs + 1;
+        if drawn.is_straight {
+            return Leg { t_min: found.t, flux, number, legs, ..**leg };
+        }
+        let through = drawn.light.z < 0.0;
+        let mut media = leg.media;
+        if through {
+            media.cross(found);
+        }
+        let element = &found.element;
+        let direction = element.righted(frame.world(drawn.light), !through);
+        let origin = if through { element.through } else { element.leave };
+        let (ray, turns) = (Ray { origin, direction }, leg.turns + 1);
+        Leg { ray, t_min: 0.0, flux, media, lane, number, legs, turns, is_beam: true, is_again: leg.is_again }
+    }
+}
+
+/// The part of flux that goes on: radiance grows as it enters what is denser; flux does not.
+fn passed(sighting: &Sighting<'_>, onward: &Onward) -> Channels {
+    if onward.light.z >= 0.0 || onward.is_straight {
+        return onward.weight;
+    }
+    let [before, behind] = [sighting.side.before.0, sighting.side.behind.0];
+    onward.weight * Channels(std::array::from_fn(|lane| (behind[lane] / before[lane]).powi(2)))
 }

@@ -7,12 +7,11 @@
 use super::super::world::World;
 use super::flight::Caught;
 use super::surfaces::{Surfaces, part_of_disc};
+use super::walls::{Flat, Wall};
 use crate::color::{Channels, LANES};
-use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
-use crate::numeric::triangle::Shear;
 use crate::octree::{Points, Sorted};
-use glam::DVec3;
+use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_PI;
 
@@ -31,8 +30,8 @@ const RINGS: usize = 32;
 const DISCS: [usize; 10] = [1, 2, 3, 4, 6, 8, 11, 16, 22, 32];
 /// Two discs tell the same if they differ by no more than so many standard errors.
 const SAME: f64 = 1.0;
-/// So many triangles around a place are looked at for each light; of more, the octree finds those in the way.
-const MANY_WALLS: usize = 24;
+/// So many walls around a place are looked at for each light; of more, the octree finds those in the way.
+const MANY_WALLS: usize = 64;
 /// How far above or below the plane at a place light may have arrived to count there, over the radius.
 const HEIGHT: f64 = 0.25;
 
@@ -48,8 +47,12 @@ pub(super) struct Captured {
     strength: Vec<f32>,
     /// How much is looked at around a place, at the most.
     most: usize,
+    /// Which wavelengths each carries, and whether it took a broad turn.
     combs: Vec<u8>,
 }
+
+/// Marks what took a broad turn; combs are fewer.
+const AGAIN: u8 = 0x80;
 
 /// A place that asks for the light around it.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +89,8 @@ pub(super) struct Arriving {
     /// Irradiance, W/m².
     pub(super) irradiance: Channels,
     pub(super) comb: usize,
+    /// Whether a broad turn was among those that it took.
+    pub(super) is_again: bool,
 }
 
 /// Sums over the light within a ring, or a disc: of its strength and of the square, each times powers of d².
@@ -134,7 +139,7 @@ impl Captured {
             sides: sorted().map(|c| c.side).collect(),
             flux: sorted().flat_map_iter(|c| c.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
             strength: sorted().map(|c| (c.flux.0[..lanes].iter().sum::<f64>() / lanes as f64) as f32).collect(),
-            combs: sorted().map(|c| c.comb).collect(),
+            combs: sorted().map(|c| if c.is_again { c.comb | AGAIN } else { c.comb }).collect(),
             lanes,
             most: FEW.max((SHARE * (caught.len() as f64).powf(2.0 / 3.0)) as usize),
             points,
@@ -177,7 +182,7 @@ impl Captured {
         if near.is_empty() {
             return;
         }
-        self.keep_seen(&mut near, place, surroundings);
+        self.keep_seen(&mut near, place, around.reach, surroundings);
         let Some((square, part)) = self.disc(&near, place, surroundings, around.reach) else { return };
         // In scene units from here on.
         let area = square * side * side;
@@ -190,44 +195,47 @@ impl Captured {
             visit(&Arriving {
                 towards: DVec3::from_array(self.towards[number].map(f64::from)),
                 irradiance: Channels(irradiance) * weight,
-                comb: usize::from(self.combs[number]),
+                comb: usize::from(self.combs[number] & !AGAIN),
+                is_again: self.combs[number] & AGAIN != 0,
             });
         }
     }
 
     /// Leaves out light that arrived behind something that stands on the surface, as seen from the place.
-    fn keep_seen(&self, near: &mut Vec<(u32, f32)>, place: &Place, surroundings: &Surroundings<'_>) {
-        let lift = place.leave - place.position;
-        let above = lift.normalize_or(place.outside);
-        // Along the plane: positions are rounded.
-        let way = |number: u32| {
-            let way = self.points.position(number as usize) - place.position;
-            way - above * way.dot(above)
-        };
-        let ends = || near.iter().map(|(number, _)| place.leave + way(*number)).chain([place.leave]);
-        let mut walls: Vec<[DVec3; 3]> = Vec::new();
+    ///
+    /// All ways along the surface lie in one plane: walls are cut with it, and then stand in the way as segments.
+    fn keep_seen(&self, near: &mut Vec<(u32, f32)>, place: &Place, reach: f64, surroundings: &Surroundings<'_>) {
+        let above = (place.leave - place.position).normalize_or(place.outside);
         let Surroundings { world, surfaces, opaque, .. } = surroundings;
-        opaque.touching(Bounds::of(ends()), |triangle| {
+        let flat = Flat::new(place.leave, above, reach);
+        let mut walls: Vec<Wall> = Vec::new();
+        opaque.touching(flat.bounds(), |triangle| {
             if walls.len() <= MANY_WALLS && surfaces.of(triangle) != place.surface {
-                let corners = world.appearance.prepared.corners(triangle);
-                if corners.iter().any(|corner| (*corner - place.leave).dot(above) > 0.0) {
-                    walls.push(corners);
-                }
+                walls.extend(flat.cut(world.appearance.prepared.corners(triangle)));
             }
         });
-        let is_seen = |number: u32| {
-            let ray = Ray { origin: place.leave, direction: way(number) };
-            if walls.len() > MANY_WALLS {
-                return !world.any_between(&ray, |triangle| {
-                    surfaces.of(triangle) != place.surface && super::stands(world, triangle)
-                });
-            }
-            let Some(shear) = Shear::new(&ray, 1.0) else { return true };
-            !walls.iter().any(|wall| shear.crossing(*wall).is_some_and(|crossing| (0.0..=1.0).contains(&crossing.t)))
-        };
-        if !walls.is_empty() {
-            near.retain(|(number, _)| is_seen(*number));
+        if walls.is_empty() {
+            return;
         }
+        let side = self.points.side();
+        let local = self.points.local(place.position);
+        if walls.len() > MANY_WALLS {
+            near.retain(|(number, _)| {
+                let way = DVec3::from_array(self.points.local_offset(local, *number as usize).map(f64::from)) * side;
+                // Along the plane: positions are rounded.
+                let ray = Ray { origin: place.leave, direction: way - above * way.dot(above) };
+                !world.any_between(&ray, |triangle| {
+                    surfaces.of(triangle) != place.surface && super::stands(world, triangle)
+                })
+            });
+            return;
+        }
+        let [x, y] = flat.axes.map(|axis| (axis * (side / reach)).as_vec3());
+        near.retain(|(number, _)| {
+            let offset = glam::Vec3::from_array(self.points.local_offset(local, *number as usize));
+            let at = Vec2::new(offset.dot(x), offset.dot(y));
+            !walls.iter().any(|wall| wall.hides(at))
+        });
     }
 
     /// The disc that tells most, by the square of its radius in sides of the cube, and how much of it is on the surface.

@@ -4,20 +4,22 @@
 //! as light that comes from where it came from.
 //!
 //! **Which ways of light are found by whom.** Each turn of light at a surface is by a *narrow* lobe, a mirror, an
-//! interface or a highlight, or by a *broad* one, such as Lambert's. From a lamp on,
+//! interface or a highlight, or by a *broad* one, such as Lambert's. How light came to its last broad turn decides:
 //!
-//! - light that comes to a broad turn without any before it is direct: rays to lights bring it;
-//! - light whose first turns are narrow and that then comes to a broad one is caught, and added where it was caught;
-//! - light that comes to the eye by narrow turns alone is found by the rays from the eye;
-//! - what happens after the first broad turn is found by the rays from the eye, wherever these meet one of the first two.
+//! - without any turn since the lamp it is direct: rays to lights bring it;
+//! - by a narrow turn it is caught there, whatever was before: light that is followed from lamps takes broad turns, too;
+//! - by another broad turn it is found by the rays from the eye, which go on to where that was and ask there again;
+//! - light that comes to the eye by narrow turns alone is found by the rays from the eye.
 //!
-//! A ray from the eye that went on from a broad turn and then by narrow ones to a lamp is on a way of the second kind,
-//! and counts nothing. A sky without a picture is left to the rays from the eye: it is as bright everywhere, and they find it.
+//! A ray from the eye that goes on from a broad turn by a narrow one is on a way of the second kind, and ends there. A sky
+//! without a picture is left to the rays from the eye: it is as bright everywhere, and they find it. For it, and for ambient
+//! light, these rays do not end.
 
 mod aim;
 mod flight;
 mod gather;
 mod surfaces;
+mod walls;
 
 pub use flight::Balance;
 
@@ -62,10 +64,14 @@ pub(super) struct TwoWay {
     surfaces: Surfaces,
     /// Triangles that stand in the way of light.
     opaque: Sorted,
+    /// Those around what mirrors or refracts, and then others at which lamps are aimed.
     balls: Vec<Ball>,
+    bodies: usize,
     /// How many ways go from each lamp to each ball.
     quotas: Vec<Quota>,
     turns: u32,
+    /// The flux of light as it is caught, in the mean, W; none before some of it was.
+    typical: Option<f64>,
     reach: f64,
     seed: u64,
     /// What was caught, pass by pass, as far as it is kept.
@@ -80,6 +86,20 @@ struct Quota {
     ball: usize,
     count: u32,
     /// Where it is best aimed at.
+    guide: Guide,
+}
+
+/// What a few ways from a lamp to a ball brought.
+struct Explored {
+    /// Flux, W.
+    caught: f64,
+    /// The root mean square of the flux of a way, were it the only one. With ways in proportion to this, chance shows least in
+    /// all together.
+    ///
+    /// # Source
+    /// Neyman 1934, optimal allocation.
+    deviation: f64,
+    /// Where they have to be sent.
     guide: Guide,
 }
 
@@ -126,17 +146,26 @@ impl TwoWay {
             quotas: Vec::new(),
             turns: settings.reflection_depth.max(LEAST_TURNS),
             reach: settings.photon_radius.unwrap_or(REACH * prepared.bounds.diagonal()),
+            typical: None,
             seed: settings.seed,
             kept: Mutex::new(Vec::new()),
+            bodies: balls.len(),
             balls,
         };
-        two_way.divide(world, &lamps);
+        let spreads = |triangle: u32| matches!(of(triangle), (true, optics) if optics.is_broad());
+        two_way.divide(world, &lamps, aim::everything(prepared, spreads));
         (!two_way.quotas.is_empty()).then_some(two_way)
     }
 
     /// Divides the ways among lamps and balls, as a few of them are of use.
-    fn divide(&mut self, world: &World<'_>, lamps: &[usize]) {
-        let all = |lamp: &usize| (0..self.balls.len()).map(move |ball| (*lamp, ball)).collect::<Vec<_>>();
+    ///
+    /// - `everything`: the ball around what sends light on by broad turns; none if nothing does.
+    fn divide(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<Ball>) {
+        let wide = everything.map(|ball| {
+            self.balls.push(ball);
+            self.balls.len() - 1
+        });
+        let all = |lamp: &usize| (0..self.balls.len()).map(|ball| (*lamp, ball)).collect::<Vec<_>>();
         let mut pairs: Vec<(usize, usize)> = lamps.iter().flat_map(all).collect();
         for lamp in lamps {
             // In the cone of a spot, however thin it is.
@@ -149,36 +178,41 @@ impl TwoWay {
         }
         let count = (PILOT / pairs.len() as u32).max(LEAST_PILOT);
         self.quotas = pairs.into_iter().map(|(lamp, ball)| Quota { lamp, ball, count, guide: Guide::even() }).collect();
-        let found: Vec<(f64, Guide)> =
-            (0..self.quotas.len()).into_par_iter().map(|quota| self.explore(world, quota, count)).collect();
-        let (caught, guides): (Vec<f64>, Vec<Guide>) = found.into_iter().unzip();
-        let all: f64 = caught.iter().sum();
+        let found: Vec<Explored> =
+            (0..self.quotas.len()).into_par_iter().map(|quota| self.explore(world, quota, wide)).collect();
+        let all: f64 = found.iter().map(|explored| explored.deviation).sum();
         let photons = f64::from(world.appearance.prepared.settings.photons);
         if all <= 0.0 {
             self.quotas.clear();
             return;
         }
-        let least = LEAST_PART / caught.len() as f64;
-        let sum: f64 = caught.iter().map(|c| (c / all).max(least)).sum();
-        for ((quota, caught), guide) in self.quotas.iter_mut().zip(&caught).zip(guides) {
-            quota.count = ((caught / all).max(least) / sum * photons).ceil() as u32;
-            quota.guide = guide;
+        self.typical = Some(found.iter().map(|explored| explored.caught).sum::<f64>() / photons);
+        let least = LEAST_PART / found.len() as f64;
+        let part = |explored: &Explored| (explored.deviation / all).max(least);
+        let sum: f64 = found.iter().map(part).sum();
+        for (quota, explored) in self.quotas.iter_mut().zip(found) {
+            quota.count = (part(&explored) / sum * photons).ceil() as u32;
+            quota.guide = explored.guide;
         }
     }
 
-    /// Follows a few ways from a lamp to a ball: how much light is caught, and where it has to be sent.
-    fn explore(&self, world: &World<'_>, quota: usize, count: u32) -> (f64, Guide) {
+    /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
+    fn explore(&self, world: &World<'_>, quota: usize, wide: Option<usize>) -> Explored {
+        let Quota { ball, count, .. } = self.quotas[quota];
         let mut used = Vec::new();
-        let mut caught = 0.0;
+        let (mut caught, mut squares) = (0.0, 0.0);
         for index in 0..count {
             let (_, balance) = self.follow(world, PILOT_PASS, quota, index..index + 1);
-            if balance.caught > 0.0 {
+            // What goes everywhere is of use everywhere: what little of it is found tells too little.
+            let is_of_use = if Some(ball) == wide { balance.sent > 0.0 } else { balance.caught > 0.0 };
+            if is_of_use {
                 let choices = Choices::new(self.sequence(PILOT_PASS, quota), index);
                 used.push(choices.point(Purpose::Aim, 0));
             }
             caught += balance.caught;
+            squares += balance.caught * balance.caught;
         }
-        (caught, Guide::around(&used))
+        Explored { caught, deviation: (squares * f64::from(count)).sqrt(), guide: Guide::around(&used) }
     }
 
     /// The choices of a pass for the ways from a lamp to a ball.
@@ -230,7 +264,10 @@ impl TwoWay {
         let mut flight = Flight {
             world,
             surfaces: &self.surfaces,
+            balls: &self.balls[..self.bodies],
             turns: self.turns,
+            typical: self.typical,
+            waiting: Vec::new(),
             caught: Vec::new(),
             balance: Balance::default(),
         };
@@ -303,14 +340,15 @@ impl CaughtLight<'_> {
     ///
     /// - `passed`: how much of the radiance comes to the eye. `is_parted`: whether a single wavelength is left of it.
     /// - `coarse`: whether the element is one of many that send light to what is seen.
-    /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB.
+    /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB: of light
+    ///   that took narrow turns only, and of light that took broad ones among them.
     pub(super) fn seen(
         &self,
         found: &Found<'_>,
         sighting: &Sighting<'_>,
         (passed, is_parted): (Channels, bool),
         coarse: bool,
-    ) -> (Channels, DVec3) {
+    ) -> [(Channels, DVec3); 2] {
         let two_way = self.two_way;
         let element = &found.element;
         let surface = two_way.surfaces.of(found.triangle);
@@ -334,21 +372,22 @@ impl CaughtLight<'_> {
         let frame = found.frame();
         let wavelengths = &appearance.wavelengths;
         let even = found.optics.even_value(sighting);
-        let (mut sum, mut elsewhere) = (Channels::ZERO, DVec3::ZERO);
+        let mut found_light = [(Channels::ZERO, DVec3::ZERO); 2];
         self.capture.light.each(&place, &surroundings, |arriving| {
             let light = frame.local(arriving.towards);
+            let (sum, elsewhere) = &mut found_light[usize::from(arriving.is_again)];
             if !wavelengths.is_spectral() || is_parted {
                 let value = even.unwrap_or_else(|| found.optics.spread_value(sighting, light));
-                sum += value * arriving.irradiance;
+                *sum += value * arriving.irradiance;
             } else {
                 // The light has other wavelengths than the ray.
                 let at = Sighting { comb: arriving.comb, ..*sighting };
                 let passed = between(passed, sighting.comb, arriving.comb, wavelengths.combs());
                 let radiance = found.optics.spread_value(&at, light) * arriving.irradiance * passed;
-                elsewhere += wavelengths.seen(arriving.comb, radiance);
+                *elsewhere += wavelengths.seen(arriving.comb, radiance);
             }
         });
-        (passed * sum, elsewhere)
+        found_light.map(|(sum, elsewhere)| (passed * sum, elsewhere))
     }
 }
 
