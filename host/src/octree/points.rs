@@ -19,8 +19,8 @@ pub struct Points {
     cube: Cube,
     /// Codes of the voxels, rising.
     codes: Vec<u64>,
-    /// Local coordinates, 0..=1 in the cube.
-    positions: Vec<[f32; 3]>,
+    /// Local coordinates, 0..=1 in the cube, for each axis; behind them some that are nowhere.
+    positions: [Vec<f32>; 3],
     /// Where the points of each cube of the table's level begin.
     table: Vec<u32>,
 }
@@ -37,6 +37,9 @@ pub struct Around {
 }
 
 impl Points {
+    /// Points that are looked at together.
+    pub const BLOCK: usize = 8;
+
     /// Sorts points; the number of each among those given comes beside, in the new order.
     ///
     /// Points beyond 2^32 − 1, and all that are not finite, are left out.
@@ -51,8 +54,12 @@ impl Points {
         };
         let mut keys: Vec<(u64, u32)> = points.par_iter().enumerate().filter_map(code).collect();
         keys.par_sort_unstable();
-        let positions = keys.par_iter().map(|(_, number)| cube.local(points[*number as usize]).as_vec3().to_array());
-        let positions = positions.collect();
+        let local = |(_, number): &(u64, u32)| cube.local(points[*number as usize]).as_vec3().to_array();
+        let positions = [0, 1, 2].map(|axis| {
+            let mut along: Vec<f32> = keys.par_iter().map(|key| local(key)[axis]).collect();
+            along.extend([f32::NAN; Points::BLOCK]);
+            along
+        });
         let codes: Vec<u64> = keys.iter().map(|(code, _)| *code).collect();
         let cubes = 1 << (3 * TABLE_LEVEL);
         let table = (0..=cubes as u64).map(|k| match k {
@@ -75,12 +82,13 @@ impl Points {
 
     /// Memory, bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.codes[..]) + size_of_val(&self.positions[..]) + size_of_val(&self.table[..])
+        let positions: usize = self.positions.iter().map(|along| size_of_val(&along[..])).sum();
+        size_of_val(&self.codes[..]) + positions + size_of_val(&self.table[..])
     }
 
     /// A point, scene units: to 6e-8 of the side of the cube.
     pub fn position(&self, place: usize) -> DVec3 {
-        let local = DVec3::from_array(self.positions[place].map(f64::from));
+        let local = DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.positions[axis][place])));
         self.cube.origin + local * self.cube.side
     }
 
@@ -113,19 +121,19 @@ impl Points {
         }
     }
 
-    /// The squared distance of a point from a place, in sides of the cube; the place in local coordinates.
-    #[inline]
-    pub fn local_square(&self, local: [f32; 3], place: usize) -> f32 {
-        let [x, y, z] = self.positions[place];
-        let [dx, dy, dz] = [x - local[0], y - local[1], z - local[2]];
-        dx * dx + dy * dy + dz * dz
-    }
-
     /// The offset of a point from a place, in sides of the cube; the place in local coordinates.
     #[inline]
     pub fn local_offset(&self, local: [f32; 3], place: usize) -> [f32; 3] {
-        let position = self.positions[place];
-        [0, 1, 2].map(|axis| position[axis] - local[axis])
+        [0, 1, 2].map(|axis| self.positions[axis][place] - local[axis])
+    }
+
+    /// The same of a block of points, for each axis; beyond the last point there are none.
+    #[inline]
+    pub fn local_offsets(&self, local: [f32; 3], first: usize) -> [[f32; Points::BLOCK]; 3] {
+        [0, 1, 2].map(|axis| {
+            let along = &self.positions[axis][first..first + Points::BLOCK];
+            std::array::from_fn(|k| along[k] - local[axis])
+        })
     }
 
     /// Local coordinates of a place.
@@ -180,7 +188,12 @@ mod tests {
                 let runs = around.runs.iter().flat_map(|run| run.clone());
                 let local = points.local(*centre);
                 let reach = around.reach * 0.9999;
-                let near = |place: usize| f64::from(points.local_square(local, place)).sqrt() * points.side() < reach;
+                let near = |place: usize| {
+                    let offset = points.local_offset(local, place).map(f64::from);
+                    let block = points.local_offsets(local, place).map(|along| f64::from(along[0]));
+                    assert_eq!(offset, block);
+                    DVec3::from_array(offset).length() * points.side() < reach
+                };
                 let found = runs.filter(|place| near(*place as usize)).count();
                 let expected = (0..points.len()).filter(|place| near(*place)).count();
                 assert_eq!(found, expected, "{radius} {most}");

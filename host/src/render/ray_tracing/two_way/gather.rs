@@ -166,17 +166,22 @@ impl Captured {
         let side = self.points.side();
         let reach = (around.reach / side) as f32;
         let local = self.points.local(place.position);
-        let normal = place.outside.as_vec3();
+        let normal = place.outside.as_vec3().to_array();
+        let most = [reach * reach, (HEIGHT as f32 * reach).powi(2)];
         let mut near: Vec<(u32, f32)> = Vec::with_capacity(around.count);
-        for number in around.runs.iter().flat_map(|run| run.clone()) {
-            if self.sides[number as usize] != place.side {
-                continue;
-            }
-            let offset = glam::Vec3::from_array(self.points.local_offset(local, number as usize));
-            let height = offset.dot(normal);
-            let square = offset.length_squared() - height * height;
-            if square < reach * reach && height.abs() <= HEIGHT as f32 * reach {
-                near.push((number, square));
+        for run in &around.runs {
+            for first in run.clone().step_by(Points::BLOCK) {
+                let [x, y, z] = self.points.local_offsets(local, first as usize);
+                let heights: [f32; Points::BLOCK] =
+                    std::array::from_fn(|k| (x[k] * normal[0] + y[k] * normal[1] + z[k] * normal[2]).powi(2));
+                let squares: [f32; Points::BLOCK] =
+                    std::array::from_fn(|k| x[k] * x[k] + y[k] * y[k] + z[k] * z[k] - heights[k]);
+                let count = (run.end - first).min(Points::BLOCK as u32) as usize;
+                for (k, side) in self.sides[first as usize..first as usize + count].iter().enumerate() {
+                    if squares[k] < most[0] && heights[k] <= most[1] && *side == place.side {
+                        near.push((first + k as u32, squares[k]));
+                    }
+                }
             }
         }
         if near.is_empty() {
@@ -191,7 +196,8 @@ impl Captured {
             let number = *number as usize;
             let weight = factor * (1.0 - f64::from(*distance) / square);
             let flux = &self.flux[number * self.lanes..(number + 1) * self.lanes];
-            let irradiance = std::array::from_fn::<f64, LANES, _>(|lane| flux.get(lane).map_or(0.0, |f| f64::from(*f)));
+            let mut irradiance = [0.0; LANES];
+            irradiance.iter_mut().zip(flux).for_each(|(lane, flux)| *lane = f64::from(*flux));
             visit(&Arriving {
                 towards: DVec3::from_array(self.towards[number].map(f64::from)),
                 irradiance: Channels(irradiance) * weight,

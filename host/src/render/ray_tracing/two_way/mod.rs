@@ -40,8 +40,8 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use surfaces::Surfaces;
 
-/// Ways that are followed first, to see where light goes.
-const PILOT: u32 = 1 << 14;
+/// Ways that are followed first, to see where light goes: an eighth of those of a pass, within limits.
+const PILOT: std::ops::RangeInclusive<u32> = 1 << 12..=1 << 14;
 /// What stands for a pass when they are followed.
 const PILOT_PASS: u64 = u64::MAX;
 /// The least of them for each lamp and ball.
@@ -176,12 +176,14 @@ impl TwoWay {
                 self.balls.push(Ball::in_cone(at, axis * far, cosine));
             }
         }
-        let count = (PILOT / pairs.len() as u32).max(LEAST_PILOT);
+        let photons = world.appearance.prepared.settings.photons;
+        let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
+        let count = (pilot / pairs.len() as u32).max(LEAST_PILOT);
         self.quotas = pairs.into_iter().map(|(lamp, ball)| Quota { lamp, ball, count, guide: Guide::even() }).collect();
         let found: Vec<Explored> =
             (0..self.quotas.len()).into_par_iter().map(|quota| self.explore(world, quota, wide)).collect();
         let all: f64 = found.iter().map(|explored| explored.deviation).sum();
-        let photons = f64::from(world.appearance.prepared.settings.photons);
+        let photons = f64::from(photons);
         if all <= 0.0 {
             self.quotas.clear();
             return;
