@@ -2,7 +2,9 @@
 //! which `peers/mitsuba_check.py` renews where that renderer is installed.
 
 use host::plan::Plan;
+use host::render::radiosity::Radiosity;
 use host::render::ray_tracing::RayTracer;
+use host::render::scan_line::ScanLine;
 use host::render::{LUMINANCE, Order, Renderer, Watch};
 use host::scene::Prepared;
 use host::script::{Definition, load_file};
@@ -62,4 +64,46 @@ fn means_of_blocks_are_those_of_mitsuba_within_the_errors_of_both() {
         let mean = squares / (BLOCKS * BLOCKS) as f64;
         assert!(mean < 1.6, "{name}: blocks are off by {:.2} standard errors", mean.sqrt());
     }
+}
+
+/// How far off the mean of a picture by radiosity may be, and the mean of any of its regions, as a part of it or of a tenth
+/// of the mean of all if that is more.
+const WHOLE: f64 = 0.01;
+const REGION: f64 = 0.03;
+/// Where the mean is more, the lamp is in sight.
+const LAMP: f64 = 1.0;
+
+#[test]
+fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_region_within_three() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(folder.join("peers/radiosity.json")).expect("the values");
+    let kept: Value = serde_json::from_str(&text).expect("JSON");
+    let theirs: Vec<Vec<[f64; 3]>> = serde_json::from_value(kept["regions"].clone()).expect("regions");
+    let mut scene = load_file(&folder.join("../host/scenes/cornell.rhai"), &[]).expect("the box").scene;
+    (scene.settings.width, scene.settings.height) = (128, 128);
+    scene.settings.interreflection = true;
+    let prepared = Prepared::new(&scene).expect("a scene");
+    let view = prepared.view();
+    let plan = Plan::new(&prepared, &view);
+    let solution = Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, &Watch::NOBODY).expect("a solution");
+    let scan_line = ScanLine::showing(&solution, &prepared, &plan).expect("a renderer");
+    let picture = scan_line.render(&view, &Order::of(&prepared.settings), &Watch::NOBODY).expect("a picture").picture;
+    let side = 128 / theirs.len();
+    let mean_of = |bands: &[f64; 3]| bands.iter().sum::<f64>() / 3.0;
+    let ours = |x: usize, y: usize| {
+        let pixels = (0..side * side).map(|i| picture.pixels()[(y * side + i / side) * 128 + x * side + i % side]);
+        pixels.map(|pixel| mean_of(&pixel.radiance.map(f64::from))).sum::<f64>() / (side * side) as f64
+    };
+    let all = theirs.iter().flatten().map(mean_of).sum::<f64>() / theirs.len().pow(2) as f64;
+    let mut sums = [0.0; 2];
+    for (y, row) in theirs.iter().enumerate() {
+        for (x, theirs) in row.iter().map(mean_of).enumerate().filter(|(_, theirs)| *theirs < LAMP) {
+            let ours = ours(x, y);
+            sums = [sums[0] + ours, sums[1] + theirs];
+            let off = (ours - theirs) / theirs.max(0.1 * all);
+            assert!(off.abs() < REGION, "region {x}, {y} is {ours}, not {theirs}: {:.1} % off", 100.0 * off);
+        }
+    }
+    let off = sums[0] / sums[1] - 1.0;
+    assert!(off.abs() < WHOLE, "the mean is {:.2} % off", 100.0 * off);
 }

@@ -7,7 +7,7 @@ use crate::plan::Plan;
 use crate::render::radiosity::{Radiosity, Report};
 use crate::render::ray_tracing::{Explanation, RayTracer};
 use crate::render::scan_line::ScanLine;
-use crate::render::{Film, Fingerprint, Order, Renderer, Rendering, Watch};
+use crate::render::{Film, Fingerprint, Order, RenderError, Renderer, Rendering, Watch};
 use crate::scene::{Prepared, Scene, View};
 use clap::{Args, FromArgMatches, ValueEnum};
 use glam::DVec3;
@@ -136,7 +136,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut books = None;
     let (rendering, build_seconds) = match arguments.renderer {
         Kind::Radiosity => {
-            let solution = radiosity(arguments, &prepared, &plan, &watch)?;
+            let settings = prepared.settings.into();
+            let solution = in_pool(arguments, || Radiosity::new(&prepared, &plan, &settings, None, &watch))?;
             books = Some(solution.report);
             let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
             scan_line.left_out(&view).iter().for_each(|what| eprintln!("warning: by radiosity, {what}"));
@@ -150,7 +151,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             (scan_line.render(&view, &order, &watch).map_err(Failure::from), build_seconds)
         }
         Kind::RayTracing | Kind::TwoWay => {
-            let tracer = RayTracer::new(&prepared, &plan)?;
+            let tracer = in_pool(arguments, || RayTracer::watched(&prepared, &plan, &watch))?;
             books = tracer.radiosity().map(|solution| solution.report);
             let build_seconds = start.elapsed().as_secs_f64();
             if let Some(pixel) = arguments.pixel {
@@ -196,11 +197,14 @@ impl Arguments {
     }
 }
 
-/// Solves for the light of all surfaces.
-fn radiosity(arguments: &Arguments, prepared: &Prepared, plan: &Plan, watch: &Watch<'_>) -> Result<Radiosity, Failure> {
+/// Makes something on as many threads as are asked for.
+fn in_pool<T: Send>(
+    arguments: &Arguments,
+    make: impl FnOnce() -> Result<T, RenderError> + Send,
+) -> Result<T, Failure> {
     let threads = arguments.threads.map_or(0, |n| n.get());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
-    Ok(pool.install(|| Radiosity::new(prepared, plan, &prepared.settings.into(), None, watch))?)
+    Ok(pool.install(make)?)
 }
 
 /// Traces rays, after those of a file if there is one to go on with.

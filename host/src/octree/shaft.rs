@@ -94,6 +94,55 @@ impl Octree {
         Between::Some(Shaft { packets: packets.collect(), triangles: found.len() })
     }
 
+    /// Whether rays from points of one box to points of another meet no triangle that counts.
+    ///
+    /// True only where it is sure; never without an index.
+    pub fn is_clear(&self, from: Bounds, to: Bounds, counts: impl Fn(u32) -> bool) -> bool {
+        let hull = Hull::new([from, to].map(|bounds| self.local_box(bounds)));
+        let is_in = |triangle| counts(triangle) && hull.may_meet_triangle(&self.local_corners(triangle));
+        (!self.index.nodes.is_empty() || self.triangles.is_empty()) && !self.is_any_near(&hull, is_in)
+    }
+
+    /// Gives all triangles that may be in a box, some of them more than once; without an index, simply all.
+    pub fn each_near(&self, bounds: Bounds, mut give: impl FnMut(u32)) {
+        if self.index.nodes.is_empty() {
+            return (0..self.triangles.len() as u32).for_each(give);
+        }
+        let hull = Hull::new([self.local_box(bounds); 2]);
+        self.is_any_near(&hull, |triangle| {
+            let near = Bounds::of(self.triangles[triangle as usize].map(|i| self.vertices[i as usize]));
+            if near.touches(bounds) {
+                give(triangle);
+            }
+            false
+        });
+    }
+
+    /// Asks for triangles in a hull and some beside it, until one is enough; says whether one was.
+    fn is_any_near(&self, hull: &Hull, mut enough: impl FnMut(u32) -> bool) -> bool {
+        let mut stack = vec![0];
+        while let Some(node) = stack.pop() {
+            let Some(node) = self.index.nodes.get(node) else { break };
+            for (_, child) in node.boxes().filter(|(bounds, _)| hull.may_meet(bounds)) {
+                match child.place() {
+                    Err(node) => stack.push(node),
+                    Ok(places) => {
+                        let packets = self.index.packets[places].iter();
+                        if packets.flat_map(|packet| packet.triangles).any(|t| t != u32::MAX && enough(t)) {
+                            return true;
+                        }
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether ways from one box to another may lead through a third.
+    pub fn may_stand_between(from: Bounds, to: Bounds, third: Bounds) -> bool {
+        Hull::new([from, to]).may_meet(&third)
+    }
+
     /// As [`Octree::each_hit`], for a ray of which all that counts lies in a shaft.
     pub fn each_hit_in(
         &self,
@@ -231,7 +280,7 @@ mod tests {
     #[test]
     fn rays_in_a_shaft_meet_what_they_meet_anyway() {
         let mut random = Pcg32::seed_from_u64(5);
-        let (mut some, mut covered) = (0, 0);
+        let (mut some, mut covered, mut clear) = (0, 0, 0);
         for round in 0..400 {
             let octree = soup(60, [0.3, 1.0, 4.0][round % 3], &mut random);
             let mut within = |size: f64| {
@@ -241,6 +290,8 @@ mod tests {
             };
             let [from, to] = [within(0.2), within(0.4)];
             let between = octree.between(from, to, |_| true, 40);
+            let is_clear = octree.is_clear(from, to, |_| true);
+            clear += usize::from(is_clear);
             for _ in 0..50 {
                 let mut at = |bounds: Bounds| {
                     let part = DVec3::new(random.random(), random.random(), random.random());
@@ -248,6 +299,7 @@ mod tests {
                 };
                 let (origin, end) = (at(from), at(to));
                 let ray = Ray { origin, direction: end - origin };
+                assert!(!(is_clear && octree.occluded(&ray, 0.0, 1.0)));
                 match &between {
                     Between::Covered => {
                         covered += 1;
@@ -270,7 +322,26 @@ mod tests {
                 }
             }
         }
-        assert!(some > 5000 && covered > 500, "{some} {covered}");
+        assert!(some > 5000 && covered > 500 && clear > 20, "{some} {covered} {clear}");
+    }
+
+    #[test]
+    fn near_a_box_are_all_triangles_of_which_the_boxes_touch_it() {
+        let mut random = Pcg32::seed_from_u64(7);
+        for count in [0, 1, 9, 500] {
+            let octree = soup(count, 0.4, &mut random);
+            let own = |triangle: u32| Bounds::of(octree.triangles[triangle as usize].map(|i| octree.vertices[i as usize]));
+            for _ in 0..20 {
+                let at = DVec3::from_array(std::array::from_fn(|_| random.random::<f64>() * 2.0 - 1.0));
+                let bounds = Bounds { min: at, max: at + DVec3::splat(0.2) };
+                let mut found = Vec::new();
+                octree.each_near(bounds, |triangle| found.push(triangle));
+                found.sort_unstable();
+                found.dedup();
+                let all: Vec<u32> = (0..count as u32).filter(|triangle| own(*triangle).touches(bounds)).collect();
+                assert_eq!(found, all);
+            }
+        }
     }
 
     #[test]

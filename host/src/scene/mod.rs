@@ -103,6 +103,10 @@ pub struct Settings {
     pub patch_error: f64,
     /// Patches are not divided below this length in radiosity, as a part of the diagonal of the scene, above 0.
     pub finest_patch: f64,
+    /// Directions in which each patch of radiosity looks around, 1 and more.
+    pub patch_directions: u32,
+    /// Error of the solver of radiosity, as a part of the greatest irradiance, above 0.
+    pub patch_tolerance: f64,
     /// Whether light counts that a mirror or glass throws from a lamp on what is neither. Rays from the eye find it by
     /// chance only: such pictures take very many samples. Without it, too, highlights of lamps are cut off on what is seen
     /// by spread light. Light of a sky always counts.
@@ -145,6 +149,8 @@ impl Default for Settings {
             radiosity: false,
             patch_error: 0.005,
             finest_patch: 1.0 / 200.0,
+            patch_directions: 32,
+            patch_tolerance: 1e-6,
             caustics: false,
             two_way: false,
             photons: 200_000,

@@ -290,6 +290,13 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 Is("0.005"),
                 "shortest edge of a patch that is divided, as a part of the diagonal of the scene",
             ),
+            parameter("directions", Kind::Integer(1, 4096), Is("32"), "in which each patch looks around"),
+            parameter(
+                "tolerance",
+                Kind::Number(1e-12, 1.0),
+                Is("1e-6"),
+                "error of the solver, as a part of the greatest irradiance",
+            ),
         ],
         example: "radiosity(#{ error: 0.002 });",
         action: |builder, bound| {
@@ -297,6 +304,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
             settings.radiosity = bound.flag("on").unwrap_or(true);
             settings.patch_error = bound.number("error").unwrap_or(settings.patch_error);
             settings.finest_patch = bound.number("finest").unwrap_or(settings.finest_patch);
+            settings.patch_directions = bound.integer("directions").map_or(settings.patch_directions, |n| n as u32);
+            settings.patch_tolerance = bound.number("tolerance").unwrap_or(settings.patch_tolerance);
             Ok(Dynamic::UNIT)
         },
     },

@@ -1,6 +1,6 @@
 //! Elements with what they reflect, and the light that comes to them.
 
-use super::direct::Lit;
+use super::direct::{Around, Lit, bend, mean, of_quarters};
 use super::hierarchy::{Hierarchy, Node, Patch};
 use super::sight::Sight;
 use crate::color::Channels;
@@ -8,9 +8,14 @@ use crate::illumination::optics::{Optics, Side, Sighting};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all combs.
+/// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all combs: light that
+/// surfaces send beside what they reflect of lights and of each other, as what two-way ray tracing caught, times their
+/// reflectance.
 ///
-/// Told the triangle, whether it is its outer side, and the point.
+/// Told the triangle, whether it is its outer side, and the point. It is asked at points next to the corners of elements
+/// and to the middles of their edges, from many threads, and elements are divided where it is not linear between them, down
+/// to the finest: what is smaller than [`Settings::finest`](super::Settings) is to be spread over that much before. Light
+/// of it that other surfaces send back is in the irradiance of the solution; it itself is not.
 pub type Exitance<'a> = &'a (dyn Fn(u32, bool, DVec3) -> Channels + Sync);
 
 /// Nodes with what is known of them.
@@ -23,8 +28,8 @@ pub(super) struct Elements<'a> {
     /// Radiosity from elsewhere, and all that a node sends, W/m².
     pub(super) extra: Vec<Channels>,
     pub(super) sent: Vec<Channels>,
-    /// How much the irradiance by lights varies over a leaf, W/m².
-    variation: Vec<f64>,
+    /// Both at the corners of each node and in the middles of its edges.
+    pub(super) around: Vec<Around>,
     exitance: Option<Exitance<'a>>,
     shadows: bool,
 }
@@ -32,9 +37,8 @@ pub(super) struct Elements<'a> {
 /// What is known of one node.
 struct Known {
     reflectance: Channels,
-    direct: Channels,
-    variation: f64,
-    extra: Channels,
+    mean: Lit,
+    around: Around,
 }
 
 impl<'a> Elements<'a> {
@@ -52,11 +56,11 @@ impl<'a> Elements<'a> {
             indirect: Vec::new(),
             extra: Vec::new(),
             sent: Vec::new(),
-            variation: Vec::new(),
+            around: Vec::new(),
             exitance,
             shadows,
         };
-        elements.learn(sight, 0);
+        elements.learn(sight, 0, &[]);
         elements.pull();
         elements
     }
@@ -64,25 +68,28 @@ impl<'a> Elements<'a> {
     /// Divides leaves, each once, and finds the light of what comes of them.
     pub(super) fn divide(&mut self, sight: &Sight<'_>, nodes: impl IntoIterator<Item = u32>) {
         let first = self.hierarchy.nodes.len();
+        let mut known = Vec::new();
         for node in nodes {
             if self.hierarchy.nodes[node as usize].is_leaf() {
                 self.hierarchy.divide(node);
+                known.extend(of_quarters(&self.around[node as usize]));
                 let indirect = self.indirect[node as usize];
                 self.indirect.extend([indirect; 4]);
             }
         }
-        self.learn(sight, first);
+        self.learn(sight, first, &known);
     }
 
-    /// Divides leaves whose light by lights varies by more than a bound, and those that are larger than a length.
+    /// Divides leaves over which light from elsewhere is farther from linear than a bound, and those that are larger than a
+    /// length.
     pub(super) fn divide_where_light_varies(&mut self, sight: &Sight<'_>, bound: f64, [finest, coarsest]: [f64; 2]) {
         let mut from = 0;
         loop {
             let nodes = &self.hierarchy.nodes;
             let varies = |node: &usize| {
                 let length = nodes[*node].longest_edge();
-                let is_divisible = nodes[*node].is_leaf() && length >= 2.0 * finest;
-                is_divisible && (length > coarsest || self.variation[*node] > bound)
+                let is_divisible = nodes[*node].is_leaf() && !nodes[*node].is_dark && length >= 2.0 * finest;
+                is_divisible && (length > coarsest || bend(&self.around[*node]) > bound)
             };
             let divided: Vec<u32> = (from..nodes.len()).filter(varies).map(|node| node as u32).collect();
             from = nodes.len();
@@ -95,37 +102,29 @@ impl<'a> Elements<'a> {
     }
 
     /// Finds what is not known of the nodes from one on.
-    fn learn(&mut self, sight: &Sight<'_>, first: usize) {
+    ///
+    /// - `corners`: what is known at their corners; of none at first.
+    fn learn(&mut self, sight: &Sight<'_>, first: usize, corners: &[[Lit; 3]]) {
         let nodes = &self.hierarchy.nodes[first..];
-        let known: Vec<Known> = nodes.par_iter().map(|node| self.known(sight, node)).collect();
+        let of = |(i, node): (usize, &Node)| self.known(sight, node, corners.get(i).copied());
+        let known: Vec<Known> = nodes.par_iter().enumerate().map(of).collect();
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
-        for (Known { reflectance, direct, variation, extra }, place) in known.into_iter().zip(first..) {
+        for (Known { reflectance, mean: Lit { direct, extra }, around }, place) in known.into_iter().zip(first..) {
             self.reflectance.push(reflectance);
             self.direct.push(direct);
             self.extra.push(extra);
-            self.variation.push(variation);
+            self.around.push(around);
             self.sent.push(extra + reflectance * (direct + self.indirect[place]));
         }
     }
 
-    fn known(&self, sight: &Sight<'_>, node: &Node) -> Known {
+    fn known(&self, sight: &Sight<'_>, node: &Node, corners: Option<[Lit; 3]>) -> Known {
         if node.is_cluster() {
-            let zero = Channels::ZERO;
-            return Known { reflectance: zero, direct: zero, variation: 0.0, extra: zero };
+            return Known { reflectance: Channels::ZERO, mean: Lit::default(), around: Around::default() };
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
-        let lit: Lit = sight.light(node, self.shadows);
-        let mean = lit.iter().fold(Channels::ZERO, |sum, part| sum + *part) * (lit.len() as f64).recip();
-        let off = |part: &Channels| (*part - mean).map(f64::abs).max();
-        let extra = self.exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, node.middle));
-        let lanes = sight.world.appearance.wavelengths.lanes();
-        let extra = Channels(std::array::from_fn(|lane| if lane < lanes { extra.0[lane] } else { 0.0 }));
-        Known {
-            reflectance: reflectance(sight, patch, node),
-            direct: mean,
-            variation: 2.0 * lit.iter().map(off).fold(0.0, f64::max),
-            extra,
-        }
+        let around = sight.lit((patch, node), corners, (self.exitance, self.shadows));
+        Known { reflectance: reflectance(sight, patch, node), mean: mean(&around), around }
     }
 
     /// Brings what is known of leaves up to the root.

@@ -3,20 +3,19 @@
 //! Light that a node sends is the mean over its leaves, and what it receives is spread evenly over them: with P the matrix
 //! that takes means and G that of the links, leaves exchange M = Pᵀ G P, symmetric whatever the links are.
 
-use super::hierarchy::{Hierarchy, NONE, Node};
-use crate::color::Channels;
+use super::hierarchy::{Amount, Hierarchy, NONE, Node};
 use rayon::prelude::*;
 
 /// Rounds of balancing at the most, and the error of a row that ends them.
-const MOST_ROUNDS: u32 = 200;
-const BALANCED: f64 = 1e-12;
+const MOST_ROUNDS: u32 = 100;
+const BALANCED: f64 = 1e-9;
+/// Rounds where rows only are to be no greater than 1.
+const FEW_ROUNDS: u32 = 8;
 /// A row is not multiplied by more, and not by less than one over it.
 const MOST_FACTOR: f64 = 4.0;
 
 /// As many rays tell how much light is lost in a neighbourhood.
 const NEIGHBOURING_RAYS: u64 = 2048;
-/// How many standard deviations a part that was counted may be off.
-const DEVIATIONS: f64 = 3.0;
 
 /// What leaves see in directions that are as dense as their cosine.
 #[derive(Clone, Debug)]
@@ -25,6 +24,8 @@ pub(super) struct Looks {
     pub(super) directions: u32,
     /// For each leaf, in which part of them it sees something that exchanges light.
     pub(super) part: Vec<f64>,
+    /// For each leaf, the part of all that it sees from its middle that exchanges light.
+    pub(super) row: Vec<f64>,
     /// Whether no light can come to it.
     pub(super) is_dark: Vec<bool>,
 }
@@ -49,6 +50,8 @@ pub(super) struct Exchange<'a> {
     /// For each leaf, the factor that balances it, and what it exchanges with itself so that its row is right.
     factor: Vec<f64>,
     own: Vec<f64>,
+    /// Of each leaf, whether no ray of many around it is lost.
+    pub(super) is_closed: Vec<bool>,
 }
 
 impl<'a> Exchange<'a> {
@@ -76,7 +79,8 @@ impl<'a> Exchange<'a> {
         }
         let leaves = hierarchy.leaves();
         let count = leaves.len();
-        Exchange { hierarchy, leaves, rows, entries, factor: vec![1.0; count], own: vec![0.0; count] }
+        let (factor, own, is_closed) = (vec![1.0; count], vec![0.0; count], vec![false; count]);
+        Exchange { hierarchy, leaves, rows, entries, factor, own, is_closed }
     }
 
     pub(super) fn nodes(&self) -> &[Node] {
@@ -89,8 +93,8 @@ impl<'a> Exchange<'a> {
     }
 
     /// The means of what leaves send over each node, with the factors that balance them.
-    pub(super) fn means(&self, radiosity: &[Channels]) -> Vec<Channels> {
-        let mut values = vec![Channels::ZERO; self.hierarchy.nodes.len()];
+    fn means<V: Amount>(&self, radiosity: &[V]) -> Vec<V> {
+        let mut values = vec![V::default(); self.hierarchy.nodes.len()];
         for ((leaf, value), factor) in self.leaves.iter().zip(radiosity).zip(&self.factor) {
             values[*leaf as usize] = *value * *factor;
         }
@@ -99,19 +103,20 @@ impl<'a> Exchange<'a> {
     }
 
     /// Flux that comes to each leaf from radiosities of all leaves, M b.
-    pub(super) fn apply(&self, radiosity: &[Channels]) -> Vec<Channels> {
+    pub(super) fn apply<V: Amount>(&self, radiosity: &[V]) -> Vec<V> {
         let nodes = &self.hierarchy.nodes;
         let values = self.means(radiosity);
         let row = |node: usize| {
             let entries = &self.entries[self.rows[node]..self.rows[node + 1]];
-            entries.iter().fold(Channels::ZERO, |sum, (other, exchange)| sum + values[*other as usize] * *exchange)
+            entries.iter().fold(V::default(), |sum, (other, exchange)| sum + values[*other as usize] * *exchange)
         };
-        let mut flux: Vec<Channels> = (0..nodes.len()).into_par_iter().map(row).collect();
+        let mut flux: Vec<V> = (0..nodes.len()).into_par_iter().map(row).collect();
         for place in 0..nodes.len() {
             let node = &nodes[place];
-            if !node.is_leaf() {
+            if !node.is_leaf() && !node.is_dark {
                 let density = flux[place] * node.area.recip();
-                node.children().for_each(|child| flux[child] += density * nodes[child].area);
+                let lit = node.children().filter(|child| !nodes[*child].is_dark);
+                lit.for_each(|child| flux[child] = flux[child] + density * nodes[child].area);
             }
         }
         let of = |(i, leaf): (usize, &u32)| flux[*leaf as usize] * self.factor[i] + radiosity[i] * self.own[i];
@@ -130,18 +135,17 @@ impl<'a> Exchange<'a> {
     /// Sinkhorn and Knopp 1967, symmetric; ours as to what remains.
     pub(super) fn balance(&mut self, looks: Option<&Looks>) -> Vec<f64> {
         let areas = self.areas();
-        let ones = vec![Channels::ONE; areas.len()];
-        let sums = |exchange: &Self| -> Vec<f64> { exchange.apply(&ones).iter().map(|sum| sum.0[0]).collect() };
+        let ones = vec![1.0; areas.len()];
+        let sums = |exchange: &Self| exchange.apply(&ones);
         if let Some(looks) = looks {
             let factor = |is_dark: &bool| if *is_dark { 0.0 } else { 1.0 };
             self.factor = looks.is_dark.iter().map(factor).collect();
         }
-        let rows: Vec<f64> = sums(self).iter().zip(&areas).map(|(sum, area)| sum / area).collect();
         let goal: Vec<f64> = match looks {
-            Some(looks) => self.goals(looks, &rows).iter().zip(&areas).map(|(goal, area)| goal * area).collect(),
-            None => rows.iter().zip(&areas).map(|(row, area)| row.min(1.0) * area).collect(),
+            Some(looks) => self.goals(looks).iter().zip(&areas).map(|(goal, area)| goal * area).collect(),
+            None => sums(self).iter().zip(&areas).map(|(sum, area)| sum.min(*area)).collect(),
         };
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..if looks.is_some() { MOST_ROUNDS } else { FEW_ROUNDS } {
             let mut worst = 0.0f64;
             for (i, sum) in sums(self).into_iter().enumerate().filter(|(_, sum)| *sum > 0.0) {
                 let ratio = goal[i] / sum;
@@ -160,21 +164,18 @@ impl<'a> Exchange<'a> {
         self.own.iter().zip(&areas).map(|(own, area)| own.abs() / area).collect()
     }
 
-    /// What the rows should add up to: 1 where no ray of many in the neighbourhood is lost, else in proportion to what they
-    /// do, as much in the mean over the neighbourhood as rays tell.
-    fn goals(&self, looks: &Looks, rows: &[f64]) -> Vec<f64> {
+    /// What the rows should add up to: 1 where no ray of many in the neighbourhood is lost, else what leaves see.
+    fn goals(&mut self, looks: &Looks) -> Vec<f64> {
         let nodes = &self.hierarchy.nodes;
-        // Of each node: rays, whether one is lost, and areas times what rays find and what rows add up to.
-        let mut sums = vec![(0u64, false, [0.0; 2]); nodes.len()];
+        // Of each node: rays, and whether one is lost.
+        let mut sums = vec![(0u64, false); nodes.len()];
         for (i, leaf) in self.leaves.iter().enumerate().filter(|(i, _)| !looks.is_dark[*i]) {
-            let (leaf, part) = (*leaf as usize, looks.part[i]);
-            sums[leaf] = (u64::from(looks.directions), part < 1.0, [part, rows[i]].map(|x| x * nodes[leaf].area));
+            sums[*leaf as usize] = (u64::from(looks.directions), looks.part[i] < 1.0);
         }
         for place in (0..nodes.len()).rev() {
             for child in nodes[place].children() {
-                let (rays, lost, [found, row]) = sums[child];
-                let sum = &mut sums[place];
-                *sum = (sum.0 + rays, sum.1 | lost, [sum.2[0] + found, sum.2[1] + row]);
+                let (rays, lost) = sums[child];
+                sums[place] = (sums[place].0 + rays, sums[place].1 | lost);
             }
         }
         let mut around: Vec<usize> = (0..nodes.len()).collect();
@@ -183,20 +184,12 @@ impl<'a> Exchange<'a> {
                 around[child] = if sums[child].0 >= NEIGHBOURING_RAYS { child } else { around[place] };
             }
         }
-        let goal = |(i, leaf): (usize, &u32)| {
-            let (_, lost, [found, row]) = sums[around[*leaf as usize]];
-            match (looks.is_dark[i], lost) {
-                (true, _) => 0.0,
-                (_, false) => 1.0,
-                _ if row <= 0.0 => 0.0,
-                _ => {
-                    let part = looks.part[i];
-                    let count = f64::from(looks.directions);
-                    let off = DEVIATIONS * (part * (1.0 - part) / count).sqrt() + 2.0 / count;
-                    (rows[i] * found / row).max(part - off).min(part + off).clamp(0.0, 1.0)
-                }
-            }
+        self.is_closed = self.leaves.iter().map(|leaf| !sums[around[*leaf as usize]].1).collect();
+        let goal = |i: usize| match (looks.is_dark[i], self.is_closed[i]) {
+            (true, _) => 0.0,
+            (_, true) => 1.0,
+            _ => looks.row[i].min(1.0),
         };
-        self.leaves.iter().enumerate().map(goal).collect()
+        (0..self.leaves.len()).map(goal).collect()
     }
 }

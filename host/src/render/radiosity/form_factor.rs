@@ -153,13 +153,26 @@ pub(super) fn exchange(a: &Convex, b: &Convex, tolerance: f64) -> f64 {
     } else if 30.0 * ratio.powi(6) < tolerance {
         &SEVEN[..]
     } else {
-        return near(a, b, tolerance);
+        return lambert((a, a_normal), (b, b_normal), tolerance).unwrap_or_else(|| near(a, b, tolerance));
     };
     let mut sum = 0.0;
     a.points(rule, |from, from_area| {
         b.points(rule, |to, to_area| sum += kernel([from, a_normal], [to, b_normal]) * from_area * to_area);
     });
     sum
+}
+
+/// The mean over the smaller polygon of the form factors from its points to the larger; none where they vary too much.
+fn lambert(a: (&Convex, DVec3), b: (&Convex, DVec3), tolerance: f64) -> Option<f64> {
+    let distance = a.0.middle().distance(b.0.middle());
+    let ((small, normal), (large, _)) = if a.0.radius() <= b.0.radius() { (a, b) } else { (b, a) };
+    let gap = distance - large.radius();
+    if gap <= 0.0 || 10.0 * (small.radius() / gap).powi(6) > tolerance {
+        return None;
+    }
+    let mut sum = 0.0;
+    small.points(&SEVEN, |point, area| sum += from_point(point, normal, large) * area);
+    Some(sum)
 }
 
 /// A F = 1/2π ∮∮ ln r da·db over both contours.
@@ -339,5 +352,28 @@ mod tests {
         assert!((from_point(DVec3::ZERO, DVec3::Z, &wall) - 1.0).abs() < 1e-5);
         assert!((from_point(DVec3::ZERO, DVec3::X, &wall) - 0.5).abs() < 1e-5);
         assert_eq!(from_point(DVec3::ZERO, DVec3::NEG_Z, &wall), 0.0);
+    }
+
+    #[test]
+    fn the_mean_of_lamberts_formula_agrees_with_the_contours() {
+        use crate::numeric::sequence::Sequence;
+        let sequence = Sequence::new(3, 1);
+        let mut number = 0;
+        let mut draw = || {
+            number += 1;
+            let ([x, y], z) = (sequence.point(number, 0), sequence.number(number, 1));
+            DVec3::new(x, y, z) * 2.0 - 1.0
+        };
+        let mut compared = 0;
+        for _ in 0..300 {
+            let [a, b] = [DVec3::ZERO, draw() * 3.0].map(|at| Convex::new(&[at + draw(), at + draw(), at + draw()]));
+            let [a_normal, b_normal] = [&a, &b].map(|polygon| polygon.area_vector().normalize_or_zero());
+            let (a, b) = (a.before(b.corners[0], b_normal), b.before(a.corners[0], a_normal));
+            let Some(quick) = lambert((&a, a_normal), (&b, b_normal), 1e-3) else { continue };
+            compared += 1;
+            let (exact, area) = (near(&a, &b, 1e-9), a.area_vector().length().min(b.area_vector().length()) * 0.5);
+            assert!((quick - exact).abs() < 1e-3 * area, "{quick} {exact} {area}");
+        }
+        assert!(compared > 20, "{compared}");
     }
 }

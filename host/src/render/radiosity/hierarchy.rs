@@ -3,17 +3,28 @@
 //! A patch is one side of a triangle. Clusters hold patches that are near each other and face the same way, so that light
 //! that a cluster receives may be spread over all of it.
 
+use super::contact::Contacts;
 use super::form_factor::Convex;
 use crate::color::Channels;
+use crate::numeric::triangle;
 use glam::DVec3;
-use std::ops::Range;
+use std::ops::{Add, Mul, Range};
 
 /// How much a difference of unit normals counts in clusters, in diagonals of the scene.
 const NORMALS: f64 = 0.35;
 /// Points that stand for a node where visibility is asked for.
 pub(super) const POINTS: usize = 4;
+/// As many lines are cut along while an element may still be divided into four, and at the most.
+const FEW_LINES: usize = 3;
+const MOST_LINES: usize = 12;
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// What there are sums and means of: a number, or one for each lane.
+pub(super) trait Amount: Copy + Default + Send + Sync + Add<Output = Self> + Mul<f64, Output = Self> {}
+
+impl Amount for f64 {}
+impl Amount for Channels {}
 
 /// One side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +55,10 @@ pub(super) struct Node {
     pub(super) children: u32,
     /// Of which patch it is; [`NONE`] for a cluster.
     pub(super) patch: u32,
+    /// Whether its children are what lines made of it, and not its quarters.
+    is_cut: bool,
+    /// Whether no light can come to it.
+    pub(super) is_dark: bool,
 }
 
 impl Node {
@@ -61,6 +76,8 @@ impl Node {
             child: 0,
             children: 0,
             patch,
+            is_cut: false,
+            is_dark: false,
         }
     }
 
@@ -150,14 +167,64 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Divides a leaf into four; tells the first.
-    pub(super) fn divide(&mut self, node: u32) -> u32 {
-        let parent = self.nodes[node as usize];
+    /// Divides a leaf into four.
+    pub(super) fn divide(&mut self, node: u32) {
+        let quarters = self.nodes[node as usize].quarters();
+        self.divide_into(node, &quarters);
+    }
+
+    fn divide_into(&mut self, node: u32, parts: &[[DVec3; 3]]) {
         let child = self.nodes.len() as u32;
-        self.nodes.extend(parent.quarters().map(|corners| Node::triangle(corners, parent.patch)));
         let parent = &mut self.nodes[node as usize];
-        (parent.child, parent.children) = (child, 4);
-        child
+        (parent.child, parent.children) = (child, parts.len() as u32);
+        let Node { patch, is_dark, .. } = *parent;
+        self.nodes.extend(parts.iter().map(|corners| Node { is_dark, ..Node::triangle(*corners, patch) }));
+    }
+
+    /// Divides patches so that no line leads through an element, where that can be had with elements as short as the
+    /// finest.
+    ///
+    /// - `finest`, `coarsest`: lengths; what is longer than the second is divided into four before it is cut.
+    pub(super) fn cut(&mut self, contacts: &Contacts, [finest, coarsest]: [f64; 2]) {
+        let on = |patch: &u32| contacts.on(self.patches[*patch as usize].triangle).to_vec();
+        let lined = (0..self.patches.len() as u32).map(|patch| (self.node_of[patch as usize], on(&patch)));
+        let mut waiting: Vec<(u32, Vec<[DVec3; 2]>)> = lined.collect();
+        while let Some((place, mut lines)) = waiting.pop() {
+            let node = self.nodes[place as usize];
+            lines.retain(|line| contacts.crosses(line, &node.corners, node.normal));
+            if lines.is_empty() {
+                continue;
+            }
+            let length = node.longest_edge();
+            if length >= 2.0 * finest && (length > coarsest || lines.len() > FEW_LINES) {
+                self.divide(place);
+                waiting.extend(self.nodes[place as usize].children().map(|child| (child as u32, lines.clone())));
+            } else if lines.len() <= MOST_LINES {
+                let parts = contacts.cut(node.corners, &lines);
+                if parts.len() > 1 {
+                    self.divide_into(place, &parts);
+                    self.nodes[place as usize].is_cut = true;
+                }
+            }
+        }
+    }
+
+    /// Leaves the dark out: what is left of nodes has the area of what is not dark.
+    ///
+    /// - `is_dark`: of each node, whether no light can come to it if it is a leaf.
+    pub(super) fn darken(&mut self, is_dark: &[bool]) {
+        for place in (0..self.nodes.len()).rev() {
+            let node = &self.nodes[place];
+            let (dark, area) = match node.is_leaf() {
+                true => (is_dark[place], node.area),
+                false => {
+                    let lit = || node.children().map(|child| &self.nodes[child]).filter(|child| !child.is_dark);
+                    (lit().next().is_none(), lit().map(|child| child.area).sum())
+                }
+            };
+            let node = &mut self.nodes[place];
+            (node.is_dark, node.area) = (dark, area);
+        }
     }
 
     /// Points and unit normals that stand for a node, each for the same part of its area.
@@ -169,15 +236,27 @@ impl Hierarchy {
         }
     }
 
-    /// The leaves, and the place of each node among them; [`NONE`] for those that are none.
+    /// The leaves to which light may come.
     pub(super) fn leaves(&self) -> Vec<u32> {
-        (0..self.nodes.len() as u32).filter(|node| self.nodes[*node as usize].is_leaf()).collect()
+        let is_leaf = |node: &Node| node.is_leaf() && !node.is_dark;
+        (0..self.nodes.len() as u32).filter(|node| is_leaf(&self.nodes[*node as usize])).collect()
     }
 
     /// The leaf of a patch at a place of it, and the weights of the corners of the leaf there.
     pub(super) fn leaf_at(&self, patch: u32, mut weights: [f64; 3]) -> (u32, [f64; 3]) {
         let mut at = self.node_of[patch as usize];
-        while self.nodes[at as usize].children == 4 {
+        while !self.nodes[at as usize].is_leaf() {
+            let node = &self.nodes[at as usize];
+            if node.is_cut {
+                let [a, b, c] = node.corners;
+                let point = a * weights[0] + b * weights[1] + c * weights[2];
+                let within = |child: usize| triangle::weights(self.nodes[child].corners, point);
+                let least = |child: usize| within(child).into_iter().fold(f64::INFINITY, f64::min);
+                let best = node.children().max_by(|one, other| least(*one).total_cmp(&least(*other)));
+                at = best.unwrap_or(node.child as usize) as u32;
+                weights = triangle::weights(self.nodes[at as usize].corners, point);
+                continue;
+            }
             let corner = weights.iter().position(|weight| *weight >= 0.5);
             weights = match corner {
                 Some(corner) => std::array::from_fn(|i| 2.0 * weights[i] - if i == corner { 1.0 } else { 0.0 }),
@@ -189,11 +268,12 @@ impl Hierarchy {
     }
 
     /// Sums of what leaves have, from the leaves up to the root: of their values times their areas, over the area.
-    pub(super) fn pull(&self, values: &mut [Channels]) {
-        for place in (0..self.nodes.len()).rev().filter(|place| !self.nodes[*place].is_leaf()) {
+    pub(super) fn pull<V: Amount>(&self, values: &mut [V]) {
+        let is_inner = |node: &Node| !node.is_leaf() && !node.is_dark;
+        for place in (0..self.nodes.len()).rev().filter(|place| is_inner(&self.nodes[*place])) {
             let node = &self.nodes[place];
-            let sum = node.children().map(|child| values[child] * self.nodes[child].area);
-            let sum = sum.fold(Channels::ZERO, |a, b| a + b);
+            let lit = node.children().filter(|child| !self.nodes[*child].is_dark);
+            let sum = lit.fold(V::default(), |sum, child| sum + values[child] * self.nodes[child].area);
             values[place] = sum * node.area.recip();
         }
     }
@@ -227,7 +307,8 @@ fn cluster(part: &[u32], own: &[Node]) -> Node {
         members().map(|node| node.normal * node.area).sum::<DVec3>().normalize_or(own[part[0] as usize].normal);
     let spread = members().map(|node| node.normal.dot(normal).clamp(-1.0, 1.0).acos()).fold(0.0, f64::max);
     let radius = members().flat_map(|node| node.corners).map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-    Node { corners: [middle; 3], middle, radius, normal, spread, area, child: 0, children: 0, patch: NONE }
+    let corners = [middle; 3];
+    Node { corners, middle, radius, normal, spread, area, ..Node::triangle(corners, NONE) }
 }
 
 /// A few members at even steps of the area, by their middles.

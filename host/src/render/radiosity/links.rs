@@ -28,8 +28,8 @@ pub(super) struct Judged {
     pub(super) link: Link,
     /// The error of its exchange, square units.
     doubt: f64,
-    /// The part of light that comes through.
-    pub(super) seen: f64,
+    /// Whether it is sure that nothing is between them.
+    pub(super) is_clear: bool,
 }
 
 /// What is to be done with two nodes.
@@ -40,6 +40,7 @@ enum Verdict {
     Divide {
         divided: u32,
         other: u32,
+        is_clear: bool,
     },
     /// Looks at what is in a cluster.
     Within(u32),
@@ -62,22 +63,22 @@ pub(super) fn refine(
     bound: Bound,
     stopped: &dyn Fn() -> bool,
 ) {
-    let mut pending: Vec<[u32; 2]> = Vec::new();
+    let mut pending: Vec<([u32; 2], bool)> = Vec::new();
     if links.is_empty() {
-        pending.push([0, 0]);
+        pending.push(([0, 0], false));
     }
     links.retain(|judged| {
         let Link { a, b, .. } = judged.link;
         let is_sure = uncertainty(elements, a, b, judged.doubt) <= bound.irradiance;
         if !is_sure {
-            pending.push([a, b]);
+            pending.push(([a, b], judged.is_clear));
         }
         is_sure
     });
     while !pending.is_empty() {
         let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
         let bound = if may_divide { bound } else { Bound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
-        let judge = |&[a, b]: &[u32; 2]| Judge { sight, elements, bound }.judge(a, b);
+        let judge = |(pair, is_clear): &([u32; 2], bool)| Judge { sight, elements, bound }.judge(*pair, *is_clear);
         let verdicts: Vec<Verdict> = pending.par_iter().map(judge).collect();
         let divided: Vec<u32> = verdicts
             .iter()
@@ -92,14 +93,14 @@ pub(super) fn refine(
             match verdict {
                 Verdict::Keep(judged) => links.push(judged),
                 Verdict::Drop => {}
-                Verdict::Divide { divided, other } => {
+                Verdict::Divide { divided, other, is_clear } => {
                     let children = elements.hierarchy.nodes[divided as usize].children();
-                    pending.extend(children.map(|child| [child as u32, other]));
+                    pending.extend(children.map(|child| ([child as u32, other], is_clear)));
                 }
                 Verdict::Within(cluster) => {
                     let children = elements.hierarchy.nodes[cluster as usize].children();
                     for first in children.clone() {
-                        pending.extend((first..children.end).map(|second| [first as u32, second as u32]));
+                        pending.extend((first..children.end).map(|second| ([first as u32, second as u32], false)));
                     }
                 }
             }
@@ -129,8 +130,11 @@ impl Judge<'_, '_> {
         uncertainty(self.elements, a, b, exchange) <= self.bound.irradiance
     }
 
-    fn judge(&self, a: u32, b: u32) -> Verdict {
+    fn judge(&self, [a, b]: [u32; 2], is_clear: bool) -> Verdict {
         let (first, second) = (self.node(a), self.node(b));
+        if first.is_dark || second.is_dark {
+            return Verdict::Drop;
+        }
         if a == b {
             return self.within(a, first);
         }
@@ -146,23 +150,33 @@ impl Judge<'_, '_> {
         let most = most.min(first.area.min(second.area) * within_turn(turn));
         if self.is_fine(a, b, most) {
             let unoccluded = self.sampled(a, b).min(most);
-            let seen = if unoccluded > 0.0 { self.visibility(a, b, true) } else { 0.0 };
+            let seen = if unoccluded > 0.0 { self.visibility(a, b, is_clear, true) } else { 0.0 };
             let link = Link { a, b, exchange: unoccluded * seen };
-            return Verdict::Keep(Judged { link, doubt: most, seen });
+            return Verdict::Keep(Judged { link, doubt: most, is_clear });
         }
-        if !are_elements && distance < sizes && !self.is_fine(a, b, most) {
-            return self.divide(a, b).unwrap_or(Verdict::Drop);
+        if !are_elements && distance < sizes {
+            return self.divide(a, b, is_clear).unwrap_or(Verdict::Drop);
+        }
+        let is_clear = is_clear || are_elements && self.sight.is_clear(first, second);
+        let rough = self.sampled(a, b).min(most);
+        let variation = (0.5 * sizes / distance + first.spread + second.spread).min(1.0);
+        // Whatever rays tell, it is too uncertain.
+        let least = if is_clear { variation + SEEN } else { NOT_SEEN };
+        if rough > 0.0
+            && !self.is_fine(a, b, least * rough)
+            && let Some(verdict) = self.divide(a, b, is_clear)
+        {
+            return verdict;
         }
         let unoccluded = match are_elements {
             true => form_factor::exchange(&first.polygon(), &second.polygon(), FORM_FACTOR_ERROR).min(most),
-            false => self.sampled(a, b).min(most),
+            false => rough,
         };
         if unoccluded <= 0.0 {
             let is_sure = are_elements || self.is_fine(a, b, 0.25 * most);
-            return if is_sure { Verdict::Drop } else { self.divide(a, b).unwrap_or(Verdict::Drop) };
+            return if is_sure { Verdict::Drop } else { self.divide(a, b, is_clear).unwrap_or(Verdict::Drop) };
         }
-        let seen = self.visibility(a, b, self.is_fine(a, b, NOT_SEEN * unoccluded));
-        let variation = (0.5 * sizes / distance + first.spread + second.spread).min(1.0);
+        let seen = self.visibility(a, b, is_clear, self.is_fine(a, b, NOT_SEEN * unoccluded));
         let unsure = match seen {
             0.0 => NOT_SEEN,
             seen if seen < 1.0 => PARTLY_SEEN,
@@ -171,11 +185,11 @@ impl Judge<'_, '_> {
         let doubt = unoccluded * (variation * seen + unsure);
         let link = Link { a, b, exchange: unoccluded * seen };
         if self.is_fine(a, b, doubt) {
-            return Verdict::Keep(Judged { link, doubt, seen });
+            return Verdict::Keep(Judged { link, doubt, is_clear });
         }
-        self.divide(a, b).unwrap_or(match seen {
+        self.divide(a, b, is_clear).unwrap_or(match seen {
             0.0 => Verdict::Drop,
-            _ => Verdict::Keep(Judged { link, doubt: 0.0, seen }),
+            _ => Verdict::Keep(Judged { link, doubt: 0.0, is_clear }),
         })
     }
 
@@ -191,14 +205,14 @@ impl Judge<'_, '_> {
     }
 
     /// The larger of both that can be divided.
-    fn divide(&self, a: u32, b: u32) -> Option<Verdict> {
+    fn divide(&self, a: u32, b: u32, is_clear: bool) -> Option<Verdict> {
         let can = |node: &Node| !node.is_leaf() || node.longest_edge() >= 2.0 * self.bound.finest;
         let (first, second) = (self.node(a), self.node(b));
         let takes_first = can(first) && (first.radius >= second.radius || !can(second));
         if takes_first {
-            Some(Verdict::Divide { divided: a, other: b })
+            Some(Verdict::Divide { divided: a, other: b, is_clear })
         } else {
-            can(second).then_some(Verdict::Divide { divided: b, other: a })
+            can(second).then_some(Verdict::Divide { divided: b, other: a, is_clear })
         }
     }
 
@@ -213,8 +227,11 @@ impl Judge<'_, '_> {
 
     /// The part of light that comes from points of one to points of the other.
     ///
-    /// - `roughly`: a few rays will do.
-    fn visibility(&self, a: u32, b: u32, roughly: bool) -> f64 {
+    /// - `is_clear`: nothing is between them. `roughly`: a few rays will do.
+    fn visibility(&self, a: u32, b: u32, is_clear: bool, roughly: bool) -> f64 {
+        if is_clear {
+            return 1.0;
+        }
         let hierarchy = &self.elements.hierarchy;
         let (from, to) = (hierarchy.points(a), hierarchy.points(b));
         // Which go together differs from link to link.

@@ -13,6 +13,7 @@
 //! Of spectra, eight bands are known, each 59 nm wide: within a band, light of other surfaces has the same strength
 //! everywhere.
 
+mod contact;
 mod direct;
 mod elements;
 mod exchange;
@@ -39,9 +40,11 @@ use super::{RenderError, Watch};
 use crate::color::Channels;
 use crate::plan::{Plan, Stage};
 use crate::scene::Prepared;
+use contact::Contacts;
 use elements::Elements;
 use exchange::{Exchange, Link, Looks};
-use hierarchy::{Hierarchy, Patch, normal_and_area};
+use gather::{Gatherer, Views};
+use hierarchy::{Patch, normal_and_area};
 use links::{Bound, Judged, refine};
 use sight::Sight;
 use solver::{Solved, solve};
@@ -52,10 +55,12 @@ use surface::SurfaceLight;
 const MOST_ELEMENTS: usize = 2_000_000;
 /// How often links are looked at with the light that was found.
 const ROUNDS: u64 = 3;
+/// How often light is followed once more as each element sees it.
+const PASSES: usize = 4;
 /// The longest edge of an element, in shortest ones.
 const COARSEST: f64 = 16.0;
-/// The light of lights may vary over an element by so many errors: it is linear between its corners.
-const VARIATION: f64 = 16.0;
+/// The light of lights may be so many errors from linear over an element.
+const BENT: f64 = 4.0;
 
 /// How good a solution is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,13 +77,18 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { error: 0.005, finest: 1.0 / 200.0, tolerance: 1e-6, directions: 32 }
+        crate::scene::Settings::default().into()
     }
 }
 
 impl From<crate::scene::Settings> for Settings {
     fn from(scene: crate::scene::Settings) -> Settings {
-        Settings { error: scene.patch_error, finest: scene.finest_patch, ..Settings::default() }
+        Settings {
+            error: scene.patch_error,
+            finest: scene.finest_patch,
+            tolerance: scene.patch_tolerance,
+            directions: scene.patch_directions,
+        }
     }
 }
 
@@ -113,26 +123,38 @@ impl Radiosity {
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
         let lengths = [finest, COARSEST * finest];
-        let patches = visible::lit_patches(&sight, patches(prepared, plan, &sight), (exitance, shadows), lengths);
-        if patches.is_empty() {
+        let contacts = Contacts::new(&sight, diagonal, |t| plan.keeps_object(prepared.object_of[t as usize] as usize));
+        let patches = patches(prepared, plan, &sight);
+        let hierarchy = visible::lit(&sight, patches, &contacts, (exitance, shadows), lengths);
+        if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: Report::default() });
         }
-        let mut elements = Elements::new(Hierarchy::new(patches), &sight, exitance, shadows);
+        eprintln!("T {:.2} lit", start.elapsed().as_secs_f64());
+        let mut elements = Elements::new(hierarchy, &sight, exitance, shadows);
         let mean = elements.mean_irradiance();
-        elements.divide_where_light_varies(&sight, VARIATION * settings.error * mean, lengths);
+        elements.divide_where_light_varies(&sight, BENT * settings.error * mean, lengths);
         let mut links: Vec<Judged> = Vec::new();
         let mut report = Report { patches: elements.hierarchy.patches.len(), ..Report::default() };
         let mut leaves = Vec::new();
         let mut dark = Vec::new();
         for round in 0..ROUNDS {
             let bound = Bound { irradiance: settings.error * elements.mean_irradiance(), finest };
+            eprintln!("T {:.2} round {round} {}", start.elapsed().as_secs_f64(), elements.hierarchy.nodes.len());
             refine(&sight, &mut elements, &mut links, bound, &stopped);
+            eprintln!("T {:.2} refined {}", start.elapsed().as_secs_f64(), elements.hierarchy.nodes.len());
             (watch.progress)(2 * round + 1, 2 * ROUNDS);
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
-            let looks = is_last.then(|| visible::seen(&sight, &elements, &leaves, settings.directions));
+            let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
+            let views = is_last.then(|| gatherer.views(&links, &leaves, &elements.sent));
+            eprintln!("T {:.2} views", start.elapsed().as_secs_f64());
+            let looks = views.as_ref().map(|views| {
+                visible::seen(&sight, &elements, (&leaves, views.rows()), settings.directions)
+            });
+            eprintln!("T {:.2} seen", start.elapsed().as_secs_f64());
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
-            let solved = light(&elements, &links, looks.as_ref(), (tolerance, &stopped), &mut report)?;
+            let last = looks.as_ref().zip(views.as_ref());
+            let solved = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
             elements.take(&leaves, &solved.irradiance);
             (watch.progress)(2 * round + 2, 2 * ROUNDS);
             if let Some(looks) = looks {
@@ -143,6 +165,7 @@ impl Radiosity {
         report.elements = leaves.len();
         report.links = links.len();
         let light = SurfaceLight::new(prepared, elements, &leaves, &dark);
+        eprintln!("T {:.2} end", start.elapsed().as_secs_f64());
         report.seconds = start.elapsed().as_secs_f64();
         Ok(Radiosity { light, report })
     }
@@ -175,7 +198,7 @@ fn patches(prepared: &Prepared, plan: &Plan, sight: &Sight<'_>) -> Vec<Patch> {
 fn light(
     elements: &Elements<'_>,
     judged: &[Judged],
-    looks: Option<&Looks>,
+    last: Option<(&Looks, &Views<'_>)>,
     (tolerance, stopped): (f64, &dyn Fn() -> bool),
     report: &mut Report,
 ) -> Result<Solved, RenderError> {
@@ -184,27 +207,30 @@ fn light(
     let leaves = exchange.leaves.clone();
     let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };
     let (reflectance, direct, extra) = (of(&elements.reflectance), of(&elements.direct), of(&elements.extra));
-    let own = exchange.balance(looks);
+    let own = exchange.balance(last.map(|(looks, _)| looks));
     let first: Vec<Channels> = (0..leaves.len()).map(|i| extra[i] + reflectance[i] * direct[i]).collect();
     let mut solved = solve(&exchange, &reflectance, &first, tolerance, stopped)?;
     report.steps = solved.steps;
     report.solver_error = solved.error;
     let areas = exchange.areas();
-    let rows = exchange.apply(&vec![Channels::ONE; areas.len()]);
+    let rows = exchange.apply(&vec![1.0; areas.len()]);
     let total = |part: &dyn Fn(usize) -> Channels| -> f64 {
         (0..areas.len()).map(|i| part(i).0.iter().sum::<f64>() * areas[i]).sum()
     };
     let all = |i: usize| direct[i] + solved.irradiance[i];
     let sent = |i: usize| extra[i] + reflectance[i] * all(i);
-    let exchanged = total(&|i| sent(i) * (rows[i] * areas[i].recip())).max(f64::MIN_POSITIVE);
+    let exchanged = total(&|i| sent(i) * (rows[i] / areas[i])).max(f64::MIN_POSITIVE);
     report.unbalanced = total(&|i| sent(i) * own[i]) / exchanged;
     report.arrived = total(&|i| direct[i] + extra[i]);
     report.absorbed = total(&|i| (Channels::ONE - reflectance[i]) * all(i));
-    report.escaped = total(&|i| sent(i) * (Channels::ONE - rows[i] * areas[i].recip()));
+    report.escaped = total(&|i| sent(i) * (1.0 - rows[i] / areas[i]));
     report.left = report.arrived - report.absorbed - report.escaped;
-    if looks.is_some() {
-        let sent: Vec<Channels> = (0..areas.len()).map(sent).collect();
-        solved.irradiance = gather::gathered(&elements.hierarchy, judged, &exchange, &sent);
+    if let Some((_, views)) = last {
+        for _ in 0..PASSES {
+            let sent = |(i, light): (usize, &Channels)| extra[i] + reflectance[i] * (direct[i] + *light);
+            let sent: Vec<Channels> = solved.irradiance.iter().enumerate().map(sent).collect();
+            solved.irradiance = views.irradiance(&leaves, &sent, &exchange.is_closed);
+        }
     }
     Ok(solved)
 }

@@ -1,7 +1,8 @@
 //! What elements see: whether something is between two points, and what is met in all directions.
 
 use super::super::ray_tracing::world::World;
-use super::hierarchy::Patch;
+use super::hierarchy::{Node, Patch};
+use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::cosine_hemisphere;
 use crate::numeric::sequence::Sequence;
@@ -47,6 +48,20 @@ impl<'a> Sight<'a> {
         let passed = self.world.passed(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0));
         let lanes = self.world.appearance.wavelengths.lanes();
         passed.0[..lanes].iter().sum::<f64>() / lanes as f64
+    }
+
+    /// Whether it is sure that nothing is between two elements.
+    pub(super) fn is_clear(&self, one: &Node, other: &Node) -> bool {
+        let prepared = self.world.appearance.prepared;
+        // What does not come out of the plane of an element is in no way to its front.
+        let is_behind = |corners: &[DVec3; 3], node: &Node| {
+            corners.iter().all(|corner| (*corner - node.corners[0]).dot(node.normal) <= self.clearance)
+        };
+        let counts = |triangle: u32| {
+            let corners = prepared.corners(triangle);
+            !is_behind(&corners, one) && !is_behind(&corners, other)
+        };
+        self.world.is_clear([one, other].map(|node| Bounds::of(node.corners)), counts)
     }
 
     /// Looks from points of a triangle in directions that are as dense as their cosine.

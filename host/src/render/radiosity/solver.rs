@@ -8,8 +8,10 @@
 use super::exchange::Exchange;
 use crate::color::{Channels, LANES};
 
-/// Aggregates of the coarse level.
+/// Aggregates of the coarse level, and where a rough solution will do.
 const AGGREGATES: usize = 24;
+const FEW_AGGREGATES: usize = 4;
+const ROUGH: f64 = 1e-3;
 /// Steps at the most.
 pub(super) const MOST_STEPS: u32 = 400;
 
@@ -84,16 +86,16 @@ pub(super) fn solve(
         return Ok(Solved { irradiance: per_area(&first), steps: 0, error: 0.0 });
     }
     // With what a leaf sees at the most, no light is reflected more often than this.
-    let ones = vec![Channels::ONE; areas.len()];
-    let seen = per_area(&exchange.apply(&ones));
-    let losses = seen.iter().zip(reflectance).map(|(seen, rho)| 1.0 - (*seen * *rho).max());
+    let seen = exchange.apply(&vec![1.0; areas.len()]);
+    let losses = seen.iter().zip(&areas).zip(reflectance).map(|((seen, area), rho)| 1.0 - seen / area * rho.max());
     let losses: Vec<f64> = losses.collect();
     if losses.iter().all(|loss| *loss < NO_LOSS) {
         return Err(Unsolvable::NoLoss);
     }
     let least_loss = losses.into_iter().fold(1.0, f64::min).max(f64::EPSILON);
-    let mut system =
-        System { exchange, areas: areas.clone(), roots, aggregate: aggregates(exchange), coarse: Vec::new() };
+    let count = if tolerance > ROUGH { FEW_AGGREGATES } else { AGGREGATES };
+    let aggregate = aggregates(exchange, count);
+    let mut system = System { exchange, areas: areas.clone(), roots, aggregate, coarse: Vec::new() };
     system.coarse = system.coarse_matrices();
     let right = times(&system.roots, &first);
     let (mut y, mut steps) = (vec![Channels::ZERO; right.len()], 0);
@@ -138,10 +140,10 @@ fn over(a: Channels, b: Channels) -> Channels {
 }
 
 /// Cuts the hierarchy into a few nodes of about the same area; tells for each leaf which it is below.
-fn aggregates(exchange: &Exchange<'_>) -> Vec<usize> {
+fn aggregates(exchange: &Exchange<'_>, count: usize) -> Vec<usize> {
     let nodes = exchange.nodes();
     let mut cut = vec![0usize];
-    while cut.len() < AGGREGATES {
+    while cut.len() < count {
         let divisible = cut.iter().enumerate().filter(|(_, node)| !nodes[**node].is_leaf());
         let Some((place, _)) = divisible.max_by(|a, b| nodes[*a.1].area.total_cmp(&nodes[*b.1].area)) else { break };
         let node = cut.swap_remove(place);

@@ -72,7 +72,7 @@ impl SurfaceLight {
 
     /// - `is_dark`: of each leaf, whether no light can come to it.
     pub(super) fn new(prepared: &Prepared, elements: Elements<'_>, leaves: &[u32], is_dark: &[bool]) -> SurfaceLight {
-        let Elements { hierarchy, direct, indirect, .. } = elements;
+        let Elements { hierarchy, around, indirect, .. } = elements;
         let mut patch_of = vec![[NONE; 2]; prepared.triangles.len()];
         for (number, patch) in (0..).zip(&hierarchy.patches) {
             patch_of[patch.triangle as usize][usize::from(!patch.outside)] = number;
@@ -86,13 +86,13 @@ impl SurfaceLight {
         };
         for leaf in lit() {
             let node = &hierarchy.nodes[leaf];
-            for (place, corner) in corners[leaf].iter_mut().zip(node.corners) {
+            for ((place, corner), lit) in corners[leaf].iter_mut().zip(node.corners).zip(&around[leaf]) {
                 *place = shared.put(corner, node.normal, like(leaf));
                 // The nearer the middle of an element, the more it tells.
                 let weight = corner.distance(node.middle).recip();
                 let (sum, all) = &mut shared.sums[*place as usize];
                 *all += weight;
-                sum[0] += direct[leaf] * weight;
+                sum[0] += lit.direct * weight;
                 sum[1] += indirect[leaf] * weight;
             }
         }

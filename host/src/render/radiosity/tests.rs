@@ -1,5 +1,6 @@
 //! Facts about radiosity.
 
+use super::hierarchy::Hierarchy;
 use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
@@ -146,11 +147,11 @@ fn a_sphere_in_a_sphere_sends_all_its_light_to_it_and_gets_its_share_back() {
 
 #[test]
 fn a_closed_dark_room_with_lights_outside_stays_dark_to_the_last_bit() {
-    // Two rooms that touch, a slab below both, and lamps all around and in one of them.
+    // Two rooms that touch, a slab on which both stand, and lamps all around and in one of them.
     let mut lit = cube("lit room", 2.0, 0.7);
     lit.transform = DMat4::from_translation(DVec3::new(2.0, 0.0, 0.0));
     let mut slab = object("slab", Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 0.5, 9.0) }), 0.6);
-    slab.transform = DMat4::from_translation(DVec3::new(0.0, -1.5, 0.0));
+    slab.transform = DMat4::from_translation(DVec3::new(0.0, -1.25, 0.0));
     let lights = vec![
         lamp(DVec3::new(3.0, 4.0, 2.0)),
         lamp(DVec3::new(-2.0, 0.5, 0.3)),
@@ -185,10 +186,14 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     for error in [0.05, 0.002] {
         let bound = Bound { irradiance: error * elements.mean_irradiance(), finest: 0.6 };
         refine(&sight, &mut elements, &mut links, bound, &|| false);
-        let count = elements.hierarchy.leaves().len();
-        let ones = Looks { directions: 1, part: vec![1.0; count], is_dark: vec![false; count] };
+        let leaves = elements.hierarchy.leaves();
+        let ones = vec![1.0; leaves.len()];
+        let ones = Looks { directions: 1, part: ones.clone(), row: ones, is_dark: vec![false; leaves.len()] };
         let mut report = Report::default();
-        let solved = light(&elements, &links, Some(&ones), (1e-9, &|| false), &mut report).expect("a solution");
+        let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
+        let views = gatherer.views(&links, &leaves, &elements.sent);
+        let last = Some((&ones, &views));
+        let solved = light(&elements, &links, last, (1e-9, &|| false), &mut report).expect("a solution");
         found.push((links.len(), solved.irradiance));
     }
     let leaves = elements.hierarchy.leaves();
@@ -264,4 +269,60 @@ fn scenes_of_any_size_have_the_same_light() {
     for scale in [1e-6, 1e6] {
         assert!((of(scale) / one - 1.0).abs() < 1e-3, "{scale}: {} {one}", of(scale));
     }
+}
+
+#[test]
+fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
+    let plate = |name: &str, y: f64| {
+        let mut plate = object(name, Shape::Solid(Primitive::Box { size: DVec3::new(4.0, 0.2, 4.0) }), 0.001);
+        plate.transform = DMat4::from_translation(DVec3::new(0.0, y, 0.0));
+        plate
+    };
+    let room = prepared(vec![plate("floor", -0.1), plate("ceiling", 1.1)], vec![]);
+    let half = 0.37;
+    let caught = |_: u32, outside: bool, at: DVec3| {
+        let is_in = outside && at.y.abs() < 1e-3 && at.x.abs() < half && at.z.abs() < half;
+        Channels::splat(if is_in { 3.0 } else { 0.0 })
+    };
+    let radiosity = solved(&room, &Settings { error: 0.002, finest: 1.0 / 400.0, ..Settings::default() }, Some(&caught));
+    // From a point at a distance of 1 above the corner of a rectangle of x by y.
+    let corner = |x: f64, y: f64| {
+        let part = |x: f64, y: f64| x / (1.0 + x * x).sqrt() * (y / (1.0 + x * x).sqrt()).atan();
+        (part(x, y) + part(y, x)) / (2.0 * PI)
+    };
+    for [x, z] in [[0.0, 0.0], [0.5, 0.2], [-1.0, 0.7]] {
+        let [left, right, front, back] = [x + half, half - x, z + half, half - z];
+        let sign = |side: f64| side.signum();
+        let pairs = [[left, front], [left, back], [right, front], [right, back]];
+        let exact: f64 = 3.0 * pairs.map(|[a, b]| sign(a) * sign(b) * corner(a.abs(), b.abs())).iter().sum::<f64>();
+        let at = DVec3::new(x, 1.0, z);
+        let found = (0..room.triangles.len() as u32).find_map(|triangle| {
+            let corners = room.corners(triangle);
+            let faces_down = normal_and_area(corners).0.y < -0.9 && corners[0].y > 0.5;
+            let weights = crate::numeric::triangle::weights(corners, at);
+            (faces_down && weights.iter().all(|weight| *weight >= -1e-12))
+                .then(|| radiosity.irradiance(triangle, true, weights, Part::Indirect).0[0])
+        });
+        let found = found.expect("a place on the ceiling");
+        assert!((found / exact - 1.0).abs() < 0.015, "{x} {z}: {found} {exact}");
+    }
+}
+
+#[test]
+fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+    let room = prepared(vec![cube("room", 2.0, 0.6), sphere("ball", 0.5, 0.8)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
+    let plan = Plan::new(&room, &room.view());
+    let (cancelled, told) = (AtomicBool::new(false), AtomicU64::new(0));
+    let progress = |done: u64, all: u64| {
+        assert!(done <= all && done >= told.load(Ordering::Relaxed));
+        told.store(done, Ordering::Relaxed);
+        cancelled.store(true, Ordering::Relaxed);
+    };
+    let watch = Watch { cancelled: &cancelled, progress: &progress };
+    let stopped = Radiosity::new(&room, &plan, &coarse(), None, &watch).expect("a solution");
+    assert!(told.load(Ordering::Relaxed) > 0);
+    let whole = solved(&room, &coarse(), None);
+    assert!(stopped.report.links < whole.report.links);
+    assert!(middle(&stopped, 0, false, Part::All).is_finite());
 }

@@ -2,7 +2,8 @@
 
 use super::elements::{Elements, Exitance};
 use super::exchange::Looks;
-use super::hierarchy::{Hierarchy, NONE, Patch, normal_and_area};
+use super::contact::Contacts;
+use super::hierarchy::{Hierarchy, NONE, Node, Patch};
 use super::sight::{Seen, Sight};
 use crate::color::Channels;
 use glam::DVec3;
@@ -45,42 +46,77 @@ impl Joined {
     }
 }
 
-/// The patches to which light comes, straight or from others.
+/// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are dark.
 ///
 /// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
-pub(super) fn lit_patches(
+pub(super) fn lit(
     sight: &Sight<'_>,
     patches: Vec<Patch>,
+    contacts: &Contacts,
     (exitance, shadows): (Option<Exitance<'_>>, bool),
-    [_, coarsest]: [f64; 2],
-) -> Vec<Patch> {
-    let is_lit = |patch: &Patch| {
-        let (normal, _) = normal_and_area(patch.corners);
+    [finest, coarsest]: [f64; 2],
+) -> Hierarchy {
+    let mut all = Hierarchy::new(patches);
+    all.cut(contacts, [finest, coarsest]);
+    let is_dark = dark(sight, &all, (exitance, shadows), coarsest);
+    all.darken(&is_dark);
+    let is_lit = |patch: usize| !all.nodes[all.node_of[patch] as usize].is_dark;
+    if (0..all.patches.len()).all(is_lit) {
+        return all;
+    }
+    let lit: Vec<usize> = (0..all.patches.len()).filter(|patch| is_lit(*patch)).collect();
+    let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect());
+    hierarchy.cut(contacts, [finest, coarsest]);
+    // Patches are divided as they were before.
+    let mut is_dark = vec![false; hierarchy.nodes.len()];
+    let mut pairs: Vec<[u32; 2]> =
+        lit.iter().zip(&hierarchy.node_of).map(|(patch, node)| [all.node_of[*patch], *node]).collect();
+    while let Some([before, now]) = pairs.pop() {
+        let (before, node) = (&all.nodes[before as usize], &hierarchy.nodes[now as usize]);
+        is_dark[now as usize] = before.is_dark;
+        pairs.extend(before.children().zip(node.children()).map(|(a, b)| [a as u32, b as u32]));
+    }
+    hierarchy.darken(&is_dark);
+    hierarchy
+}
+
+/// Of each node that is a leaf, whether no light comes to it.
+fn dark(
+    sight: &Sight<'_>,
+    hierarchy: &Hierarchy,
+    (exitance, shadows): (Option<Exitance<'_>>, bool),
+    coarsest: f64,
+) -> Vec<bool> {
+    let nodes = &hierarchy.nodes;
+    let is_lit = |node: &Node| {
         let at = |point: DVec3| {
+            let patch = &hierarchy.patches[node.patch as usize];
             let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
-            extra.max() > 0.0 || sight.light_at(point, normal, shadows).max() > 0.0
+            extra.max() > 0.0 || sight.light_at(point, node.normal, shadows).max() > 0.0
         };
-        is_any_lit(patch.corners, coarsest, &at)
+        node.is_leaf() && is_any_lit(node.corners, coarsest, &at)
     };
-    let is_lit: Vec<bool> = patches.par_iter().map(is_lit).collect();
-    let patch_of = numbers(sight, &patches);
-    let looked = |(number, patch): (usize, &Patch)| {
-        let (normal, area) = normal_and_area(patch.corners);
-        let parts = (area / (coarsest * coarsest)).ceil().max(1.0);
+    let is_lit: Vec<bool> = nodes.par_iter().map(is_lit).collect();
+    let patch_of = numbers(sight, &hierarchy.patches);
+    let looked = |(number, node): (usize, &Node)| {
+        if !node.is_leaf() {
+            return Vec::new();
+        }
+        let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
         let count = (f64::from(LOOKS) * parts).min(f64::from(MOST_LOOKS)) as u32;
-        let seen = sight.around(patch.corners, normal, number as u64, count);
-        let mut seen: Vec<u32> = seen.into_iter().map(|seen| side(&patch_of, seen).0).filter(|n| *n != NONE).collect();
+        let of = |seen: Seen| element(hierarchy, &patch_of, seen);
+        let seen = sight.around(node.corners, node.normal, number as u64, count);
+        let mut seen: Vec<u32> = seen.into_iter().map(of).filter(|node| *node != NONE).collect();
         seen.sort_unstable();
         seen.dedup();
         seen
     };
-    let seen: Vec<Vec<u32>> = patches.par_iter().enumerate().map(looked).collect();
-    let mut joined = Joined::new(patches.len());
+    let seen: Vec<Vec<u32>> = nodes.par_iter().enumerate().map(looked).collect();
+    let mut joined = Joined::new(nodes.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().for_each(|other| joined.join(number, *other));
     }
-    let alight = joined.alight(&is_lit);
-    patches.into_iter().zip(alight).filter(|(_, alight)| *alight).map(|(patch, _)| patch).collect()
+    joined.alight(&is_lit).into_iter().map(|alight| !alight).collect()
 }
 
 fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
@@ -104,16 +140,24 @@ fn numbers(sight: &Sight<'_>, patches: &[Patch]) -> Vec<[u32; 2]> {
     numbers
 }
 
-/// The patch that is seen, and where.
-fn side(patch_of: &[[u32; 2]], seen: Seen) -> (u32, [f64; 3]) {
-    match seen {
-        Seen::Side { triangle, outside, weights } => (patch_of[triangle as usize][usize::from(!outside)], weights),
-        _ => (NONE, [0.0; 3]),
+/// The element that is seen.
+fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: Seen) -> u32 {
+    let Seen::Side { triangle, outside, weights } = seen else { return NONE };
+    match patch_of[triangle as usize][usize::from(!outside)] {
+        NONE => NONE,
+        patch => hierarchy.leaf_at(patch, hierarchy.patches[patch as usize].weights(weights)).0,
     }
 }
 
 /// What leaves see.
-pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], directions: u32) -> Looks {
+///
+/// - `row`: for each leaf, the part of all that it sees that exchanges light.
+pub(super) fn seen(
+    sight: &Sight<'_>,
+    elements: &Elements<'_>,
+    (leaves, row): (&[u32], Vec<f64>),
+    directions: u32,
+) -> Looks {
     let directions = directions.max(1);
     let hierarchy: &Hierarchy = &elements.hierarchy;
     let patch_of = numbers(sight, &hierarchy.patches);
@@ -123,13 +167,9 @@ pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], d
         let node = &hierarchy.nodes[*leaf as usize];
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
-        let of = |seen: Seen| {
-            let (patch, weights) = side(&patch_of, seen);
-            if patch == NONE {
-                return NONE;
-            }
-            let weights = hierarchy.patches[patch as usize].weights(weights);
-            place[hierarchy.leaf_at(patch, weights).0 as usize]
+        let of = |seen: Seen| match element(hierarchy, &patch_of, seen) {
+            NONE => NONE,
+            leaf => place[leaf as usize],
         };
         sight.around(node.corners, node.normal, own, directions).into_iter().map(of).collect::<Vec<u32>>()
     };
@@ -141,5 +181,6 @@ pub(super) fn seen(sight: &Sight<'_>, elements: &Elements<'_>, leaves: &[u32], d
     let sends = |leaf: &u32| (elements.direct[*leaf as usize] + elements.extra[*leaf as usize]).max() > 0.0;
     let alight = joined.alight(&leaves.iter().map(sends).collect::<Vec<bool>>());
     let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
-    Looks { directions, part: seen.iter().map(part).collect(), is_dark: alight.iter().map(|alight| !alight).collect() }
+    let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
+    Looks { directions, part, row, is_dark }
 }

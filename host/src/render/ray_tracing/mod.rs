@@ -82,9 +82,23 @@ impl<'a> RayTracer<'a> {
     /// # Errors
     /// [`RenderError::Octree`], [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
+        RayTracer::watched(prepared, plan, &Watch::NOBODY)
+    }
+
+    /// As [`RayTracer::new`], watched while radiosity is solved for, where the plan needs it.
+    ///
+    /// When it is stopped, the light that surfaces send each other is known coarsely.
+    ///
+    /// # Errors
+    /// As [`RayTracer::new`], and [`RenderError::Radiosity`].
+    pub fn watched(
+        prepared: &'a Prepared,
+        plan: &'a Plan,
+        watch: &Watch<'_>,
+    ) -> Result<RayTracer<'a>, RenderError> {
         let mut world = World::new(prepared, plan)?;
         if plan.needs(Stage::Radiosity) {
-            world.indirect = Some(Radiosity::new(prepared, plan, &prepared.settings.into(), None, &Watch::NOBODY)?);
+            world.indirect = Some(Radiosity::new(prepared, plan, &prepared.settings.into(), None, watch)?);
         }
         let keeps = |object| plan.keeps_object(object);
         let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps)).flatten();

@@ -6,6 +6,7 @@ use crate::color::Channels;
 use crate::illumination::distribution::Frame;
 use crate::illumination::light::{Glow, Source};
 use crate::illumination::optics::{Among, Optics, Painting, Sighting};
+use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft};
 use crate::plan::{Plan, Stage};
@@ -233,6 +234,24 @@ impl<'a> World<'a> {
     pub(super) fn any_between(&self, ray: &Ray, counts: impl Fn(u32) -> bool) -> bool {
         let of = |hit: Hit| self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
         self.octree.as_ref().is_some_and(|octree| octree.each_hit(ray, 0.0, 1.0, |hit| counts(of(hit))))
+    }
+
+    /// Gives the triangles that stand still and may be in a box, some of them more than once.
+    pub(in crate::render) fn each_near(&self, bounds: Bounds, mut give: impl FnMut(u32)) {
+        let of = |triangle: u32| self.triangle_of.get(triangle as usize).copied().unwrap_or(triangle);
+        if let Some(octree) = &self.octree {
+            octree.each_near(bounds, |triangle| give(of(triangle)));
+        }
+    }
+
+    /// Whether nothing that counts may be met on ways from one box to another; false where that is not known.
+    pub(in crate::render) fn is_clear(&self, [from, to]: [Bounds; 2], counts: impl Fn(u32) -> bool) -> bool {
+        let of = |triangle: u32| self.triangle_of.get(triangle as usize).copied().unwrap_or(triangle);
+        let lamps = self.appearance.sources.iter().filter(|(_, source)| source.is_surface());
+        let mut lamps = lamps.filter_map(|(_, source)| source.place()?.ok());
+        self.moving.is_empty()
+            && !lamps.any(|lamp| Octree::may_stand_between(from, to, lamp))
+            && self.octree.as_ref().is_none_or(|octree| octree.is_clear(from, to, |triangle| counts(of(triangle))))
     }
 
     /// The part of light that comes along a way: nothing, if something opaque is in between.

@@ -17,6 +17,10 @@ const DEPTHS: [f64; 10] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0];
 /// Points of lights that the reference of scan line has for each of the finest setting.
 const MORE_POINTS: f64 = 2.0;
 
+/// The coarsest patches that are tried, and those of the reference, as parts of what the scene asks for.
+const COARSEST_PATCHES: f64 = 4.0;
+const BEST_PATCHES: f64 = 0.5;
+
 const BOTH: &[Technique] = &[Technique::RayTracing, Technique::ScanLine];
 const RAYS: &[Technique] = &[Technique::RayTracing];
 
@@ -193,6 +197,54 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         get: |setup| f64::from(u8::from(setup.settings.caustics)),
         set: |setup, value| setup.settings.caustics = value > 0.0,
     },
+    RenderKnob {
+        name: "radiosity_error",
+        sets: "error of the light that one pair of patches brings in radiosity, as a part of the mean irradiance",
+        techniques: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: no_radiosity,
+        values: |base| halved(base, COARSEST_PATCHES * base.settings().patch_error).collect(),
+        best: |base, _| base.settings().patch_error * BEST_PATCHES,
+        get: |setup| setup.settings.patch_error,
+        set: |setup, value| setup.settings.patch_error = value,
+    },
+    RenderKnob {
+        name: "radiosity_finest",
+        sets: "length below which patches are not divided in radiosity, as a part of the diagonal of the scene",
+        techniques: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: no_radiosity,
+        values: |base| halved(base, COARSEST_PATCHES * base.settings().finest_patch).collect(),
+        best: |base, _| base.settings().finest_patch * BEST_PATCHES,
+        get: |setup| setup.settings.finest_patch,
+        set: |setup, value| setup.settings.finest_patch = value,
+    },
+    RenderKnob {
+        name: "radiosity_directions",
+        sets: "directions in which each patch of radiosity looks around, by which form factors are balanced",
+        techniques: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: no_radiosity,
+        values: |base| doubled(base).map(|n| 4.0 * n).collect(),
+        best: |base, _| 4.0 * f64::from(base.settings().patch_directions),
+        get: |setup| f64::from(setup.settings.patch_directions),
+        set: |setup, value| setup.settings.patch_directions = value as u32,
+    },
+    RenderKnob {
+        name: "radiosity_tolerance",
+        sets: "error of the solver of radiosity, as a part of the greatest irradiance",
+        techniques: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: no_radiosity,
+        values: |base| (1..=base.options.settings as i32).map(|i| 10f64.powi(-i)).collect(),
+        best: |base, _| base.settings().patch_tolerance * 0.1,
+        get: |setup| setup.settings.patch_tolerance,
+        set: |setup, value| setup.settings.patch_tolerance = value,
+    },
 ];
 
 /// 1, 2, 4, ..., as many as are to be tried.
@@ -210,6 +262,10 @@ fn tolerances(base: &Base) -> impl Iterator<Item = f64> + use<> {
     let coarsest = base.largest_curved * COARSEST;
     // Triangles grow as the reciprocal: four settings and the reference span a factor of a thousand.
     (0..base.options.settings.min(5) as i32).map(move |i| coarsest / TOLERANCE_STEP.powi(i))
+}
+
+fn no_radiosity(base: &Base) -> Option<&'static str> {
+    base.lacks(Stage::Radiosity, "the scene has no light by radiosity")
 }
 
 fn curved(base: &Base) -> Option<&'static str> {

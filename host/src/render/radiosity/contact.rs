@@ -1,0 +1,250 @@
+//! Where surfaces touch or pass through each other: elements end there, so that none is partly inside of something.
+
+use super::hierarchy::normal_and_area;
+use super::sight::Sight;
+use crate::numeric::bounds::Bounds;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Surfaces touch that are nearer than this, in diagonals of the scene.
+const TOUCHING: f64 = 1e-7;
+
+/// Lines on triangles, each from one end to the other; the ends may lie beyond the triangle.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Contacts {
+    /// For each triangle of the scene; empty if there are none at all.
+    of: Vec<Vec<[DVec3; 2]>>,
+    tolerance: f64,
+}
+
+impl Contacts {
+    /// The lines on some triangles.
+    ///
+    /// - `takes_part`: whether a triangle is asked for.
+    pub(super) fn new(sight: &Sight<'_>, diagonal: f64, takes_part: impl Fn(u32) -> bool + Sync) -> Contacts {
+        let prepared = sight.world.appearance.prepared;
+        let tolerance = TOUCHING * diagonal;
+        let near = DVec3::splat(tolerance);
+        let lines = |triangle: u32| {
+            let mut lines: Vec<[DVec3; 2]> = Vec::new();
+            if takes_part(triangle) {
+                let own = prepared.corners(triangle);
+                let Bounds { min, max } = Bounds::of(own);
+                sight.world.each_near(Bounds { min: min - near, max: max + near }, |other| {
+                    if other != triangle {
+                        meeting(own, prepared.corners(other), tolerance, |line| lines.push(line));
+                    }
+                });
+                // The order in which they are found is none of theirs.
+                let key = |line: &[DVec3; 2]| line.map(|end| end.to_array().map(|x| x.to_bits()));
+                lines.sort_unstable_by_key(key);
+                lines.dedup();
+            }
+            lines
+        };
+        let of: Vec<Vec<[DVec3; 2]>> = (0..prepared.triangles.len() as u32).into_par_iter().map(lines).collect();
+        let is_any = of.iter().any(|lines| !lines.is_empty());
+        Contacts { of: if is_any { of } else { Vec::new() }, tolerance }
+    }
+
+    /// The lines on a triangle.
+    pub(super) fn on(&self, triangle: u32) -> &[[DVec3; 2]] {
+        self.of.get(triangle as usize).map_or(&[], |lines| lines)
+    }
+
+    /// Whether a line leads through the inside of a convex polygon.
+    pub(super) fn crosses(&self, line: &[DVec3; 2], polygon: &[DVec3], normal: DVec3) -> bool {
+        crosses(line, polygon, normal, self.tolerance)
+    }
+
+    /// Triangles of which a triangle consists that no line leads through.
+    pub(super) fn cut(&self, corners: [DVec3; 3], lines: &[[DVec3; 2]]) -> Vec<[DVec3; 3]> {
+        let normal = normal_and_area(corners).0;
+        let mut cells = vec![corners.to_vec()];
+        for line in lines {
+            let mut next = Vec::with_capacity(cells.len() + 2);
+            for cell in cells {
+                match self.crosses(line, &cell, normal).then(|| split(&cell, line, normal, self.tolerance)).flatten() {
+                    Some(halves) => next.extend(halves),
+                    None => next.push(cell),
+                }
+            }
+            cells = next;
+        }
+        cells.iter().flat_map(|cell| fan(cell)).collect()
+    }
+}
+
+/// Gives the lines in which a triangle meets another; all of its edges, if it lies in the plane.
+fn meeting(own: [DVec3; 3], other: [DVec3; 3], tolerance: f64, mut give: impl FnMut([DVec3; 2])) {
+    let (normal, area) = normal_and_area(own);
+    if area <= 0.0 {
+        return;
+    }
+    let heights = other.map(|corner| {
+        let height = (corner - own[0]).dot(normal);
+        if height.abs() <= tolerance { 0.0 } else { height }
+    });
+    let edges = [[0, 1], [1, 2], [2, 0]];
+    let mut put = |line: [DVec3; 2]| {
+        // The same line whichever triangle it comes from.
+        let [a, b] = line;
+        let line = if a.to_array() <= b.to_array() { [a, b] } else { [b, a] };
+        if crosses(&line, &own, normal, tolerance) {
+            give(line);
+        }
+    };
+    let on = heights.iter().filter(|height| **height == 0.0).count();
+    if on >= 2 {
+        for [i, j] in edges {
+            if heights[i] == 0.0 && heights[j] == 0.0 {
+                put([other[i], other[j]]);
+            }
+        }
+        return;
+    }
+    let mut ends = [DVec3::ZERO; 2];
+    let mut count = 0;
+    let mut add = |end: DVec3| {
+        if count < 2 {
+            ends[count] = end;
+        }
+        count += 1;
+    };
+    for [i, j] in edges {
+        if heights[i] == 0.0 {
+            add(other[i]);
+        }
+        if heights[i] * heights[j] < 0.0 {
+            add(between(other[i], other[j], heights[i], heights[j]));
+        }
+    }
+    if count == 2 {
+        put(ends);
+    }
+}
+
+/// The point between two at a height of 0; the same to the last bit in whichever order they come.
+fn between(a: DVec3, b: DVec3, low: f64, high: f64) -> DVec3 {
+    let (a, b, low, high) = if a.to_array() <= b.to_array() { (a, b, low, high) } else { (b, a, high, low) };
+    a + (b - a) * (low / (low - high))
+}
+
+fn crosses([from, to]: &[DVec3; 2], polygon: &[DVec3], normal: DVec3, tolerance: f64) -> bool {
+    let along = *to - *from;
+    let (mut begin, mut end) = (0.0f64, 1.0f64);
+    for i in 0..polygon.len() {
+        let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+        let inwards = normal.cross(b - a).normalize_or_zero();
+        // What runs along an edge divides nothing.
+        let (height, slope) = ((*from - a).dot(inwards) - tolerance, along.dot(inwards));
+        if slope.abs() <= f64::MIN_POSITIVE {
+            if height <= 0.0 {
+                return false;
+            }
+        } else if slope > 0.0 {
+            begin = begin.max(-height / slope);
+        } else {
+            end = end.min(-height / slope);
+        }
+    }
+    (end - begin) * along.length() > tolerance
+}
+
+/// Both parts of a convex polygon beside a line; none if one of them is next to nothing.
+fn split(polygon: &[DVec3], [from, to]: &[DVec3; 2], normal: DVec3, tolerance: f64) -> Option<[Vec<DVec3>; 2]> {
+    let across = normal.cross(*to - *from).try_normalize()?;
+    let heights: Vec<f64> = polygon
+        .iter()
+        .map(|corner| (*corner - *from).dot(across))
+        .map(|height| if height.abs() <= tolerance { 0.0 } else { height })
+        .collect();
+    let mut parts = [Vec::new(), Vec::new()];
+    for i in 0..polygon.len() {
+        let j = (i + 1) % polygon.len();
+        let (low, high) = (heights[i], heights[j]);
+        if low >= 0.0 {
+            parts[0].push(polygon[i]);
+        }
+        if low <= 0.0 {
+            parts[1].push(polygon[i]);
+        }
+        if low * high < 0.0 {
+            let point = between(polygon[i], polygon[j], low, high);
+            parts.iter_mut().for_each(|part| part.push(point));
+        }
+    }
+    parts.iter().all(|part| part.len() >= 3).then_some(parts)
+}
+
+/// Triangles of which a convex polygon consists, about the corner that makes the least slender.
+fn fan(polygon: &[DVec3]) -> Vec<[DVec3; 3]> {
+    let count = polygon.len();
+    let about = |first: usize| {
+        let corner = move |i: usize| polygon[(first + i) % count];
+        (1..count - 1).map(move |i| [corner(0), corner(i), corner(i + 1)])
+    };
+    let shape = |[a, b, c]: [DVec3; 3]| {
+        let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        (b - a).cross(c - a).length() / longest
+    };
+    let worst = |first: usize| about(first).map(shape).fold(f64::INFINITY, f64::min);
+    let best = (0..count).max_by(|a, b| worst(*a).total_cmp(&worst(*b)).then(b.cmp(a))).unwrap_or(0);
+    about(best).filter(|corners| normal_and_area(*corners).1 > 0.0).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FLOOR: [DVec3; 3] = [DVec3::ZERO, DVec3::new(4.0, 0.0, 0.0), DVec3::new(0.0, 4.0, 0.0)];
+
+    fn lines(other: [DVec3; 3]) -> Vec<[DVec3; 2]> {
+        let mut found = Vec::new();
+        meeting(FLOOR, other, 1e-9, |line| found.push(line));
+        found
+    }
+
+    #[test]
+    fn triangles_that_touch_cross_or_lie_on_each_other_meet_in_lines_and_others_in_none() {
+        let at = DVec3::new;
+        let wall = [at(1.0, 1.0, 0.0), at(2.0, 1.0, 0.0), at(1.0, 1.0, 3.0)];
+        assert_eq!(lines(wall), [[wall[0], wall[1]]]);
+        let through = [at(1.0, 1.0, -1.0), at(2.0, 1.0, -1.0), at(1.0, 1.0, 1.0)];
+        assert_eq!(lines(through), [[at(1.0, 1.0, 0.0), at(1.5, 1.0, 0.0)]]);
+        let flat = [at(1.0, 1.0, 0.0), at(1.0, 1.5, 0.0), at(1.5, 1.0, 0.0)];
+        assert_eq!(lines(flat).len(), 3);
+        let nothing = [
+            [at(1.0, 1.0, 0.1), at(2.0, 1.0, 0.1), at(1.0, 1.0, 3.0)],
+            // On a corner, along an edge, beside it.
+            [at(1.0, 1.0, 0.0), at(2.0, 1.0, 1.0), at(1.0, 1.0, 3.0)],
+            [at(1.0, 0.0, 0.0), at(2.0, 0.0, 0.0), at(1.0, 0.0, 3.0)],
+            [at(3.0, 3.0, 0.0), at(3.5, 3.0, 0.0), at(3.0, 3.0, 3.0)],
+        ];
+        nothing.into_iter().for_each(|other| assert!(lines(other).is_empty(), "{other:?}"));
+    }
+
+    #[test]
+    fn parts_of_a_cut_triangle_are_all_of_it_and_no_line_leads_through_one() {
+        let contacts = Contacts { of: Vec::new(), tolerance: 1e-9 };
+        let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+        let foot = [at(0.5, 0.5), at(1.7, 0.6), at(1.6, 1.6), at(0.4, 1.5)];
+        let lines: Vec<[DVec3; 2]> = (0..4).map(|i| [foot[i], foot[(i + 1) % 4]]).collect();
+        let parts = contacts.cut(FLOOR, &lines);
+        let area: f64 = parts.iter().map(|part| normal_and_area(*part).1).sum();
+        assert!((area - 8.0).abs() < 1e-9, "{area}");
+        for part in &parts {
+            assert!(normal_and_area(*part).0.z > 0.99, "it faces the same way");
+            assert!(lines.iter().all(|line| !contacts.crosses(line, part, DVec3::Z)));
+        }
+        let is_in = |point: DVec3| lines.iter().all(|[a, b]| (*b - *a).cross(point - *a).z > 0.0);
+        let inside: f64 = parts
+            .iter()
+            .filter(|part| is_in((part[0] + part[1] + part[2]) / 3.0))
+            .map(|part| normal_and_area(*part).1)
+            .sum();
+        let [a, b, c, d] = foot;
+        let exact = 0.5 * ((c - a).cross(d - b)).z.abs();
+        assert!((inside - exact).abs() < 1e-9, "{inside} {exact}");
+    }
+}
