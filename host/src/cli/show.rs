@@ -96,6 +96,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Solves for the light of all surfaces.
 fn solve(scene: &Scene, arguments: &Arguments) -> Result<Tiling, Failure> {
+    super::warn_of_darkness(scene);
     let progress = Progress::new("radiosity", arguments.json);
     let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
     let light = tiling(scene, arguments.threads, &watch);

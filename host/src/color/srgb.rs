@@ -37,7 +37,10 @@ pub fn from_xyz(xyz: DVec3) -> DVec3 {
 /// # Source
 /// IEC 61966-2-1.
 pub fn encoded(rgb: DVec3) -> DVec3 {
-    let encode = |light: f64| if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+    let power = |light: f64| light.powf(1.0 / 2.4);
+    // 1.055 p - 0.055, which is 1 where p is.
+    let curved = |power: f64| power + 0.055 * (power - 1.0);
+    let encode = |light: f64| if light <= 0.003_130_8 { 12.92 * light } else { curved(power(light)) };
     // Written so that NaN becomes 0.
     DVec3::from(rgb.to_array().map(|light| if light > 0.0 { encode(light.min(1.0)) } else { 0.0 }))
 }

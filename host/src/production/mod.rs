@@ -18,9 +18,11 @@ use protocol::address::Address;
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-/// Corners of the tiles that show a solution by radiosity, unless the scene has more triangles: the machine takes a
-/// million, and shades so many in a fraction of a second.
+/// Corners of the tiles that show a solution by radiosity, unless the scene has more triangles: the machine shades so many
+/// within a second.
 const MOST_CORNERS: usize = 200_000;
+/// Corners that the machine renders at all.
+const MOST_RENDERED: usize = 1_000_000;
 
 /// Why the main job failed.
 #[derive(Debug, thiserror::Error)]
@@ -173,15 +175,22 @@ impl Production {
 /// - `threads`: as in [`Order`].
 ///
 /// # Errors
-/// [`ProductionError`].
+/// [`ProductionError`]; more polygons than the machine renders are one.
 pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -> Result<Tiling, ProductionError> {
     let mut prepared = Prepared::new(scene)?;
     // Surfaces out of view send light, too, and come into view.
     prepared.settings.interreflection = true;
     let plan = Plan::new(&prepared, &prepared.view());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, |n| n.get())).build();
-    Ok(pool.map_err(RenderError::from)?.install(|| {
+    let tiling = pool.map_err(RenderError::from)?.install(|| {
         let solution = Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, watch)?;
         Tiling::new(&solution, &prepared, &plan, MOST_CORNERS)
-    })?)
+    })?;
+    match tiling.corners() {
+        corners if corners > MOST_RENDERED => {
+            let problem = format!("its polygons have {corners} corners; the machine renders {MOST_RENDERED} at most");
+            Err(WorkstationError::Scene(problem).into())
+        }
+        _ => Ok(tiling),
+    }
 }

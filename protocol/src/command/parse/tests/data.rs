@@ -114,7 +114,7 @@ fn polygons_have_3_to_250_vertices() {
     assert_eq!(message("POLYGON;"), "1:8: expected a vertex or COPLANAR, found `;`");
     assert_eq!(message("POLYGON 1,2 3,4;"), "1:14: a polygon has at least 3 vertices, found `,`");
     assert!(message("POLYGON 0,0,0 N 1,0,0 1,0,0 1,1,0;").starts_with("1:29: give a normal for each vertex"));
-    assert!(message("POLYGON 0,0,0 C 120 1,0,0 1,1,0;").starts_with("1:26: give a color for each vertex"));
+    assert!(message("POLYGON 0,0,0 C 120 1,0,0 1,1,0;").starts_with("1:27: give a color for each vertex"));
     assert!(message("WITH MAT OUTLINE 3;").starts_with("1:19: expected POLYGON, WITH or OUTLINE"));
 }
 
