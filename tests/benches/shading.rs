@@ -47,7 +47,7 @@ fn large(count: usize) -> Vec<Polygon> {
     let polygon = |k: usize| {
         let z = k as f32 / count as f32;
         let corners = [[-0.9, -0.9, z], [-0.9 + 0.2 * z, 0.9, z], [0.9, -0.9 + 0.3 * z, z]];
-        let vertices = corners.map(|position| PolygonVertex { soft: false, position, normal: None });
+        let vertices = corners.map(|position| PolygonVertex { soft: false, position, normal: None, color: None });
         Polygon { attributes: None, outline: None, coplanar: false, vertices: vertices.to_vec() }
     };
     (0..count).rev().map(polygon).collect()

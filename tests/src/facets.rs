@@ -17,7 +17,7 @@ use ps340::{
 pub fn polygons(mesh: &Mesh, soft: bool) -> Vec<Polygon> {
     let vertex = |p: DVec3| {
         let position = DVec3::new(p.x, p.y, -p.z).as_vec3().to_array();
-        PolygonVertex { soft, position, normal: None }
+        PolygonVertex { soft, position, normal: None, color: None }
     };
     let triangle = |k: usize| {
         let [a, b, c] = mesh.corners(k);

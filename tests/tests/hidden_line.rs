@@ -223,7 +223,8 @@ fn check(polygons: &[Polygon], lines: &[Segment], from: DVec3) -> Counts {
 fn cube() -> Vec<Polygon> {
     let at = |corner: usize| [0, 1, 2].map(|axis| if corner >> axis & 1 == 1 { 0.7 } else { -0.7 });
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 4, 6, 2], [1, 3, 7, 5], [2, 6, 7, 3], [0, 1, 5, 4]];
-    let vertices = |face: &[usize; 4]| face.map(|k| PolygonVertex { soft: false, position: at(k), normal: None });
+    let vertices =
+        |face: &[usize; 4]| face.map(|k| PolygonVertex { soft: false, position: at(k), normal: None, color: None });
     let polygon = |face: &[usize; 4]| vertices(face).to_vec();
     let polygons = faces.iter().map(polygon);
     polygons.map(|vertices| Polygon { attributes: None, outline: None, coplanar: false, vertices }).collect()

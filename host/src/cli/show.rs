@@ -1,9 +1,9 @@
 //! `peris show`: a scene on a workstation, with dials and keys, until someone ends it.
 
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
+use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
 use crate::{
-    production::{Production, ProductionError, Sent},
-    render::{Order, Watch},
+    production::{Production, ProductionError, Sent, tiling},
+    render::{Order, Watch, tiles::Tiling},
     scene::Scene,
     workstation::{
         Drawing, Emulator, Lines, WorkstationError,
@@ -50,6 +50,10 @@ struct Arguments {
     /// sends FIX(1) to FIX(8) to <1>PERIS.SHADE, such as FIX(4), hidden lines, and FIX(8), Phong
     #[arg(long)]
     facets: bool,
+    /// Solves for the light that goes from diffuse surface to diffuse surface, and sends it as colours at the corners of
+    /// polygons beside the vectors; the machine shades them on its raster screen whenever the dials have stood still
+    #[arg(long, conflicts_with = "facets")]
+    radiosity: bool,
     /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
     #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::part)]
     tolerance: f64,
@@ -70,6 +74,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         facets: arguments.facets,
     };
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
+    let light = if arguments.radiosity { Some(solve(&scene, arguments)?) } else { None };
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
         None => {
@@ -78,16 +83,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             (Some(emulator), line)
         }
     };
-    let mut production = Production::begin(&scene, &line, &drawing)?;
-    let sent = production.sent();
-    let Sent { lines, points, seconds } = sent;
-    if arguments.json {
-        let line = line.to_string();
-        let known = serde_json::json!({ "line": line, "vectors": lines, "points": points, "seconds": seconds });
-        say!("{known}");
-    } else {
-        say!("{lines} vectors ({points} points) shown on {line} after {seconds:.3} s");
-    }
+    let mut production = Production::lit(&scene, &line, &drawing, light.as_ref())?;
+    report(arguments, &line, production.sent(), light.as_ref());
     if arguments.once {
         return Ok(());
     }
@@ -95,6 +92,38 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         say!("key {number}: {label}");
     }
     serve(&mut production, &mut emulator, &scene, arguments.threads)
+}
+
+/// Solves for the light of all surfaces.
+fn solve(scene: &Scene, arguments: &Arguments) -> Result<Tiling, Failure> {
+    super::warn_of_darkness(scene);
+    let progress = Progress::new("radiosity", arguments.json);
+    let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
+    let light = tiling(scene, arguments.threads, &watch);
+    progress.finish();
+    Ok(light?)
+}
+
+/// Says what was sent.
+fn report(arguments: &Arguments, line: &Address, sent: Sent, light: Option<&Tiling>) {
+    let Sent { lines, points, seconds } = sent;
+    let light = light.map(|light| (light.elements, light.tiles.len(), light.corners(), light.tolerance));
+    if arguments.json {
+        let light = light.map(|(elements, polygons, corners, tolerance)| {
+            serde_json::json!({ "elements": elements, "polygons": polygons, "corners": corners, "tolerance": tolerance })
+        });
+        let line = line.to_string();
+        let known =
+            serde_json::json!({ "line": line, "vectors": lines, "points": points, "light": light, "seconds": seconds });
+        return say!("{known}");
+    }
+    say!("{lines} vectors ({points} points) shown on {line} after {seconds:.3} s");
+    if let Some((elements, polygons, corners, tolerance)) = light {
+        let steps = tolerance * 255.0;
+        say!(
+            "the light of {elements} elements as {polygons} polygons ({corners} corners), {steps:.1} of 255 off at most"
+        );
+    }
 }
 
 /// Carries out keys of the workstation and, if it is ours, orders from standard input.

@@ -32,9 +32,33 @@ pub fn from_xyz(xyz: DVec3) -> DVec3 {
     MATRICES[1] * xyz
 }
 
+/// Linear sRGB as displays get it, each part held within 0..=1.
+///
+/// # Source
+/// IEC 61966-2-1.
+pub fn encoded(rgb: DVec3) -> DVec3 {
+    let power = |light: f64| light.powf(1.0 / 2.4);
+    // 1.055 p - 0.055, which is 1 where p is.
+    let curved = |power: f64| power + 0.055 * (power - 1.0);
+    let encode = |light: f64| if light <= 0.003_130_8 { 12.92 * light } else { curved(power(light)) };
+    // Written so that NaN becomes 0.
+    DVec3::from(rgb.to_array().map(|light| if light > 0.0 { encode(light.min(1.0)) } else { 0.0 }))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn encoded_light_rounds_to_the_bytes_of_pictures() {
+        for step in -10..=4200 {
+            let light = f64::from(step) / 4096.0;
+            let byte = protocol::raster::srgb_from_linear(light as f32);
+            let encoded = encoded(DVec3::splat(light)).x;
+            assert!((encoded * 255.0 - f64::from(byte)).abs() <= 0.5 + 1e-4, "{light}: {encoded} {byte}");
+        }
+        assert_eq!(encoded(DVec3::new(f64::NAN, f64::INFINITY, 1.0)), DVec3::new(0.0, 1.0, 1.0));
+    }
 
     #[test]
     fn white_is_d65_and_comes_back() {

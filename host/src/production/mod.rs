@@ -7,13 +7,22 @@ pub use closed_form::{difference, view_of_dials};
 use crate::{
     picture::Picture,
     plan::Plan,
-    render::{Order, RenderError, Renderer, Rendering, Watch, ray_tracing::RayTracer},
+    render::{
+        Order, RenderError, Renderer, Rendering, Watch, radiosity::Radiosity, ray_tracing::RayTracer, tiles::Tiling,
+    },
     scene::{Prepared, Projection, Scene, SceneError, View},
-    workstation::{Drawing, Session, WorkstationError, network, raster, structure},
+    workstation::{Drawing, Session, WorkstationError, network, raster, structure, tiles},
 };
 use glam::{DMat4, DVec3};
 use protocol::address::Address;
+use std::num::NonZeroUsize;
 use std::time::Instant;
+
+/// Corners of the tiles that show a solution by radiosity, unless the scene has more triangles: the machine shades so many
+/// within a second.
+const MOST_CORNERS: usize = 200_000;
+/// Corners that the machine renders at all.
+const MOST_RENDERED: usize = 1_000_000;
 
 /// Why the main job failed.
 #[derive(Debug, thiserror::Error)]
@@ -35,6 +44,7 @@ pub struct Production {
     prepared: Prepared,
     session: Session,
     depth_clipping: bool,
+    is_lit: bool,
     sent: Sent,
 }
 
@@ -66,13 +76,33 @@ impl Production {
     /// # Errors
     /// [`ProductionError`].
     pub fn begin(scene: &Scene, line: &Address, drawing: &Drawing) -> Result<Production, ProductionError> {
+        Production::lit(scene, line, drawing, None)
+    }
+
+    /// As [`Production::begin`], and with the light of a solution, which the workstation shades whenever the dials have
+    /// stood still for a while.
+    ///
+    /// # Errors
+    /// [`ProductionError`].
+    pub fn lit(
+        scene: &Scene,
+        line: &Address,
+        drawing: &Drawing,
+        light: Option<&Tiling>,
+    ) -> Result<Production, ProductionError> {
         let prepared = Prepared::new(scene)?;
         let start = Instant::now();
         let mut session = Session::attach(line)?;
-        let shown = structure::commands(scene, &prepared.camera, &prepared.bounds, drawing)?;
+        let shown = structure::with_light(scene, &prepared.camera, &prepared.bounds, drawing, light)?;
         session.show(&shown, prepared.bounds.diagonal().max(f64::MIN_POSITIVE))?;
+        if light.is_some() {
+            session.commands(&tiles::settings(prepared.background))?;
+            session.commands(&network::shading())?;
+            session.synchronize()?;
+        }
         let sent = Sent { lines: shown.lines, points: shown.points, seconds: start.elapsed().as_secs_f64() };
-        Ok(Production { prepared, session, depth_clipping: shown.depth_clipping, sent })
+        let (depth_clipping, is_lit) = (shown.depth_clipping, light.is_some());
+        Ok(Production { prepared, session, depth_clipping, is_lit, sent })
     }
 
     /// The scene as it is rendered.
@@ -133,6 +163,34 @@ impl Production {
     /// [`ProductionError::Workstation`].
     pub fn reset(&mut self) -> Result<(), ProductionError> {
         self.session.commands(&network::reset())?;
+        if self.is_lit {
+            self.session.commands(&network::shade())?;
+        }
         Ok(self.session.synchronize()?)
+    }
+}
+
+/// Solves for the light of a scene by radiosity, as tiles for [`Production::lit`].
+///
+/// - `threads`: as in [`Order`].
+///
+/// # Errors
+/// [`ProductionError`]; more polygons than the machine renders are one.
+pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -> Result<Tiling, ProductionError> {
+    let mut prepared = Prepared::new(scene)?;
+    // Surfaces out of view send light, too, and come into view.
+    prepared.settings.interreflection = true;
+    let plan = Plan::new(&prepared, &prepared.view());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, |n| n.get())).build();
+    let tiling = pool.map_err(RenderError::from)?.install(|| {
+        let solution = Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, watch)?;
+        Tiling::new(&solution, &prepared, &plan, MOST_CORNERS)
+    })?;
+    match tiling.corners() {
+        corners if corners > MOST_RENDERED => {
+            let problem = format!("its polygons have {corners} corners; the machine renders {MOST_RENDERED} at most");
+            Err(WorkstationError::Scene(problem).into())
+        }
+        _ => Ok(tiling),
     }
 }

@@ -10,6 +10,7 @@ mod ready;
 pub mod radiosity;
 pub mod ray_tracing;
 pub mod scan_line;
+pub mod tiles;
 mod state;
 
 pub use film::{ByClass, Class, Film, LUMINANCE, Sample, Tally};

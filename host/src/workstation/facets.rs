@@ -61,6 +61,7 @@ pub fn polygons(
             soft: soft[(k + 2) % 3],
             position: corners[k],
             normal: normals.map(|normals| normals[k]),
+            color: None,
         };
         let group = group_of.get(triangle).map_or(0, |group| *group as usize);
         let attributes = groups[group].is_empty().then(|| name(&attributes[group]));

@@ -7,6 +7,7 @@ pub mod network;
 pub mod raster;
 pub mod session;
 pub mod structure;
+pub mod tiles;
 
 pub use emulator::Emulator;
 pub use error::WorkstationError;

@@ -21,6 +21,13 @@ pub const KEY_PREFIX: &str = "KEY ";
 /// The function that answers with the matrix of the view when it gets TRUE at `<1>`.
 pub const VIEW_TRIGGER: &str = "PERIS_VIEW";
 
+/// The function that asks for a shaded picture when no message came for a while.
+const QUIET: &str = "PERIS_QUIET";
+/// How long dials stand still before the picture is shaded, hundredths of a second.
+const QUIET_CENTISECONDS: i32 = 30;
+/// The rendering that takes colours as they are.
+const WASH_SHADED: i32 = 5;
+
 /// What the function keys do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
@@ -118,6 +125,30 @@ pub fn commands(diagonal: f64) -> Vec<Command> {
     build.connect("PERIS_LIST", 1, 1, "PERIS_PRINT");
     build.connect("PERIS_PRINT", 1, 1, "HOST_MESSAGE");
     build.commands
+}
+
+/// Shades the light of a solution on the raster screen when the dials have stood still for a while: the vectors turn with
+/// them, the picture follows. The vector screen goes on when a picture is done.
+pub fn shading() -> Vec<Command> {
+    let mut build = Build::default();
+    build.function(QUIET, "TIMEOUT");
+    build.send(Value::Integer(QUIET_CENTISECONDS), 2, QUIET);
+    build.send(Value::Integer(WASH_SHADED), 3, QUIET);
+    build.connect(QUIET, 1, 1, &format!("{ROOT}.SHADE"));
+    for dial in 1..8 {
+        build.connect("DIALS", dial, 1, QUIET);
+    }
+    build.function("PERIS_SHOWN", "CONSTANT");
+    build.send(Value::Integer(0), 2, "PERIS_SHOWN");
+    build.connect(&format!("{ROOT}.SHADE"), 1, 1, "PERIS_SHOWN");
+    build.connect("PERIS_SHOWN", 1, 1, "TURNONDISPLAY");
+    build.commands.extend(shade());
+    build.commands
+}
+
+/// Asks for a picture of the light of a solution.
+pub fn shade() -> Vec<Command> {
+    vec![send(Value::Boolean(true), 1, QUIET)]
 }
 
 /// Puts the dials back to where they began: the accumulators first, then a delta of nothing, which makes the

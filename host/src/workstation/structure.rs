@@ -7,18 +7,20 @@ use super::{
     WorkstationError,
     facets::{self, mirrored},
     network::name,
+    tiles,
 };
 use crate::{
     illumination::Material,
     mesh::{Eye, Polylines, Selection, polylines_of_groups},
     numeric::bounds::Bounds,
+    render::tiles::Tiling,
     scene::{Camera, Object, Scene, Settings},
     surface::Tolerance,
 };
 use glam::{DAffine3, DVec3};
 use protocol::{
     Name,
-    command::{Axis, Boundaries, Command, NamePattern, Object as Node, Operate, VectorClass, VectorList},
+    command::{Axis, Boundaries, Command, NamePattern, Object as Node, Operate, Scopes, VectorClass, VectorList},
 };
 
 /// The name of the structure.
@@ -93,6 +95,21 @@ pub fn elongation(settings: &Settings) -> f64 {
 /// # Errors
 /// [`WorkstationError::Scene`], if the camera cannot see or an object cannot be tessellated.
 pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawing) -> Result<Shown, WorkstationError> {
+    with_light(scene, camera, bounds, drawing, None)
+}
+
+/// As [`commands`], and the light of a solution by radiosity, which the node `SHADE` shades on the raster screen when it
+/// gets FIX(5); its polygons are not drawn as vectors.
+///
+/// # Errors
+/// As [`commands`].
+pub fn with_light(
+    scene: &Scene,
+    camera: &Camera,
+    bounds: &Bounds,
+    drawing: &Drawing,
+    light: Option<&Tiling>,
+) -> Result<Shown, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(e);
     camera.check().map_err(|e| failed(e.to_string()))?;
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
@@ -102,8 +119,9 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
         .zip(&scene.objects)
         .map(|(number, object)| data(number, object, angle, camera, drawing, &mut shown))
         .collect();
-    if drawing.facets {
-        let bytes = u32::try_from(shown.points as u64 * BYTES_PER_VERTEX).unwrap_or(u32::MAX);
+    let shaded = if drawing.facets { shown.points } else { light.map_or(0, Tiling::corners) };
+    if shaded > 0 {
+        let bytes = u32::try_from(shaded as u64 * BYTES_PER_VERTEX).unwrap_or(u32::MAX);
         shown.commands.push(Command::ReserveWorkingStorage(bytes));
     }
     begin(&mut shown.commands, ROOT);
@@ -124,6 +142,12 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
             shown.commands.push(Command::Define { name: Some(name(&node)), object: data });
         }
         shown.commands.push(Command::EndStructure);
+    }
+    if let Some(light) = light {
+        operate(&mut shown.commands, None, Operate::SetDisplays { scopes: Scopes::All, on: false });
+        operate(&mut shown.commands, Some("SHADE"), Operate::SurfaceRendering);
+        let polygons = tiles::polygons(light)?;
+        shown.commands.extend(polygons.into_iter().map(|object| Command::Define { name: None, object }));
     }
     shown.commands.push(Command::EndStructure);
     shown.commands.push(Command::Display(name(ROOT)));

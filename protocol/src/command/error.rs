@@ -67,6 +67,9 @@ pub enum Problem {
     /// Normals at some vertices of a polygon only.
     #[error("give a normal for each vertex of a polygon, or for none")]
     MixedNormals,
+    /// Colours at some vertices of a polygon only.
+    #[error("give a color for each vertex of a polygon, or for none")]
+    MixedColors,
     /// Too many vertices or knots of a curve.
     #[error("a curve has at most {} vertices", Bspline::MAX_VERTICES)]
     LongCurve,

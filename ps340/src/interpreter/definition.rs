@@ -208,6 +208,10 @@ fn check_polygons(polygons: &[Polygon]) -> Result<(), String> {
         if normals != 0 && normals != vertices {
             return Err(format!("polygon {number} has a normal at {normals} of its {vertices} vertices"));
         }
+        let colors = polygon.vertices.iter().filter(|v| v.color.is_some()).count();
+        if colors != 0 && colors != vertices {
+            return Err(format!("polygon {number} has a color at {colors} of its {vertices} vertices"));
+        }
     }
     Ok(())
 }

@@ -11,7 +11,7 @@
 
 use super::{
     RenderingFault,
-    surface::{Light, Surface},
+    surface::{self, Light, Surface},
     triangulate::triangulate,
 };
 use crate::{
@@ -56,6 +56,8 @@ pub struct Corner {
     pub normal: Option<DVec3>,
     /// Whether the edge that ends here is soft.
     pub soft: bool,
+    /// Red, green and blue, 0..=1, that were given with it for the front and the reverse of the face.
+    pub colors: Option<[[f32; 3]; 2]>,
 }
 
 /// A polygon with the contours that belong to it.
@@ -141,6 +143,8 @@ pub struct Facets {
     pub edges: Vec<Edge>,
     /// What surfaces look like.
     pub surfaces: Vec<Surface>,
+    /// Whether corners have colours of their own.
+    pub is_colored: bool,
     /// Ways in which they are seen.
     pub views: Vec<View>,
     /// Lights, at least one.
@@ -259,7 +263,10 @@ impl Builder {
         for vertex in &polygon.vertices {
             let normal = vertex.normal.and_then(|n| (frame.normals * DVec3::from(n.map(f64::from))).try_normalize());
             let Some(point) = self.point(frame, view, vertex.position.map(f64::from)) else { return false };
-            self.facets.corners.push(Corner { point, normal, soft: vertex.soft });
+            let rgb = |color: [f32; 3]| surface::rgb(color.map(f64::from)).map(|part| part as f32);
+            let colors = vertex.color.map(|color| [color.front, color.back.unwrap_or(color.front)].map(rgb));
+            self.facets.is_colored |= colors.is_some();
+            self.facets.corners.push(Corner { point, normal, soft: vertex.soft, colors });
         }
         let corners = &mut self.facets.corners;
         let (mut end, mut before) = (begin, corners.last().map(|corner| corner.point));

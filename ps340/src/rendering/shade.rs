@@ -6,6 +6,9 @@
 //! in space, made of length 1, and the light of each. Depth cueing takes the light by 1 - cue d, d from 0 at the front
 //! boundary to 1 at the back; then comes the exposure, and what is above 1 is 1.
 //!
+//! Colours that are given with the corners stand for that of the surface: wash and Phong take them evenly in space between
+//! the corners, flat their mean, Gouraud lights each corner in its own.
+//!
 //! A side that shows its reverse is lit there. Places that no polygon covers have the colour of the background, and so
 //! has the uncovered part of a pixel at an edge.
 
@@ -15,7 +18,7 @@ use super::{
     normals::corner_normals,
     project::project,
     scan::Scan,
-    surface::{light, rgb},
+    surface::{Surface, light, rgb},
 };
 use crate::{functions::devices::shading::ShadingEnvironment, port::Rendering};
 use glam::{DMat3, DVec3, DVec4};
@@ -34,7 +37,7 @@ pub struct Shading {
 struct Lit {
     facets: Facets,
     kind: Rendering,
-    /// Of each face for wash and flat, of each corner for Gouraud.
+    /// Of each face for wash and flat, of each corner for Gouraud and for wash in colours of corners.
     colors: Vec<[f64; 3]>,
     /// Of each corner for Gouraud and Phong.
     normals: Vec<DVec3>,
@@ -89,30 +92,53 @@ impl Lit {
         let facets = &self.facets;
         let faces = facets.faces.iter();
         self.colors = match self.kind {
+            Rendering::Wash if facets.is_colored => {
+                corners(facets).map(|(corner, face)| self.corner_color(face, corner).into()).collect()
+            }
             Rendering::Wash => faces.map(|face| self.surface(face).color).collect(),
-            Rendering::Flat => faces.map(|face| self.light(face, face.normal, face.center)).collect(),
-            Rendering::Gouraud => faces
-                .flat_map(|face| face.corners.clone().map(move |corner| (corner, face)))
+            Rendering::Flat => faces.map(|face| self.flat(face)).collect(),
+            Rendering::Gouraud => corners(facets)
                 .map(|(corner, face)| {
                     let point = &facets.points[facets.corners[corner].point as usize];
-                    self.light(face, self.normals[corner], point.eye)
+                    self.light(face, self.normals[corner], point.eye, self.corner_color(face, corner))
                 })
                 .collect(),
             _ => Vec::new(),
         };
     }
 
-    fn surface(&self, face: &Face) -> &super::surface::Surface {
+    /// The side of a face that is seen.
+    fn surface(&self, face: &Face) -> &Surface {
         &self.facets.surfaces[face.surfaces[usize::from(!face.toward)] as usize]
+    }
+
+    /// The colour of the side that is seen at a corner of a face.
+    fn corner_color(&self, face: &Face, corner: usize) -> DVec3 {
+        match self.facets.corners[corner].colors {
+            Some(sides) => sides[usize::from(!face.toward)].map(f64::from).into(),
+            None => self.surface(face).color.into(),
+        }
+    }
+
+    /// The one light of a face, in the mean of the colours of its corners if they have some.
+    fn flat(&self, face: &Face) -> [f64; 3] {
+        let mut color = self.surface(face).color.into();
+        if self.facets.is_colored {
+            let sum: DVec3 = face.corners.clone().map(|corner| self.corner_color(face, corner)).sum();
+            color = sum / face.corners.len() as f64;
+        }
+        self.light(face, face.normal, face.center, color)
     }
 
     /// The light of a place on a face.
     ///
     /// - `normal`: towards the front.
-    fn light(&self, face: &Face, normal: DVec3, place: DVec3) -> [f64; 3] {
+    /// - `color`: of the surface there.
+    fn light(&self, face: &Face, normal: DVec3, place: DVec3, color: DVec3) -> [f64; 3] {
         let normal = if face.toward { normal } else { -normal };
         let eye = toward_eye(self.facets.views[face.view as usize].eye, place).normalize_or_zero();
-        light(self.surface(face), &self.facets.lights, normal, eye, self.ambient, self.highlights)
+        let surface = Surface { color: color.into(), ..*self.surface(face) };
+        light(&surface, &self.facets.lights, normal, eye, self.ambient, self.highlights)
     }
 
     /// Red, green and blue of a triangle at a place on the vector screen.
@@ -125,11 +151,18 @@ impl Lit {
         let shares = shares(points.map(|p| p.clip), [view.horizontal, view.vertical], place);
         let mix = |of: [DVec3; 3]| of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2];
         let color = match self.kind {
-            Rendering::Wash | Rendering::Flat => self.colors[triangle.face as usize],
-            Rendering::Gouraud => mix(triangle.corners.map(|corner| self.colors[corner as usize].into())).to_array(),
+            Rendering::Flat => self.colors[triangle.face as usize],
+            Rendering::Wash if !facets.is_colored => self.colors[triangle.face as usize],
+            Rendering::Wash | Rendering::Gouraud => {
+                mix(triangle.corners.map(|corner| self.colors[corner as usize].into())).to_array()
+            }
             _ => {
                 let normal = mix(triangle.corners.map(|corner| self.normals[corner as usize]));
-                self.light(face, normal.normalize_or(face.normal), mix(points.map(|p| p.eye)))
+                let color = match facets.is_colored {
+                    true => mix(triangle.corners.map(|corner| self.corner_color(face, corner as usize))),
+                    false => self.surface(face).color.into(),
+                };
+                self.light(face, normal.normalize_or(face.normal), mix(points.map(|p| p.eye)), color)
             }
         };
         let sum = |part: fn(&DVec4) -> f64| (0..3).map(|k| part(&points[k].clip) * shares[k]).sum::<f64>();
@@ -138,6 +171,11 @@ impl Lit {
         let gain = self.exposure * (1.0 - self.depth_cue * depth);
         color.map(|part| (part * gain).clamp(0.0, 1.0) as f32)
     }
+}
+
+/// The corners of all faces, in their order.
+fn corners(facets: &Facets) -> impl Iterator<Item = (usize, &Face)> {
+    facets.faces.iter().flat_map(|face| face.corners.clone().map(move |corner| (corner, face)))
 }
 
 /// How much each corner of a triangle counts, in space, at a place on the vector screen; together 1.

@@ -104,6 +104,42 @@ impl Patch {
         }
     }
 
+    /// Polygons that stand for it, each counter-clockwise seen from where it emits to.
+    ///
+    /// - `sides`: of a round one, 3 and more.
+    pub fn polygons(&self, sides: usize) -> Vec<Vec<DVec3>> {
+        let turn = |k: usize| (TAU * (k % sides) as f64 / sides as f64).sin_cos();
+        match *self {
+            Patch::Rectangle { corner, across, up } => {
+                vec![vec![corner, corner + across, corner + across + up, corner + up]]
+            }
+            Patch::Disc { center, radius, .. } => {
+                let normal = self.normal().unwrap_or(DVec3::Y);
+                let across = normal.any_orthonormal_vector();
+                let up = normal.cross(across);
+                let point = |k: usize| center + (across * turn(k).1 + up * turn(k).0) * radius;
+                vec![(0..sides).map(point).collect()]
+            }
+            Patch::Sphere { center, radius } => {
+                let rows = sides.div_ceil(2);
+                let point = |row: usize, k: usize| {
+                    let (sin, cos) = (PI * row as f64 / rows as f64).sin_cos();
+                    let (sin, cos) = if row == rows { (0.0, -1.0) } else { (sin, cos) };
+                    center + DVec3::new(sin * turn(k).1, cos, -sin * turn(k).0) * radius
+                };
+                let cell = |row: usize, k: usize| {
+                    let mut corners = vec![point(row, k), point(row + 1, k), point(row + 1, k + 1), point(row, k + 1)];
+                    corners.dedup();
+                    if corners.first() == corners.last() {
+                        corners.pop();
+                    }
+                    corners
+                };
+                (0..rows).flat_map(|row| (0..sides).map(move |k| (row, k))).map(|(row, k)| cell(row, k)).collect()
+            }
+        }
+    }
+
     /// The flat ones' normal.
     fn normal(&self) -> Option<DVec3> {
         match *self {

@@ -250,3 +250,33 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     assert_eq!(ahead.sky(DVec3::new(0.1, 0.1, -1.0).normalize(), None, 0).expect("a sky").radiance.0[0], pixel(4, 1));
     assert_eq!(ahead.sky(DVec3::new(1.0, 0.1, -0.1).normalize(), None, 0).expect("a sky").radiance.0[0], pixel(5, 1));
 }
+
+#[test]
+fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits_to() {
+    let at = DVec3::new(1.0, -2.0, 3.0);
+    let patches = [
+        Patch::Rectangle { corner: at, across: DVec3::new(2.0, 1.0, 0.0), up: DVec3::new(0.0, 1.0, 3.0) },
+        Patch::Disc { center: at, normal: DVec3::new(-1.0, 2.0, -3.0), radius: 2.0 },
+        Patch::Sphere { center: at, radius: 2.0 },
+    ];
+    for (patch, least) in patches.into_iter().zip([1.0, 0.99, 0.98]) {
+        let mut area = 0.0;
+        for polygon in patch.polygons(64) {
+            let [a, b, c] = [polygon[0], polygon[1], polygon[2]];
+            let normal = (b - a).cross(c - a).normalize();
+            let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64;
+            let before = Ray { origin: middle + normal * 5.0, direction: -normal };
+            let glow = area_glow(&patch, &before).expect("it is met");
+            assert!((glow.t - 5.0).abs() < 0.01 && glow.radiance.0[0] == 1.0, "{patch:?}: {glow:?}");
+            let twice: DVec3 = polygon.windows(2).map(|pair| (pair[0] - a).cross(pair[1] - a)).sum();
+            assert!(polygon.len() >= 3 && twice.dot(normal) > 0.0);
+            area += twice.length() / 2.0;
+        }
+        let part = area / patch.area();
+        assert!((least..=1.0 + 1e-12).contains(&part), "{patch:?}: {part}");
+    }
+}
+
+fn area_glow(patch: &Patch, ray: &Ray) -> Option<Glow> {
+    area(*patch).glow(ray, 0.0, f64::INFINITY, 0)
+}

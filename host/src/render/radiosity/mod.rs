@@ -177,6 +177,13 @@ impl Radiosity {
     pub fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: Part) -> Channels {
         self.light.at(triangle, outside, weights, part)
     }
+
+    /// How often a side of a triangle is divided into four about a place; 0 where no light comes.
+    ///
+    /// - `outside`, `weights`: as in [`Radiosity::irradiance`].
+    pub fn divisions(&self, triangle: u32, outside: bool, weights: [f64; 3]) -> u32 {
+        self.light.divisions(triangle, outside, weights)
+    }
 }
 
 /// All sides of triangles that reflect diffusely or send light from elsewhere.

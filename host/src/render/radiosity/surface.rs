@@ -138,6 +138,22 @@ impl SurfaceLight {
     }
 }
 
+impl SurfaceLight {
+    /// How often a side of a triangle is divided about a place.
+    pub(super) fn divisions(&self, triangle: u32, outside: bool, weights: [f64; 3]) -> u32 {
+        let patch = self.patch_of[triangle as usize][usize::from(!outside)];
+        if patch == NONE {
+            return 0;
+        }
+        let hierarchy = &self.hierarchy;
+        let (leaf, _) = hierarchy.leaf_at(patch, hierarchy.patches[patch as usize].weights(weights));
+        let parts =
+            hierarchy.nodes[hierarchy.node_of[patch as usize] as usize].area / hierarchy.nodes[leaf as usize].area;
+        // Each division makes four equal parts.
+        (parts.log2() / 2.0).round() as u32
+    }
+}
+
 /// Corners in the middle of an edge, and in the middle of its halves.
 fn hang(
     shared: &Corners,

@@ -55,7 +55,7 @@ impl Parser<'_> {
         }
     }
 
-    fn single(&mut self) -> Result<f32, Fault> {
+    pub(super) fn single(&mut self) -> Result<f32, Fault> {
         let TokenKind::Number(decimal) = self.token.kind else {
             return Err(self.fail(&["a number"]));
         };

@@ -5,7 +5,7 @@ use crate::{
     Name,
     command::{
         error::{Fault, Problem},
-        syntax::{Attributes, Illumination, Polygon, PolygonVertex, SurfaceColor},
+        syntax::{Attributes, CornerColor, Illumination, Polygon, PolygonVertex, SurfaceColor},
         token::TokenKind,
         words::{self, Word},
     },
@@ -49,7 +49,7 @@ impl Parser<'_> {
         self.name()
     }
 
-    /// `[S] x,y,z [N nx,ny,nz]`, 3 to 250 of them.
+    /// `[S] x,y,z [N nx,ny,nz] [C h[,s[,i]] [AND h[,s[,i]]]]`, 3 to 250 of them.
     fn vertices(&mut self) -> Result<Vec<PolygonVertex>, Fault> {
         let mut vertices: Vec<PolygonVertex> = Vec::new();
         loop {
@@ -74,8 +74,36 @@ impl Parser<'_> {
             if vertices.first().is_some_and(|first| first.normal.is_some() != normal.is_some()) {
                 return Err(Fault { span: place.span(), problem: Problem::MixedNormals, expected: &[] });
             }
-            vertices.push(PolygonVertex { soft, position, normal });
+            let place = self.token;
+            let color = self.corner_color()?;
+            if vertices.first().is_some_and(|first| first.color.is_some() != color.is_some()) {
+                return Err(Fault { span: place.span(), problem: Problem::MixedColors, expected: &[] });
+            }
+            vertices.push(PolygonVertex { soft, position, normal, color });
         }
+    }
+
+    /// `[C h[,s[,i]] [AND h[,s[,i]]]]`
+    fn corner_color(&mut self) -> Result<Option<CornerColor>, Fault> {
+        if !self.accept_letter(Word::CodeOfCharacter) {
+            return Ok(None);
+        }
+        let front = self.single_color()?;
+        let back = if self.accept_word(Word::And) { Some(self.single_color()?) } else { None };
+        Ok(Some(CornerColor { front, back }))
+    }
+
+    /// `h[,s[,i]]` with its commas, since numbers without one are the next vertex; saturation and intensity are 1 if not
+    /// given.
+    fn single_color(&mut self) -> Result<[f32; 3], Fault> {
+        let mut color = [self.single()?, 1.0, 1.0];
+        for part in &mut color[1..] {
+            if !self.accept(TokenKind::Comma) {
+                break;
+            }
+            *part = self.single()?;
+        }
+        Ok(color)
     }
 
     /// `[COLOR h[,s[,i]]] [DIFFUSE d] [SPECULAR s] [OPAQUE t] [AND ...]`

@@ -5,8 +5,8 @@ use crate::{
     Name,
     command::{
         syntax::{
-            Attributes, Bspline, Fourth, Illumination, Object, Pattern, Polygon, Polynomial, SurfaceColor, VectorClass,
-            VectorList,
+            Attributes, Bspline, CornerColor, Fourth, Illumination, Object, Pattern, Polygon, Polynomial, SurfaceColor,
+            VectorClass, VectorList,
         },
         words::{self, Word},
     },
@@ -140,6 +140,13 @@ impl Printer<'_> {
                 if let Some(normal) = vertex.normal {
                     let [x, y, z] = normal.map(Number);
                     self.put(format_args!(" N {x},{y},{z}"));
+                }
+                if let Some(CornerColor { front, back }) = vertex.color {
+                    for (word, color) in [("C", Some(front)), ("AND", back)] {
+                        if let Some([h, s, i]) = color.map(|color| color.map(Number)) {
+                            self.put(format_args!(" {word} {h},{s},{i}"));
+                        }
+                    }
                 }
             }
         }

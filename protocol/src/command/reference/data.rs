@@ -53,7 +53,7 @@ pub(super) const ROWS: &[CommandRow] = &[
         syntax: &[
             "name := [WITH [ATTRibutes] attr] [OUTLINE h] POLYGon [COPLANar] vertex vertex vertex ...",
             "        [[WITH [ATTRibutes] attr] [OUTLINE h] POLYGon [COPLANar] vertex ...] ...;",
-            "vertex: [S] x,y,z [N nx,ny,nz]",
+            "vertex: [S] x,y,z [N nx,ny,nz] [C h[,s[,i]] [AND h[,s[,i]]]]",
         ],
         options: &[
             option("attr", "an ATTRIBUTES object, for this polygon and those after it", "", "white"),
@@ -62,6 +62,12 @@ pub(super) const ROWS: &[CommandRow] = &[
             option("vertex", "clockwise seen from outside; the closing edge is implied", "3 to 250", ""),
             option("S", "the edge that ends here is soft: smoothed in shading", "", "hard"),
             option("N nx,ny,nz", "normal; for all vertices of a polygon or for none", "", "computed"),
+            option(
+                "C h,s,i",
+                "color there, AND that of the reverse; for all vertices of a polygon or for none",
+                "0 to 360, 0 to 1, 0 to 1",
+                "that of attr; s and i 1",
+            ),
         ],
         routines: &["PPLYGB", "PPLYGA", "PPLYGO", "PPLYGL", "PPLYGE", "PPLYGR", "PPLYGH"],
         example: "PLATE := WITH ATTRIBUTES STEEL POLYGON 0,0,0  0,1,0  1,1,0  1,0,0\n  \

@@ -2,8 +2,8 @@
 
 use super::{limits, names, operates, reals, singles, texts, vectors2, vectors3};
 use crate::command::syntax::{
-    Attributes, Bspline, Characters, FontCharacter, Fourth, Illumination, Label, Labels, Object, Pattern, Polygon,
-    PolygonVertex, Polynomial, SurfaceColor, VectorClass, VectorList,
+    Attributes, Bspline, Characters, CornerColor, FontCharacter, Fourth, Illumination, Label, Labels, Object, Pattern,
+    Polygon, PolygonVertex, Polynomial, SurfaceColor, VectorClass, VectorList,
 };
 use glam::DVec2;
 use proptest::prelude::*;
@@ -39,14 +39,20 @@ pub(super) fn font_characters() -> impl Strategy<Value = FontCharacter> {
 }
 
 fn polygons() -> impl Strategy<Value = Polygon> {
-    let vertex = || ([singles(), singles(), singles()], [singles(), singles(), singles()], any::<bool>());
+    let three = || [singles(), singles(), singles()];
+    let color = || (three(), prop::option::of(three())).prop_map(|(front, back)| CornerColor { front, back });
+    let vertex = move || (three(), three(), color(), any::<bool>());
     let few = prop::collection::vec(vertex(), 3..8);
     let vertices = prop_oneof![30 => few, 1 => prop::collection::vec(vertex(), Polygon::MAX_VERTICES)];
     let attributes = prop::option::of(names());
-    (attributes, prop::option::of(reals()), any::<bool>(), any::<bool>(), vertices).prop_map(
-        |(attributes, outline, coplanar, normals, vertices)| {
-            let vertex =
-                |(position, normal, soft)| PolygonVertex { soft, position, normal: Some(normal).filter(|_| normals) };
+    (attributes, prop::option::of(reals()), any::<bool>(), any::<[bool; 2]>(), vertices).prop_map(
+        |(attributes, outline, coplanar, [normals, colors], vertices)| {
+            let vertex = |(position, normal, color, soft)| PolygonVertex {
+                soft,
+                position,
+                normal: Some(normal).filter(|_| normals),
+                color: Some(color).filter(|_| colors),
+            };
             Polygon { attributes, outline, coplanar, vertices: vertices.into_iter().map(vertex).collect() }
         },
     )

@@ -12,4 +12,4 @@ pub use curve::{Bspline, Polynomial};
 pub use data::{Characters, FontCharacter, Fourth, Label, Labels, Pattern, VectorClass, VectorList};
 pub use network::{Arc, Destination, Input};
 pub use operate::{Axis, Boundaries, CharacterOrientation, Comparison, Operate, Rate, Scopes};
-pub use polygon::{Attributes, Illumination, Polygon, PolygonVertex, SurfaceColor};
+pub use polygon::{Attributes, CornerColor, Illumination, Polygon, PolygonVertex, SurfaceColor};

@@ -21,7 +21,7 @@ impl Polygon {
     pub const MAX_VERTICES: usize = 250;
 }
 
-/// A corner of a polygon: `S x,y,z N nx,ny,nz`.
+/// A corner of a polygon: `S x,y,z N nx,ny,nz C h,s,i AND h,s,i`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PolygonVertex {
     /// Whether the edge that ends here is soft: smoothed in shading.
@@ -30,6 +30,20 @@ pub struct PolygonVertex {
     pub position: [f32; 3],
     /// The normal for smooth shading; given for all corners of a polygon or for none.
     pub normal: Option<[f32; 3]>,
+    /// The colour there, in the place of that of ATTRIBUTES; given for all corners of a polygon or for none.
+    pub color: Option<CornerColor>,
+}
+
+/// The colour of the corner of a polygon: hue in degrees, saturation 0..=1 and intensity 0..=1.
+///
+/// # Source
+/// That there are such colours: the names of two GSR routines for later models. The syntax is ours, after ATTRIBUTES.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CornerColor {
+    /// On the front side.
+    pub front: [f32; 3],
+    /// On the reverse side, after AND; like the front if not given.
+    pub back: Option<[f32; 3]>,
 }
 
 /// What one side of a polygon looks like.

@@ -104,14 +104,16 @@ fn blocks_of_memory_have_a_limit() {
 fn polygons_of_the_binary_form_are_checked_too() {
     use protocol::{
         Name,
-        command::{Command, Object, Polygon, PolygonVertex},
+        command::{Command, CornerColor, Object, Polygon, PolygonVertex},
     };
-    let corner = |normal| PolygonVertex { soft: false, position: [0.0; 3], normal };
+    let corner = |normal| PolygonVertex { soft: false, position: [0.0; 3], normal, color: None };
+    let red = Some(CornerColor { front: [120.0, 1.0, 1.0], back: None });
     let polygon = |vertices| Polygon { attributes: None, outline: None, coplanar: false, vertices };
     let bad = [
         vec![corner(None); 2],
         vec![corner(None); Polygon::MAX_VERTICES + 1],
         vec![corner(None), corner(Some([0.0, 0.0, 1.0])), corner(None)],
+        vec![corner(None), PolygonVertex { color: red, ..corner(None) }, corner(None)],
     ];
     let mut desk = told("");
     for vertices in bad {

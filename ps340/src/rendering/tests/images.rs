@@ -4,17 +4,17 @@ use super::*;
 use protocol::command::Illumination;
 
 /// The pixel at a place of the vector screen.
-fn at(image: &Image, x: f64, y: f64) -> [u8; 3] {
+pub(super) fn at(image: &Image, x: f64, y: f64) -> [u8; 3] {
     let place = |c: f64, pixels: u32| ((c + 1.0) / 2.0 * f64::from(pixels)) as usize;
     image.pixels[place(y, image.height) * image.width as usize + place(x, image.width)]
 }
 
-fn grey(value: f64) -> [u8; 3] {
+pub(super) fn grey(value: f64) -> [u8; 3] {
     [(value.min(1.0) * 255.0).round() as u8; 3]
 }
 
 /// Light of a white surface whose normal is at an angle with this cosine to light and eye, beyond any highlight.
-fn lambert(cosine: f64) -> f64 {
+pub(super) fn lambert(cosine: f64) -> f64 {
     0.25 + 0.75 * cosine
 }
 

@@ -1,5 +1,6 @@
 //! Renderings against closed forms and against tests of single points that share no code with them.
 
+mod colors;
 mod cuts;
 mod degenerate;
 mod extremes;
@@ -87,7 +88,8 @@ fn block(polygons: Vec<Polygon>) -> Node {
 }
 
 fn polygon(corners: &[[f32; 3]]) -> Polygon {
-    let vertices = corners.iter().map(|position| PolygonVertex { soft: false, position: *position, normal: None });
+    let vertex = |position: &[f32; 3]| PolygonVertex { soft: false, position: *position, normal: None, color: None };
+    let vertices = corners.iter().map(vertex);
     Polygon { attributes: None, outline: None, coplanar: false, vertices: vertices.collect() }
 }
 

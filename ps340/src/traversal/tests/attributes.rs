@@ -162,7 +162,7 @@ fn blended_lines_run_through_the_hues_between() {
 
 #[test]
 fn polygons_are_drawn_as_closed_outlines_in_their_hue() {
-    let vertex = |x, y| PolygonVertex { soft: true, position: [x, y, 0.0], normal: None };
+    let vertex = |x, y| PolygonVertex { soft: true, position: [x, y, 0.0], normal: None, color: None };
     let square = |outline| Polygon {
         attributes: None,
         outline,

@@ -1,7 +1,7 @@
 //! Facts about data commands: vectors, polygons, curves, text.
 
 use super::*;
-use crate::command::syntax::{Bspline, Fourth, Polygon, Polynomial, SurfaceColor};
+use crate::command::syntax::{Bspline, CornerColor, Fourth, Polygon, Polynomial, SurfaceColor};
 
 fn polygons(text: &str) -> Vec<Polygon> {
     match object(text) {
@@ -61,6 +61,35 @@ fn polygons_have_soft_edges_normals_attributes_and_outlines() {
 }
 
 #[test]
+fn corners_of_polygons_have_colours_with_their_commas_on_one_side_or_on_both() {
+    let all = polygons(
+        "POLYGON 0,0,0 C 120 S 1,0,0 C240,.5 0,1,0 c 3,.25,.75
+         POLYGON 0,0,0 N 0,0,-1 C 120,1,.5 AND 60 1,0,0 N 0,0,-1 C 0,0,1 AND 0,0,0 0 1 0 N 0 0 -1 C 1;",
+    );
+    let colors = |k: usize| all[k].vertices.iter().map(|v| v.color.unwrap()).collect::<Vec<_>>();
+    let both = |front, back| CornerColor { front, back };
+    assert_eq!(
+        colors(0),
+        [both([120.0, 1.0, 1.0], None), both([240.0, 0.5, 1.0], None), both([3.0, 0.25, 0.75], None)]
+    );
+    assert_eq!(
+        colors(1),
+        [
+            both([120.0, 1.0, 0.5], Some([60.0, 1.0, 1.0])),
+            both([0.0, 0.0, 1.0], Some([0.0; 3])),
+            both([1.0, 1.0, 1.0], None)
+        ]
+    );
+    assert!(all[1].vertices.iter().all(|v| v.normal == Some([0.0, 0.0, -1.0])));
+    assert_eq!(message("POLYGON 0,0,0 C;"), "1:16: expected a number, found `;`");
+    assert_eq!(message("POLYGON 0,0,0 C 1, S 0,0,0;"), "1:20: expected a number, found `S`");
+    assert_eq!(
+        message("POLYGON 0,0,0 C 1e99 1,1,1 C 1 2,2,2 C 1;"),
+        message("POLYGON 1e99,0,0;").replace("1:9", "1:17")
+    );
+}
+
+#[test]
 fn attributes_of_polygons_may_have_the_names_of_words() {
     for (text, expected) in [
         ("WITH ATTRIBUTES POLYGON 0,0,0 1,1,1 2,2,2;", "ATTRIBUTES"),
@@ -85,6 +114,7 @@ fn polygons_have_3_to_250_vertices() {
     assert_eq!(message("POLYGON;"), "1:8: expected a vertex or COPLANAR, found `;`");
     assert_eq!(message("POLYGON 1,2 3,4;"), "1:14: a polygon has at least 3 vertices, found `,`");
     assert!(message("POLYGON 0,0,0 N 1,0,0 1,0,0 1,1,0;").starts_with("1:29: give a normal for each vertex"));
+    assert!(message("POLYGON 0,0,0 C 120 1,0,0 1,1,0;").starts_with("1:27: give a color for each vertex"));
     assert!(message("WITH MAT OUTLINE 3;").starts_with("1:19: expected POLYGON, WITH or OUTLINE"));
 }
 

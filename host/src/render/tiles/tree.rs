@@ -1,0 +1,147 @@
+//! A triangle with its elements and their colours, and which of its parts may be one tile.
+
+use super::{Corner, Tile};
+use crate::color::{Channels, srgb};
+use crate::illumination::optics::Painting;
+use crate::numeric::triangle::weights;
+use crate::render::radiosity::{Part, Radiosity, diffuse};
+use crate::render::ready::Appearance;
+use glam::{DVec3, Vec3};
+use std::f64::consts::FRAC_1_PI;
+
+/// Colours are looked up so far from a corner towards the middle of the piece, as a part of the way: what a neighbour has
+/// there does not count.
+const ASIDE: f64 = 1e-6;
+
+/// A triangle, or one of the four into which the middles of its edges divide such a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Piece {
+    /// Its corners, the same to the bit for all pieces that share them.
+    pub(super) corners: [DVec3; 3],
+    /// The weights of the corners of the triangle there.
+    pub(super) weights: [[f64; 3]; 3],
+}
+
+/// The point in the middle between two.
+pub(super) fn middle((p, u): Corner, (q, v): Corner) -> Corner {
+    (0.5 * (p + q), std::array::from_fn(|i| 0.5 * (u[i] + v[i])))
+}
+
+impl Piece {
+    /// A whole triangle.
+    fn whole(corners: [DVec3; 3]) -> Piece {
+        Piece { corners, weights: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+    }
+
+    /// The pieces at its corners, and the one in the middle.
+    pub(super) fn quarters(&self) -> [Piece; 4] {
+        let [a, b, c] = [0, 1, 2].map(|i| (self.corners[i], self.weights[i]));
+        let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
+            .map(|of| Piece { corners: of.map(|corner| corner.0), weights: of.map(|corner| corner.1) })
+    }
+
+    /// The weights in its middle.
+    fn center(&self) -> [f64; 3] {
+        std::array::from_fn(|i| self.weights.iter().map(|weights| weights[i]).sum::<f64>() / 3.0)
+    }
+}
+
+/// The colours of a point from outside and from inside.
+type Colors = [Vec3; 2];
+
+/// A piece with the pieces into which it is divided.
+#[derive(Debug)]
+pub(super) struct Node {
+    piece: Piece,
+    /// How far mixtures of the colours of its corners are from those of its elements, 0..=1.
+    off: f32,
+    children: Option<Box<[Node; 4]>>,
+}
+
+impl Node {
+    /// How many elements there are in it.
+    pub(super) fn leaves(&self) -> usize {
+        self.children.as_ref().map_or(1, |children| children.iter().map(Node::leaves).sum())
+    }
+
+    /// The largest pieces of it whose colours are off by no more than a tolerance.
+    pub(super) fn pieces(&self, tolerance: f64) -> Vec<Piece> {
+        let mut pieces = Vec::new();
+        self.add_pieces(tolerance, &mut pieces);
+        pieces
+    }
+
+    fn add_pieces(&self, tolerance: f64, pieces: &mut Vec<Piece>) {
+        match &self.children {
+            Some(children) if f64::from(self.off) > tolerance => {
+                children.iter().for_each(|child| child.add_pieces(tolerance, pieces));
+            }
+            _ => pieces.push(self.piece),
+        }
+    }
+}
+
+/// What surfaces look like in the light of a solution.
+pub(super) struct Looks<'a> {
+    pub(super) solution: &'a Radiosity,
+    pub(super) appearance: &'a Appearance<'a>,
+}
+
+impl Looks<'_> {
+    /// A triangle with all elements of both its sides.
+    pub(super) fn tree(&self, triangle: u32) -> Node {
+        let piece = Piece::whole(self.appearance.prepared.corners(triangle));
+        self.node(triangle, piece, 0, &mut Vec::new())
+    }
+
+    /// A piece with the elements in it, of which it adds the corners and their colours.
+    fn node(&self, triangle: u32, piece: Piece, depth: u32, samples: &mut Vec<(DVec3, Colors)>) -> Node {
+        let center = piece.center();
+        let colors = piece.weights.map(|weights| self.colors(triangle, aside(weights, center)));
+        if [true, false].iter().all(|outside| self.solution.divisions(triangle, *outside, center) <= depth) {
+            samples.extend(piece.corners.into_iter().zip(colors));
+            return Node { piece, off: 0.0, children: None };
+        }
+        let first = samples.len();
+        let children = piece.quarters().map(|quarter| self.node(triangle, quarter, depth + 1, samples));
+        let off = |(point, seen): &(DVec3, Colors)| {
+            let shares = weights(piece.corners, *point).map(|share| share as f32);
+            let mixed = |side: usize| (0..3).map(|i| colors[i][side] * shares[i]).sum::<Vec3>();
+            [0, 1].map(|side| (mixed(side) - seen[side]).abs().max_element()).into_iter().fold(0.0, f32::max)
+        };
+        let off = samples[first..].iter().map(off).fold(0.0, f32::max);
+        Node { piece, off, children: Some(Box::new(children)) }
+    }
+
+    /// The tile of a piece with more corners.
+    pub(super) fn tile(&self, triangle: u32, piece: &Piece, outline: &[Corner]) -> Tile {
+        let center = piece.center();
+        let color = |(_, weights): &Corner| self.colors(triangle, aside(*weights, center)).map(Vec3::as_dvec3);
+        Tile { corners: outline.iter().map(|corner| corner.0).collect(), colors: outline.iter().map(color).collect() }
+    }
+
+    /// The colours of a place of a triangle, as a display gets them.
+    fn colors(&self, triangle: u32, weights: [f64; 3]) -> Colors {
+        let Appearance { prepared, wavelengths, .. } = self.appearance;
+        let optics = self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let place = optics.is_textured().then(|| prepared.place(triangle, weights, Default::default()));
+        let irradiance = [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, Part::All));
+        let mut seen = [DVec3::ZERO; 2];
+        let combs = wavelengths.combs();
+        for comb in 0..combs {
+            let own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(comb));
+            let painting: Option<Painting> = place.as_ref().map(|place| optics.paint(place, comb));
+            let reflectance = diffuse(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()));
+            for (seen, irradiance) in seen.iter_mut().zip(irradiance) {
+                *seen += wavelengths.seen(comb, own + reflectance * irradiance * FRAC_1_PI);
+            }
+        }
+        seen.map(|seen| srgb::encoded(seen / combs as f64).as_vec3())
+    }
+}
+
+/// A place a hair nearer to the middle of a piece.
+fn aside(weights: [f64; 3], center: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| weights[i] + (center[i] - weights[i]) * ASIDE)
+}
