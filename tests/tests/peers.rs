@@ -85,7 +85,8 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let solution = Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, &Watch::NOBODY).expect("a solution");
+    let solution =
+        Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, &Watch::NOBODY).expect("a solution");
     let scan_line = ScanLine::showing(&solution, &prepared, &plan).expect("a renderer");
     let picture = scan_line.render(&view, &Order::of(&prepared.settings), &Watch::NOBODY).expect("a picture").picture;
     let side = 128 / theirs.len();

@@ -198,10 +198,7 @@ impl Arguments {
 }
 
 /// Makes something on as many threads as are asked for.
-fn in_pool<T: Send>(
-    arguments: &Arguments,
-    make: impl FnOnce() -> Result<T, RenderError> + Send,
-) -> Result<T, Failure> {
+fn in_pool<T: Send>(arguments: &Arguments, make: impl FnOnce() -> Result<T, RenderError> + Send) -> Result<T, Failure> {
     let threads = arguments.threads.map_or(0, |n| n.get());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
     Ok(pool.install(make)?)

@@ -330,7 +330,8 @@ mod tests {
         let mut random = Pcg32::seed_from_u64(7);
         for count in [0, 1, 9, 500] {
             let octree = soup(count, 0.4, &mut random);
-            let own = |triangle: u32| Bounds::of(octree.triangles[triangle as usize].map(|i| octree.vertices[i as usize]));
+            let own =
+                |triangle: u32| Bounds::of(octree.triangles[triangle as usize].map(|i| octree.vertices[i as usize]));
             for _ in 0..20 {
                 let at = DVec3::from_array(std::array::from_fn(|_| random.random::<f64>() * 2.0 - 1.0));
                 let bounds = Bounds { min: at, max: at + DVec3::splat(0.2) };

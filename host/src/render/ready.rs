@@ -3,7 +3,7 @@
 use super::RenderError;
 use crate::color::{Channels, Curve, Wavelengths};
 use crate::illumination::light::{Glow, Source};
-use crate::illumination::optics::{Library, Optics};
+use crate::illumination::optics::{Interreflection, Library, Optics};
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
 use crate::scene::Prepared;
@@ -74,9 +74,13 @@ impl<'a> Appearance<'a> {
                     Some(number) => number,
                     None => {
                         let failed = |source| RenderError::Material { object: object.name.clone(), source };
-                        // What radiosity knows is not looked for again.
-                        let spreads = self.prepared.settings.interreflection && !plan.needs(Stage::Radiosity);
-                        self.optics.push(library.optics(material, spreads).map_err(failed)?);
+                        let diffuse = match self.prepared.settings.interreflection {
+                            // What radiosity knows is not looked for again.
+                            _ if plan.needs(Stage::Radiosity) => Interreflection::Solved,
+                            true => Interreflection::Followed,
+                            false => Interreflection::LeftOut,
+                        };
+                        self.optics.push(library.optics(material, diffuse).map_err(failed)?);
                         known.push(material);
                         known.len() - 1
                     }

@@ -5,7 +5,7 @@ use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth};
 use super::lobe::Lobe;
 use super::shade::{Painted, Shade};
-use super::{Interior, Optics};
+use super::{Interior, Interreflection, Optics};
 use crate::color::{LANES, Wavelengths};
 use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Facets, Microfacet, Phong};
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
@@ -34,11 +34,11 @@ impl<'a> Library<'a> {
 
     /// A material, ready.
     ///
-    /// - `spreads`: whether diffuse light is carried on, and not only light from lights.
+    /// - `diffuse`: what becomes of light that diffuse surfaces send each other.
     ///
     /// # Errors
     /// [`MaterialError`].
-    pub fn optics(&mut self, material: &Material, spreads: bool) -> Result<Optics, MaterialError> {
+    pub fn optics(&mut self, material: &Material, diffuse: Interreflection) -> Result<Optics, MaterialError> {
         material.check()?;
         let mut optics = Optics {
             lobes: Vec::new(),
@@ -55,7 +55,7 @@ impl<'a> Library<'a> {
             passing: None,
         };
         match &material.body {
-            Body::Classic(classic) => self.classic(classic, !spreads, &mut optics)?,
+            Body::Classic(classic) => self.classic(classic, diffuse, &mut optics)?,
             Body::Shaped(Shaped { reflectance, form }) => {
                 let shape = match form {
                     Form::Member { name, roughness } => self.shape(name, *roughness)?,
@@ -68,29 +68,29 @@ impl<'a> Library<'a> {
                 };
                 let fraction = self.shade(reflectance, &mut optics);
                 optics.ambient = fraction.clone();
-                optics.add(Lobe::Shaped(fraction, distribution), false);
+                optics.add(Lobe::Shaped(fraction, distribution), Interreflection::Followed);
             }
             Body::Metal(metal) => self.metal(metal, &mut optics)?,
             Body::Transparent(transparent) => self.transparent(transparent, &mut optics),
-            Body::Coated(coated) => self.coated(coated, !spreads, &mut optics)?,
+            Body::Coated(coated) => self.coated(coated, diffuse, &mut optics)?,
         }
         Ok(optics)
     }
 
-    fn classic(&self, classic: &Classic, ends: bool, optics: &mut Optics) -> Result<(), MaterialError> {
+    fn classic(&self, classic: &Classic, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
         if let Some(shade) = self.needed(&classic.diffuse, optics) {
             optics.ambient = shade.clone();
-            optics.add(Lobe::Diffuse(shade), ends);
+            optics.add(Lobe::Diffuse(shade), carried);
         }
         if let Some(shade) = self.needed(&classic.specular, optics) {
-            optics.add(Lobe::Phong(shade, Phong::new(classic.exponent)?), ends);
+            optics.add(Lobe::Phong(shade, Phong::new(classic.exponent)?), carried);
         }
         if let Some(shade) = self.needed(&classic.mirror, optics) {
-            optics.add(Lobe::Mirror(shade), false);
+            optics.add(Lobe::Mirror(shade), Interreflection::Followed);
         }
         if let Some(shade) = self.needed(&classic.transparency, optics) {
             optics.passing = Some(shade.clone());
-            optics.add(Lobe::Straight(shade), false);
+            optics.add(Lobe::Straight(shade), Interreflection::Followed);
         }
         Ok(())
     }
@@ -119,7 +119,7 @@ impl<'a> Library<'a> {
                 Lobe::Metallic(Metallic::new(Shape::Once(form), conductors))
             }
         };
-        optics.add(lobe, false);
+        optics.add(lobe, Interreflection::Followed);
         Ok(())
     }
 
@@ -134,20 +134,20 @@ impl<'a> Library<'a> {
         } else {
             Lobe::Smooth(Smooth)
         };
-        optics.add(lobe, false);
+        optics.add(lobe, Interreflection::Followed);
     }
 
-    fn coated(&self, coated: &Coated, ends: bool, optics: &mut Optics) -> Result<(), MaterialError> {
+    fn coated(&self, coated: &Coated, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
         let surface = Dielectric::new(1.0, coated.index)?;
         let facets = match coated.roughness {
             0.0 => None,
             roughness => Some(Microfacet::new(Facets::Ggx, DVec2::splat(roughness))?),
         };
         let coat = Arc::new(Coat::new(surface, facets));
-        optics.add(Lobe::Coat(coat.clone()), false);
+        optics.add(Lobe::Coat(coat.clone()), Interreflection::Followed);
         if let Some(shade) = self.needed(&coated.diffuse, optics) {
             let ground = Ground::new(coat, coated.index, &shade, self.wavelengths.combs());
-            optics.add(Lobe::Ground(ground), ends);
+            optics.add(Lobe::Ground(ground), carried);
             optics.ambient = shade;
         }
         Ok(())

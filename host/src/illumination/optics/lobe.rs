@@ -69,6 +69,11 @@ impl Lobe {
         density < NARROW
     }
 
+    /// Whether it reflects light alike to everywhere.
+    pub(super) fn is_diffuse(&self) -> bool {
+        matches!(self, Lobe::Diffuse(_) | Lobe::Ground(_))
+    }
+
     /// Whether it reflects nothing, wherever.
     pub(super) fn is_black(&self) -> bool {
         match self {

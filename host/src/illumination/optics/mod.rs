@@ -32,39 +32,56 @@ pub type Painting = [Channels; MOST_LOBES];
 
 /// Which of the lobes.
 ///
-/// The first two carry rays on. A way of light may be told by them: each of its turns is by a broad lobe or by a narrow one.
+/// The first two carry rays from the eye on. A way of light may be told by them: each of its turns is by a broad lobe or by a narrow one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
     /// Those that spread light so far that it is seen from about everywhere.
     Broad,
     /// Those that pass it on as a beam: mirrors, smooth interfaces, and rough ones of narrow highlights.
     Narrow,
+    /// Those that spread light about everywhere, where a radiosity solution tells what comes from other surfaces: rays from
+    /// the eye end at them, and light that is followed from lamps goes on.
+    Solved,
     /// Those that answer lights only.
     Ended,
 }
 
+/// What becomes of light that goes from one diffuse surface to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interreflection {
+    /// It counts nothing.
+    LeftOut,
+    /// Rays from the eye follow it.
+    Followed,
+    /// A radiosity solution tells of it.
+    Solved,
+}
+
 impl Which {
-    /// Those that carry rays on.
+    /// Those that carry rays from the eye on.
     pub const CONTINUED: [Which; 2] = [Which::Broad, Which::Narrow];
 }
 
 /// Among which lobes a direction is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
-    /// All that carry rays on.
+    /// All that carry rays from the eye on.
     All,
     /// Those whose directions are not all known: [`Optics::mirrored`] gives the others.
     Spread,
-    /// Those of one kind.
-    Only(Which),
+    /// The narrow ones.
+    Narrow,
+    /// The broad ones, solved or not.
+    Broad,
 }
 
 impl Among {
     fn has(self, which: Which, lobe: &Lobe) -> bool {
         match self {
-            Among::All => true,
-            Among::Spread => !lobe.is_mirror(),
-            Among::Only(kind) => which == kind,
+            Among::All => Which::CONTINUED.contains(&which),
+            Among::Spread => Which::CONTINUED.contains(&which) && !lobe.is_mirror(),
+            Among::Narrow => which == Which::Narrow,
+            Among::Broad => matches!(which, Which::Broad | Which::Solved),
         }
     }
 }
@@ -147,6 +164,12 @@ impl Optics {
         self.of(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
     }
 
+    /// As [`Optics::value`], of those lobes.
+    pub fn value_among(&self, among: Among, sighting: &Sighting, light: DVec3) -> Channels {
+        let lobes = self.lobes.iter().filter(|(which, lobe)| among.has(*which, lobe));
+        lobes.fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))
+    }
+
     /// As [`Optics::value`], of all lobes.
     #[inline]
     pub fn response(&self, sighting: &Sighting, light: DVec3) -> Channels {
@@ -158,7 +181,13 @@ impl Optics {
     /// - `among`: as there.
     pub fn density(&self, which: Which, sighting: &Sighting, light: DVec3, among: Among) -> f64 {
         let shares = self.shares(sighting, among);
-        let lobes = self.continued().zip(&shares).filter(|((kind, _), _)| *kind == which);
+        let lobes = self.lobes.iter().zip(&shares).filter(|((kind, _), _)| *kind == which);
+        lobes.map(|((_, lobe), share)| share * lobe.density(sighting, light)).sum()
+    }
+
+    /// The density with which [`Optics::onward`] draws a direction among lobes, 1/sr.
+    pub fn density_among(&self, among: Among, sighting: &Sighting, light: DVec3) -> f64 {
+        let lobes = self.lobes.iter().zip(self.shares(sighting, among)).filter(|(_, share)| *share > 0.0);
         lobes.map(|((_, lobe), share)| share * lobe.density(sighting, light)).sum()
     }
 
@@ -181,7 +210,7 @@ impl Optics {
     pub fn onward(&self, sighting: &Sighting, choice: f64, point: [f64; 2], among: Among) -> Option<Onward> {
         let shares = self.shares(sighting, among);
         let (index, choice) = chosen(&shares, choice)?;
-        let (which, lobe) = self.continued().nth(index)?;
+        let (which, lobe) = self.lobes.get(index)?;
         let drawn = lobe.sample(sighting, choice, point)?;
         if drawn.density.is_none() {
             return Some(Onward { weight: drawn.weight * shares[index].recip(), ..drawn });
@@ -189,14 +218,14 @@ impl Optics {
         // What all lobes of the kind give there, over the density with which all of them draw it.
         let light = drawn.light;
         let (mut value, mut density) = (Channels::ZERO, 0.0);
-        for ((kind, lobe), share) in self.continued().zip(&shares).filter(|(_, share)| **share > 0.0) {
-            if kind == which {
+        let is_broad = *which != Which::Narrow;
+        for ((kind, lobe), share) in self.lobes.iter().zip(&shares).filter(|(_, share)| **share > 0.0) {
+            if is_broad == (*kind != Which::Narrow) {
                 value += lobe.value(sighting, light);
                 density += share * lobe.density(sighting, light);
             }
         }
         let weight = value * (light.z.abs() / density);
-        let is_broad = *which == Which::Broad;
         (density > 0.0 && weight.is_finite()).then_some(Onward { weight, density: Some(density), is_broad, ..drawn })
     }
 
@@ -213,7 +242,7 @@ impl Optics {
 
     /// Whether some light is reflected alike to everywhere.
     pub fn is_diffuse(&self) -> bool {
-        self.lobes.iter().any(|(_, lobe)| matches!(lobe, Lobe::Diffuse(_) | Lobe::Ground(_)))
+        self.lobes.iter().any(|(_, lobe)| lobe.is_diffuse())
     }
 
     /// Whether it changes from place to place.
@@ -262,7 +291,7 @@ impl Optics {
 
     /// Whether rays are carried on.
     pub fn carries_on(&self) -> bool {
-        self.continued().next().is_some()
+        self.lobes.iter().any(|(which, _)| Which::CONTINUED.contains(which))
     }
 
     /// Whether some lobe passes light on as a beam, other than straight.
@@ -290,9 +319,9 @@ impl Optics {
         })
     }
 
-    /// Whether some lobe that carries rays on spreads light about everywhere.
+    /// Whether light that is followed from lamps goes on from it about everywhere.
     pub fn is_broad(&self) -> bool {
-        self.of(Which::Broad).any(|lobe| !lobe.is_black())
+        self.lobes.iter().any(|(which, lobe)| Among::Broad.has(*which, lobe) && !lobe.is_black())
     }
 
     /// Whether some lobe that carries rays on does so in more than single directions.
@@ -302,14 +331,17 @@ impl Optics {
 
     /// Adds a lobe.
     ///
-    /// - `ends`: whether it answers lights only.
-    fn add(&mut self, lobe: Lobe, ends: bool) {
-        let which = match (ends, lobe.is_broad()) {
-            (true, _) => Which::Ended,
-            (false, true) => Which::Broad,
-            (false, false) => Which::Narrow,
+    /// - `carried`: how it carries on diffuse light, as far as it does.
+    fn add(&mut self, lobe: Lobe, carried: Interreflection) {
+        let which = match carried {
+            Interreflection::LeftOut => Which::Ended,
+            Interreflection::Solved if lobe.is_diffuse() => Which::Solved,
+            Interreflection::Solved => Which::Ended,
+            Interreflection::Followed if lobe.is_broad() => Which::Broad,
+            Interreflection::Followed => Which::Narrow,
         };
-        self.spreads |= !ends && !lobe.is_mirror() && !lobe.is_black();
+        let is_continued = Which::CONTINUED.contains(&which);
+        self.spreads |= is_continued && !lobe.is_mirror() && !lobe.is_black();
         match (which, &lobe) {
             _ if lobe.is_black() => {}
             (Which::Narrow, Lobe::Straight(_)) => self.passes = true,
@@ -319,18 +351,14 @@ impl Optics {
         self.lobes.push((which, lobe));
     }
 
-    fn continued(&self) -> impl Iterator<Item = &(Which, Lobe)> {
-        self.lobes.iter().filter(|(kind, _)| *kind != Which::Ended)
-    }
-
     fn of(&self, which: Which) -> impl Iterator<Item = &Lobe> {
         self.lobes.iter().filter(move |(kind, _)| *kind == which).map(|(_, lobe)| lobe)
     }
 
-    /// The chances of the lobes that carry on; they add up to 1, or are all 0.
+    /// The chances of the lobes; they add up to 1, or are all 0.
     fn shares(&self, sighting: &Sighting, among: Among) -> [f64; MOST_LOBES] {
         let mut shares = [0.0; MOST_LOBES];
-        for (share, (which, lobe)) in shares.iter_mut().zip(self.continued()) {
+        for (share, (which, lobe)) in shares.iter_mut().zip(&self.lobes) {
             *share = if among.has(*which, lobe) { lobe.strength(sighting) } else { 0.0 };
         }
         let all: f64 = shares.iter().sum();

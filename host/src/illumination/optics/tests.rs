@@ -9,7 +9,9 @@ use crate::numeric::sampling::{Stream, sphere};
 use std::f64::consts::{PI, TAU};
 
 fn ready(material: &Material, wavelengths: &Wavelengths) -> Optics {
-    Library::new(wavelengths, false).optics(material, true).unwrap_or_else(|error| panic!("{error}"))
+    Library::new(wavelengths, false)
+        .optics(material, Interreflection::Followed)
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn sighting(degrees: f64, before: f64, behind: f64) -> Sighting<'static> {
@@ -213,7 +215,8 @@ fn straight_light_goes_on_and_impossible_materials_are_errors() {
     let straight: Vec<Onward> = optics.mirrored(&sighting(30.0, 1.0, 1.0)).collect();
     assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && optics.passing.is_some());
     let mut library = Library::new(&wavelengths, false);
-    let mut refused = |material: Material| library.optics(&material, true).unwrap_err().to_string();
+    let mut refused =
+        |material: Material| library.optics(&material, Interreflection::Followed).unwrap_err().to_string();
     let loud = Classic { diffuse: Paint::grey(1.5), ..Classic::default() };
     assert!(refused(loud.into()).contains("diffuse reflectance"));
     assert!(refused(copper(rough("Beckman", 0.3))).contains("there are Lambert, Phong"));

@@ -148,9 +148,9 @@ impl Radiosity {
             let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
             let views = is_last.then(|| gatherer.views(&links, &leaves, &elements.sent));
             eprintln!("T {:.2} views", start.elapsed().as_secs_f64());
-            let looks = views.as_ref().map(|views| {
-                visible::seen(&sight, &elements, (&leaves, views.rows()), settings.directions)
-            });
+            let looks = views
+                .as_ref()
+                .map(|views| visible::seen(&sight, &elements, (&leaves, views.rows()), settings.directions));
             eprintln!("T {:.2} seen", start.elapsed().as_secs_f64());
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = looks.as_ref().zip(views.as_ref());

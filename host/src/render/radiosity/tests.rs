@@ -284,7 +284,8 @@ fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
         let is_in = outside && at.y.abs() < 1e-3 && at.x.abs() < half && at.z.abs() < half;
         Channels::splat(if is_in { 3.0 } else { 0.0 })
     };
-    let radiosity = solved(&room, &Settings { error: 0.002, finest: 1.0 / 400.0, ..Settings::default() }, Some(&caught));
+    let radiosity =
+        solved(&room, &Settings { error: 0.002, finest: 1.0 / 400.0, ..Settings::default() }, Some(&caught));
     // From a point at a distance of 1 above the corner of a rectangle of x by y.
     let corner = |x: f64, y: f64| {
         let part = |x: f64, y: f64| x / (1.0 + x * x).sqrt() * (y / (1.0 + x * x).sqrt()).atan();

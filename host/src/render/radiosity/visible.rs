@@ -1,8 +1,8 @@
 //! What sees what: which patches light can come to, and how much of what elements see exchanges light.
 
+use super::contact::Contacts;
 use super::elements::{Elements, Exitance};
 use super::exchange::Looks;
-use super::contact::Contacts;
 use super::hierarchy::{Hierarchy, NONE, Node, Patch};
 use super::sight::{Seen, Sight};
 use crate::color::Channels;

@@ -85,7 +85,8 @@ impl<'a> Direct<'a> {
         let optics = found.optics;
         let light = frame.local(beam.towards);
         let source = &self.world.appearance.sources[index].1;
-        let mut values = [optics.value(Which::Ended, sighting, light), Channels::ZERO];
+        let ended = [Which::Solved, Which::Ended].map(|which| optics.value(which, sighting, light));
+        let mut values = [ended[0] + ended[1], Channels::ZERO];
         for (which, value) in Which::CONTINUED.into_iter().zip(&mut values) {
             let mut continued = optics.value(which, sighting, light);
             let most = continued.max();

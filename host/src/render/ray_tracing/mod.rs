@@ -36,7 +36,7 @@ pub use two_way::Balance;
 
 use super::eye::Eye;
 use super::film::{ByClass, Film, Sample, Tally};
-use super::radiosity::Radiosity;
+use super::radiosity::{Exitance, Radiosity};
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::octree::Octree;
 use crate::plan::{Plan, Stage};
@@ -91,17 +91,17 @@ impl<'a> RayTracer<'a> {
     ///
     /// # Errors
     /// As [`RayTracer::new`], and [`RenderError::Radiosity`].
-    pub fn watched(
-        prepared: &'a Prepared,
-        plan: &'a Plan,
-        watch: &Watch<'_>,
-    ) -> Result<RayTracer<'a>, RenderError> {
+    pub fn watched(prepared: &'a Prepared, plan: &'a Plan, watch: &Watch<'_>) -> Result<RayTracer<'a>, RenderError> {
         let mut world = World::new(prepared, plan)?;
-        if plan.needs(Stage::Radiosity) {
-            world.indirect = Some(Radiosity::new(prepared, plan, &prepared.settings.into(), None, watch)?);
-        }
         let keeps = |object| plan.keeps_object(object);
         let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps)).flatten();
+        if plan.needs(Stage::Radiosity) {
+            let caught = two_way.as_ref().and_then(|two_way| two_way.caught(&world, 0, watch));
+            let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
+            let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
+            let solution = Radiosity::new(prepared, plan, &prepared.settings.into(), exitance, watch)?;
+            world.indirect = Some(solution);
+        }
         Ok(RayTracer { plan, world, two_way })
     }
 

@@ -6,7 +6,7 @@ use super::aim::Ball;
 use super::surfaces::Surfaces;
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
-use crate::illumination::optics::{Among, Onward, Sighting, Which};
+use crate::illumination::optics::{Among, Onward, Sighting};
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::render::eye::{Cone, Sight};
@@ -311,11 +311,11 @@ impl Flight<'_> {
         let lane = leg.lane.or(alone.map(|(lane, _)| lane)).unwrap_or(0);
         let sighting = self.sighting(arrival, lane);
         let direction = choices.point(Purpose::Direction, leg.number);
-        let drawn = optics.onward(&sighting, choice, direction, Among::Only(Which::Narrow));
+        let drawn = optics.onward(&sighting, choice, direction, Among::Narrow);
         let Some(mut drawn) = drawn.filter(|drawn| drawn.density.is_none() || arrival.is_sound(drawn)) else {
             return Some((0.0, None));
         };
-        arrival.turn(&sighting, Which::Narrow, &mut drawn);
+        arrival.turn(&sighting, Among::Narrow, &mut drawn);
         let flux = leg.flux * passed(&sighting, &drawn);
         let expected = match drawn.density {
             // Its own weight is all that is known of a spread one.
@@ -366,16 +366,16 @@ impl Flight<'_> {
                 })
             } else {
                 let [choice, _] = choices.point(Purpose::Choice, number);
-                optics.onward(&sighting, choice, point, Among::Only(Which::Broad))
+                optics.onward(&sighting, choice, point, Among::Broad)
             };
             let Some(mut drawn) = drawn.filter(|drawn| arrival.is_sound(drawn)) else { continue };
             if all > 0.0 {
                 let direction = frame.world(drawn.light);
                 let aimed = balls.iter().zip(angles()).filter(|(b, angle)| *angle > 0.0 && b.is_met(from, direction));
-                let lobes = optics.density(Which::Broad, &sighting, drawn.light, Among::Only(Which::Broad));
+                let lobes = optics.density_among(Among::Broad, &sighting, drawn.light);
                 drawn.density = Some(0.5 * (aimed.count() as f64 / all + lobes));
             }
-            arrival.turn(&sighting, Which::Broad, &mut drawn);
+            arrival.turn(&sighting, Among::Broad, &mut drawn);
             let flux = leg.flux * passed(&sighting, &drawn) * f64::from(parts).recip();
             if flux.max() > 0.0 && flux.is_finite() {
                 self.balance.again += self.watts(flux);
@@ -413,10 +413,10 @@ impl Arrival<'_> {
 
     /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the same as
     /// from there to here.
-    fn turn(&self, sighting: &Sighting<'_>, which: Which, drawn: &mut Onward) {
+    fn turn(&self, sighting: &Sighting<'_>, among: Among, drawn: &mut Onward) {
         if let Some(density) = drawn.density.filter(|_| drawn.light.z > 0.0) {
             let back = Sighting { view: drawn.light, ..*sighting };
-            drawn.weight = self.found.optics.value(which, &back, sighting.view) * (drawn.light.z / density);
+            drawn.weight = self.found.optics.value_among(among, &back, sighting.view) * (drawn.light.z / density);
         }
     }
 

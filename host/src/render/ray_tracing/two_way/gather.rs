@@ -19,6 +19,8 @@ use std::f64::consts::FRAC_2_PI;
 const FEW: usize = 256;
 /// As much where a few will do.
 const COARSE: usize = 96;
+/// As much for each time that much is looked at where little chance is to be left.
+const SMOOTH: usize = 8;
 /// Where there is much, it is as this times the power 2/3 of all: discs then become as small, and chance in them as
 /// little, as makes the error fall fastest.
 const SHARE: f64 = 0.3;
@@ -67,6 +69,17 @@ pub(super) struct Place {
     pub(super) side: u32,
 }
 
+/// How much light is looked at around a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// As it is seen.
+    Fine,
+    /// A few ways will do, as for one of the many places that send light to what is seen.
+    Coarse,
+    /// So much that little chance is left.
+    Smooth,
+}
+
 /// What stands around places.
 pub(super) struct Surroundings<'a> {
     pub(super) world: &'a World<'a>,
@@ -75,8 +88,7 @@ pub(super) struct Surroundings<'a> {
     pub(super) opaque: &'a Sorted,
     /// The largest disc, scene units.
     pub(super) reach: f64,
-    /// Whether a few ways of light will do, as for one of the many places that send light to what is seen.
-    pub(super) coarse: bool,
+    pub(super) detail: Detail,
     /// What the areas of discs are multiplied with.
     pub(super) shrink: f64,
 }
@@ -158,7 +170,11 @@ impl Captured {
 
     /// Visits the light that arrives around a place, as if it arrived at it.
     pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) {
-        let most = if surroundings.coarse { COARSE } else { self.most };
+        let most = match surroundings.detail {
+            Detail::Fine => self.most,
+            Detail::Coarse => COARSE,
+            Detail::Smooth => SMOOTH * self.most,
+        };
         let around = self.points.around(place.position, surroundings.reach, most);
         if around.count == 0 {
             return;

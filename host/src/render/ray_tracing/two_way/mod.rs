@@ -31,9 +31,10 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
 use crate::render::Watch;
+use crate::render::radiosity::diffuse;
 use aim::{Aimed, Ball, Guide};
 use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
-use gather::{Captured, Place, Surroundings};
+use gather::{Captured, Detail, Place, Surroundings};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -53,6 +54,8 @@ const CHUNK: u32 = 1024;
 /// The largest disc over which caught light is spread, as a part of the diagonal of the scene.
 const REACH: f64 = 0.05;
 
+/// How far above a surface ways along it lead, as a part of the size of the scene.
+const LIFT: f64 = 1e-9;
 /// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
 const NARROW: f64 = 0.9;
 
@@ -338,6 +341,52 @@ impl CaughtLight<'_> {
         self.capture.balance
     }
 
+    /// What a side of a triangle reflects diffusely of the light that was caught around a point, W/m², in lanes that are
+    /// means over all combs.
+    pub(super) fn exitance(&self, triangle: u32, outside: bool, at: DVec3) -> Channels {
+        let appearance = &self.world.appearance;
+        let prepared = appearance.prepared;
+        let optics = appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let corners = prepared.corners(triangle);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).try_normalize();
+        let Some(normal) = normal.filter(|_| optics.takes()) else { return Channels::ZERO };
+        let surface = self.two_way.surfaces.of(triangle);
+        let lift = LIFT * (at.abs().max_element() + prepared.bounds.diagonal());
+        let place = Place {
+            position: at,
+            outside: normal,
+            leave: at + normal * if outside { lift } else { -lift },
+            surface,
+            side: flight::side_of(surface, outside),
+        };
+        let mut irradiance = Channels::ZERO;
+        self.capture.light.each(&place, &self.surroundings(Detail::Smooth), |light| irradiance += light.irradiance);
+        if irradiance == Channels::ZERO {
+            return irradiance;
+        }
+        let weights = crate::numeric::triangle::weights(corners, at);
+        let size = normal.any_orthonormal_pair();
+        let place = optics.is_textured().then(|| prepared.place(triangle, weights, [size.0 * lift, size.1 * lift]));
+        let combs = appearance.wavelengths.combs();
+        let reflectance = (0..combs).fold(Channels::ZERO, |sum, comb| {
+            let painting = place.as_ref().map(|place| optics.paint(place, comb));
+            sum + diffuse(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()))
+        });
+        reflectance * (combs as f64).recip() * irradiance
+    }
+
+    fn surroundings(&self, detail: Detail) -> Surroundings<'_> {
+        Surroundings {
+            world: self.world,
+            surfaces: &self.two_way.surfaces,
+            opaque: &self.two_way.opaque,
+            reach: self.two_way.reach,
+            detail,
+            shrink: self.shrink,
+        }
+    }
+
     /// Radiance towards the viewer of an element by the light that was caught around it.
     ///
     /// - `passed`: how much of the radiance comes to the eye. `is_parted`: whether a single wavelength is left of it.
@@ -363,14 +412,7 @@ impl CaughtLight<'_> {
             side: flight::side_of(surface, element.outside),
         };
         let appearance = &self.world.appearance;
-        let surroundings = Surroundings {
-            world: self.world,
-            surfaces: &two_way.surfaces,
-            opaque: &two_way.opaque,
-            reach: two_way.reach,
-            coarse,
-            shrink: self.shrink,
-        };
+        let surroundings = self.surroundings(if coarse { Detail::Coarse } else { Detail::Fine });
         let frame = found.frame();
         let wavelengths = &appearance.wavelengths;
         let even = found.optics.even_value(sighting);
