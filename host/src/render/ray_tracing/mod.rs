@@ -18,6 +18,8 @@ mod caustic_tests;
 #[cfg(test)]
 mod exact_tests;
 #[cfg(test)]
+mod combined_tests;
+#[cfg(test)]
 mod light_tests;
 #[cfg(test)]
 mod motion_tests;

@@ -6,8 +6,8 @@
 
 use super::super::world::World;
 use super::flight::Caught;
-use super::surfaces::{Surfaces, part_of_disc};
-use super::walls::{Flat, Wall};
+use super::surfaces::Surfaces;
+use super::walls::{Flat, Wall, part_in_sight};
 use crate::color::{Channels, LANES};
 use crate::numeric::ray::Ray;
 use crate::octree::{Points, Sorted};
@@ -203,8 +203,10 @@ impl Captured {
         if near.is_empty() {
             return;
         }
-        self.keep_seen(&mut near, place, around.reach, surroundings);
-        let Some((square, part)) = self.disc(&near, place, surroundings, around.reach) else { return };
+        let (x, y) = place.outside.any_orthonormal_pair();
+        let flat = (around.reach, [x, y]);
+        let walls = self.keep_seen(&mut near, place, flat, surroundings);
+        let Some((square, part)) = self.disc(&near, &walls, place, flat, surroundings) else { return };
         // In scene units from here on.
         let area = square * side * side;
         let factor = FRAC_2_PI / (area * part);
@@ -223,13 +225,20 @@ impl Captured {
         }
     }
 
-    /// Leaves out light that arrived behind something that stands on the surface, as seen from the place.
+    /// Leaves out light that arrived behind something that stands on the surface, as seen from the place; tells what stands
+    /// there.
     ///
     /// All ways along the surface lie in one plane: walls are cut with it, and then stand in the way as segments.
-    fn keep_seen(&self, near: &mut Vec<(u32, f32)>, place: &Place, reach: f64, surroundings: &Surroundings<'_>) {
+    fn keep_seen(
+        &self,
+        near: &mut Vec<(u32, f32)>,
+        place: &Place,
+        (reach, axes): (f64, [DVec3; 2]),
+        surroundings: &Surroundings<'_>,
+    ) -> Vec<Wall> {
         let above = (place.leave - place.position).normalize_or(place.outside);
         let Surroundings { world, surfaces, opaque, .. } = surroundings;
-        let flat = Flat::new(place.leave, above, reach);
+        let flat = Flat::new(place.leave, above, axes, reach);
         let mut walls: Vec<Wall> = Vec::new();
         opaque.touching(flat.bounds(), |triangle| {
             if walls.len() <= MANY_WALLS && surfaces.of(triangle) != place.surface {
@@ -237,7 +246,7 @@ impl Captured {
             }
         });
         if walls.is_empty() {
-            return;
+            return walls;
         }
         let side = self.points.side();
         let local = self.points.local(place.position);
@@ -250,21 +259,29 @@ impl Captured {
                     surfaces.of(triangle) != place.surface && super::stands(world, triangle)
                 })
             });
-            return;
+            return Vec::new();
         }
-        let [x, y] = flat.axes.map(|axis| (axis * (side / reach)).as_vec3());
+        let [x, y] = axes.map(|axis| (axis * (side / reach)).as_vec3());
         near.retain(|(number, _)| {
             let offset = glam::Vec3::from_array(self.points.local_offset(local, *number as usize));
             let at = Vec2::new(offset.dot(x), offset.dot(y));
             !walls.iter().any(|wall| wall.hides(at))
         });
+        walls
     }
 
     /// The disc that tells most, by the square of its radius in sides of the cube, and how much of it is on the surface.
     ///
     /// # Source
     /// Goldenshluger and Nemirovski 1997, intersection of confidence intervals; the weight is that of Epanechnikov 1969.
-    fn disc(&self, near: &[(u32, f32)], place: &Place, of: &Surroundings<'_>, reach: f64) -> Option<(f64, f64)> {
+    fn disc(
+        &self,
+        near: &[(u32, f32)],
+        walls: &[Wall],
+        place: &Place,
+        (reach, axes): (f64, [DVec3; 2]),
+        of: &Surroundings<'_>,
+    ) -> Option<(f64, f64)> {
         let side = self.points.side();
         let whole = (reach / side) * (reach / side);
         let mut rings = [Sums::default(); RINGS];
@@ -272,10 +289,10 @@ impl Captured {
             let ring = (f64::from(*square) / whole * RINGS as f64) as usize;
             rings[ring.min(RINGS - 1)].add(f64::from(self.strength[*number as usize]), f64::from(*square));
         }
-        let borders = of.surfaces.around(place.surface, place.position, place.outside, reach);
-        let part = |square: f64| match borders.is_empty() {
+        let borders = of.surfaces.around(place.surface, place.position, axes, reach);
+        let part = |square: f64| match borders.is_empty() && walls.is_empty() {
             true => 1.0,
-            false => part_of_disc(&borders, square.sqrt() * side),
+            false => part_in_sight(walls, &borders, (square / whole).sqrt()),
         };
         let (mut sums, mut next) = (Sums::default(), 0);
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);

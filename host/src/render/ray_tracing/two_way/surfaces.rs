@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 /// Where planes turn by more, degrees, a surface ends.
 const CREASE: f64 = 30.0;
 /// Less than this part of a disc is taken for this: next to a corner nothing is left to tell light from none.
-const LEAST_PART: f64 = 1e-3;
+pub(super) const LEAST_PART: f64 = 1e-3;
 
 /// The smooth surfaces of a scene.
 pub(super) struct Surfaces {
@@ -80,14 +80,13 @@ impl Surfaces {
         self.of[triangle as usize]
     }
 
-    /// The borders of a surface within a distance of a place, as its plane shows them, the place in the middle.
+    /// The borders of a surface within a distance of a place, as its plane shows them, the place in the middle, in units of
+    /// the distance.
     ///
-    /// - `normal`: of the surface, unit length, outwards.
-    pub(super) fn around(&self, surface: u32, place: DVec3, normal: DVec3, reach: f64) -> Vec<[DVec2; 2]> {
+    /// - `axes`: of the plane. As seen from outside, turning from the first to the second is counter-clockwise.
+    pub(super) fn around(&self, surface: u32, place: DVec3, [x, y]: [DVec3; 2], reach: f64) -> Vec<[DVec2; 2]> {
         let mut found = Vec::new();
-        let (x, y) = normal.any_orthonormal_pair();
-        // As seen from outside, turning from x to y is counter-clockwise.
-        let flat = |p: DVec3| DVec2::new((p - place).dot(x), (p - place).dot(y));
+        let flat = |p: DVec3| DVec2::new((p - place).dot(x), (p - place).dot(y)) / reach;
         let around = Bounds { min: place - DVec3::splat(reach), max: place + DVec3::splat(reach) };
         self.near.touching(around, |number| {
             let border = &self.borders[number as usize];
@@ -114,7 +113,7 @@ pub(super) fn part_of_disc(borders: &[[DVec2; 2]], radius: f64) -> f64 {
 }
 
 /// The integral of (1 − d²/r²)² over the angles under which a segment is seen within a disc, signed by its turn.
-fn beyond([a, b]: [DVec2; 2], radius: f64) -> f64 {
+pub(super) fn beyond([a, b]: [DVec2; 2], radius: f64) -> f64 {
     let way = b - a;
     let length = way.length();
     let along = way / length;

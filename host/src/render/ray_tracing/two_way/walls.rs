@@ -1,7 +1,12 @@
 //! What stands on a plane, in the way of light along it.
 
+use super::surfaces::{LEAST_PART, beyond, part_of_disc};
 use crate::numeric::bounds::Bounds;
 use glam::{DVec2, DVec3, Vec2};
+use std::f64::consts::TAU;
+
+/// Farther than any disc reaches, in radii.
+const FAR: f64 = 1e6;
 
 /// Walls are longer by this part of the disc at both ends, so that rounding leaves no gap where two of them meet.
 const OVERLAP: f64 = 1e-6;
@@ -10,7 +15,7 @@ const OVERLAP: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flat {
     middle: DVec3,
-    normal: DVec3,
+    above: DVec3,
     /// Of the plane, unit length.
     pub(super) axes: [DVec3; 2],
     radius: f64,
@@ -24,10 +29,9 @@ pub(super) struct Wall {
 }
 
 impl Flat {
-    /// - `normal`: unit length. `radius`: scene units.
-    pub(super) fn new(middle: DVec3, normal: DVec3, radius: f64) -> Flat {
-        let (x, y) = normal.any_orthonormal_pair();
-        Flat { middle, normal, axes: [x, y], radius }
+    /// - `above`: the normal of its side, unit length. `axes`: of the plane. `radius`: scene units.
+    pub(super) fn new(middle: DVec3, above: DVec3, axes: [DVec3; 2], radius: f64) -> Flat {
+        Flat { middle, above, axes, radius }
     }
 
     /// What the disc reaches to.
@@ -40,7 +44,7 @@ impl Flat {
     /// Where a triangle cuts the disc; none if it does not, or only touches it from below.
     pub(super) fn cut(&self, corners: [DVec3; 3]) -> Option<Wall> {
         let offsets = corners.map(|corner| corner - self.middle);
-        let heights = offsets.map(|offset| offset.dot(self.normal));
+        let heights = offsets.map(|offset| offset.dot(self.above));
         let is_above = heights.map(|height| height > 0.0);
         let mut ends = [DVec2::ZERO; 2];
         let mut found = 0;
@@ -78,6 +82,57 @@ impl Wall {
     }
 }
 
+/// How much of a weighted disc is on the surface and in sight of its middle.
+///
+/// - `borders`: of the surface, which is on their left. `radius`: of the disc, where that within which walls are known has 1.
+///
+/// # Source
+/// Ours: as [`part_of_disc`], from angle to angle between the ends of all segments. Behind the first wall nothing counts,
+/// and a border gives or takes only what is before the wall.
+pub(super) fn part_in_sight(walls: &[Wall], borders: &[[DVec2; 2]], radius: f64) -> f64 {
+    if walls.is_empty() {
+        return part_of_disc(borders, radius);
+    }
+    let walls: Vec<[DVec2; 2]> = walls.iter().map(|wall| wall.ends.map(|end| end.as_dvec2())).collect();
+    let mut angles: Vec<f64> = walls.iter().chain(borders).flatten().map(|end| end.to_angle()).collect();
+    angles.sort_by(f64::total_cmp);
+    let first = angles[0] + TAU;
+    angles.push(first);
+    let mut missing = 0.0;
+    for pair in angles.windows(2).filter(|pair| pair[0] < pair[1]) {
+        let [from, to] = [pair[0], pair[1]].map(DVec2::from_angle);
+        let middle = DVec2::from_angle(0.5 * (pair[0] + pair[1]));
+        let distance = |segment: &[DVec2; 2]| along(*segment, middle);
+        let beyond = |segment: &[DVec2; 2]| {
+            let ends = [from, to].map(|way| way * along_line(*segment, way).clamp(0.0, FAR));
+            beyond(ends, radius).abs()
+        };
+        let seen = walls.iter().filter_map(|wall| Some((distance(wall)?, wall)));
+        let nearest = seen.min_by(|a, b| a.0.total_cmp(&b.0));
+        let (end, hidden) = nearest.map_or((f64::INFINITY, 0.0), |(end, wall)| (end, beyond(wall)));
+        missing += hidden;
+        for border in borders {
+            if distance(border).is_some_and(|distance| distance < end) {
+                let part = (beyond(border) - hidden).max(0.0);
+                missing += if border[0].perp_dot(border[1]) >= 0.0 { part } else { -part };
+            }
+        }
+    }
+    (1.0 - missing / TAU).clamp(LEAST_PART, 1.0)
+}
+
+/// Where a ray from the origin meets a segment, if it does.
+fn along([a, b]: [DVec2; 2], way: DVec2) -> Option<f64> {
+    let is_between = (a.perp_dot(way) >= 0.0) == (way.perp_dot(b) >= 0.0);
+    let distance = along_line([a, b], way);
+    (is_between && distance > 0.0).then_some(distance)
+}
+
+/// Where it meets its line.
+fn along_line([a, b]: [DVec2; 2], way: DVec2) -> f64 {
+    a.perp_dot(b - a) / way.perp_dot(b - a)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,7 +146,8 @@ mod tests {
         for _ in 0..20_000 {
             let mut vector = || DVec3::new(coordinate(), coordinate(), coordinate());
             let (middle, normal, corners) = (vector(), vector().normalize(), [vector(), vector(), vector()]);
-            let flat = Flat::new(middle, normal, 0.8);
+            let (x, y) = normal.any_orthonormal_pair();
+            let flat = Flat::new(middle, normal, [x, y], 0.8);
             let wall = flat.cut(corners);
             let at = DVec2::new(coordinate(), coordinate()) * 0.7;
             let end = middle + (flat.axes[0] * at.x + flat.axes[1] * at.y) * 0.8;
@@ -111,8 +167,50 @@ mod tests {
     }
 
     #[test]
+    fn the_part_in_sight_is_what_a_grid_of_places_sees() {
+        let segment = |a: [f64; 2], b: [f64; 2]| [DVec2::from_array(a), DVec2::from_array(b)];
+        let wall = |a, b| {
+            let [a, b] = segment(a, b);
+            Wall { ends: if a.perp_dot(b) < 0.0 { [b, a] } else { [a, b] }.map(|end| end.as_vec2()) }
+        };
+        let corner = [wall([-3.0, 0.3], [3.0, 0.3]), wall([-0.2, -2.0], [-0.2, 2.0])];
+        let behind = [wall([0.2, -0.3], [0.25, 0.4]), wall([0.5, -0.2], [0.45, 0.1])];
+        // The surface is below a line, and has a hole.
+        let line = vec![segment([2.0, 0.6], [-2.0, 0.6])];
+        let hole = [[0.1, -0.5], [0.1, -0.2], [0.4, -0.2], [0.4, -0.5]];
+        let hole: Vec<[DVec2; 2]> = (0..4).map(|i| segment(hole[i], hole[(i + 1) % 4])).collect();
+        let is_on = |p: DVec2, has_line: bool, has_hole: bool| {
+            (!has_line || p.y < 0.6) && !(has_hole && p.x > 0.1 && p.x < 0.4 && p.y > -0.5 && p.y < -0.2)
+        };
+        for walls in [&corner[..1], &corner[..], &behind[..]] {
+            for (has_line, has_hole) in [(false, false), (true, false), (false, true), (true, true)] {
+                let lines = line.iter().filter(|_| has_line);
+                let borders: Vec<[DVec2; 2]> = lines.chain(hole.iter().filter(|_| has_hole)).copied().collect();
+                for radius in [1.0, 0.7, 0.35] {
+                    let (mut all, mut part) = (0.0, 0.0);
+                    for i in 0..600 {
+                        for j in 0..600 {
+                            let p = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) / 300.0 - 1.0;
+                            let weight = (1.0 - p.length_squared() / (radius * radius)).max(0.0);
+                            let is_seen = !walls.iter().any(|wall| wall.hides(p.as_vec2()));
+                            all += weight;
+                            part += if is_seen && is_on(p, has_line, has_hole) { weight } else { 0.0 };
+                        }
+                    }
+                    let found = part_in_sight(walls, &borders, radius);
+                    assert!(
+                        (found - part / all).abs() < 4e-3,
+                        "{radius} {has_line} {has_hole}: {found} {}",
+                        part / all
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
     fn nothing_is_seen_between_two_walls_that_meet() {
-        let flat = Flat::new(DVec3::new(3.0, -7.0, 1e-9), DVec3::Z, 2.0);
+        let flat = Flat::new(DVec3::new(3.0, -7.0, 1e-9), DVec3::Z, [DVec3::X, DVec3::Y], 2.0);
         let corner = |x: f64, z: f64| DVec3::new(3.0 + x, -6.0, z);
         // One face of a box, its diagonal from below to above.
         let walls = [
@@ -129,7 +227,7 @@ mod tests {
 
     #[test]
     fn what_touches_the_plane_from_below_or_is_far_is_no_wall() {
-        let flat = Flat::new(DVec3::ZERO, DVec3::Z, 1.0);
+        let flat = Flat::new(DVec3::ZERO, DVec3::Z, [DVec3::X, DVec3::Y], 1.0);
         let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
         assert!(flat.cut([at(-1.0, 0.5, 0.0), at(1.0, 0.5, 0.0), at(0.0, 0.5, -1.0)]).is_none());
         assert!(flat.cut([at(-1.0, 0.5, 0.0), at(1.0, 0.5, 0.0), at(0.0, 0.5, 1.0)]).is_some());
