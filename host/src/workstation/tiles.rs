@@ -44,7 +44,7 @@ fn polygon(tile: &Tile) -> Result<Polygon, WorkstationError> {
         let color = CornerColor { front, back: Some(back).filter(|back| *back != front) };
         Ok(PolygonVertex { soft: true, position: position.to_array(), normal: None, color: Some(color) })
     };
-    // Counter-clockwise about the outside; the other way round, on the screen too, is clockwise.
+    // On the screen both spaces look alike: what ran counter-clockwise about the outside does so still.
     let vertices = tile.corners.iter().zip(&tile.colors).rev().map(vertex).collect::<Result<_, _>>()?;
     Ok(Polygon { attributes: None, outline: None, coplanar: false, vertices })
 }

@@ -56,7 +56,7 @@ pub(super) struct Node {
     /// Of which patch it is; [`NONE`] for a cluster.
     pub(super) patch: u32,
     /// Whether its children are what lines made of it, and not its quarters.
-    is_cut: bool,
+    pub(super) is_cut: bool,
     /// Whether no light can come to it.
     pub(super) is_dark: bool,
 }

@@ -33,7 +33,7 @@ pub use elements::Exitance;
 pub(in crate::render) use elements::diffuse;
 pub use report::Report;
 pub use solver::Unsolvable;
-pub use surface::Part;
+pub use surface::{Division, Part};
 
 use super::ray_tracing::world::World;
 use super::{RenderError, Watch};
@@ -178,11 +178,11 @@ impl Radiosity {
         self.light.at(triangle, outside, weights, part)
     }
 
-    /// How often a side of a triangle is divided into four about a place; 0 where no light comes.
+    /// How a side of a triangle is divided into elements; none where no light comes.
     ///
-    /// - `outside`, `weights`: as in [`Radiosity::irradiance`].
-    pub fn divisions(&self, triangle: u32, outside: bool, weights: [f64; 3]) -> u32 {
-        self.light.divisions(triangle, outside, weights)
+    /// - `outside`: as in [`Radiosity::irradiance`].
+    pub fn division(&self, triangle: u32, outside: bool) -> Option<Division> {
+        self.light.division(triangle, outside)
     }
 }
 

@@ -35,6 +35,26 @@ pub(super) struct SurfaceLight {
     values: Vec<[Channels; 2]>,
 }
 
+/// A side of a triangle, or a part of it, with the parts of which it consists.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Division {
+    /// Its corners, counter-clockwise about the side; of the outer side of a triangle as the scene orders them, of the inner
+    /// one the first, the third and the second.
+    pub corners: [DVec3; 3],
+    /// None for an element; else the four that the middles of its edges make, at the corners and in the middle, or, if it
+    /// is cut, what lines left.
+    pub parts: Vec<Division>,
+    /// Whether it is cut.
+    pub is_cut: bool,
+}
+
+impl Division {
+    /// How many elements there are in it.
+    pub fn leaves(&self) -> usize {
+        if self.parts.is_empty() { 1 } else { self.parts.iter().map(Division::leaves).sum() }
+    }
+}
+
 /// Corners by their place.
 #[derive(Default)]
 struct Corners {
@@ -139,18 +159,16 @@ impl SurfaceLight {
 }
 
 impl SurfaceLight {
-    /// How often a side of a triangle is divided about a place.
-    pub(super) fn divisions(&self, triangle: u32, outside: bool, weights: [f64; 3]) -> u32 {
+    /// How a side of a triangle is divided; none where no light comes.
+    pub(super) fn division(&self, triangle: u32, outside: bool) -> Option<Division> {
         let patch = self.patch_of[triangle as usize][usize::from(!outside)];
-        if patch == NONE {
-            return 0;
-        }
-        let hierarchy = &self.hierarchy;
-        let (leaf, _) = hierarchy.leaf_at(patch, hierarchy.patches[patch as usize].weights(weights));
-        let parts =
-            hierarchy.nodes[hierarchy.node_of[patch as usize] as usize].area / hierarchy.nodes[leaf as usize].area;
-        // Each division makes four equal parts.
-        (parts.log2() / 2.0).round() as u32
+        (patch != NONE).then(|| self.division_of(self.hierarchy.node_of[patch as usize] as usize))
+    }
+
+    fn division_of(&self, node: usize) -> Division {
+        let node = &self.hierarchy.nodes[node];
+        let parts = node.children().filter(|_| !node.is_dark).map(|child| self.division_of(child)).collect();
+        Division { corners: node.corners, parts, is_cut: node.is_cut }
     }
 }
 

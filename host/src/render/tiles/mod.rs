@@ -8,9 +8,10 @@
 //! *Not modelled*: what depends on the direction of view. Mirrors are black, what light goes straight through is left out, a
 //! sky is background. Patterns finer than elements are looked up at corners only.
 
-mod tree;
+mod points;
 #[cfg(test)]
 mod tests;
+mod tree;
 
 use super::RenderError;
 use super::radiosity::Radiosity;
@@ -20,8 +21,8 @@ use crate::illumination::Light;
 use crate::plan::Plan;
 use crate::scene::Prepared;
 use glam::DVec3;
+use points::Points;
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
 use tree::{Looks, Node, Piece};
 
 /// Colours of a tile may be so far from those of its elements: a step of eight bits.
@@ -30,6 +31,10 @@ const TOLERANCE: f64 = 1.0 / 255.0;
 const COARSER: f64 = 1.5;
 /// Corners of a tile at the most: those that a polygon of the workstation may have.
 const MOST_IN_TILE: usize = 250;
+/// Places nearer than this are one, as a part of the diagonal of the scene.
+const NEAR: f64 = 1.0 / (1 << 30) as f64;
+/// A corner is on an edge if it is no farther from it, in such lengths.
+const ON_EDGE: f64 = 2.0;
 /// Sides of a round lamp.
 const LAMP_SIDES: usize = 32;
 
@@ -78,9 +83,10 @@ impl Tiling {
         let lamps = lamps(prepared, plan, &appearance);
         let mut tiling = Tiling { elements: trees.iter().map(Node::leaves).sum(), ..Tiling::default() };
         let mut tolerance = TOLERANCE;
+        let grid = Grid { step: (NEAR * prepared.bounds.diagonal()).max(f64::MIN_POSITIVE) };
         loop {
             let mut pieces: Vec<Vec<Piece>> = trees.iter().map(|tree| tree.pieces(tolerance)).collect();
-            let outlines = outlines(&mut pieces);
+            let outlines = outlines(&mut pieces, grid);
             let corners: usize = outlines.iter().flatten().map(Vec::len).sum();
             if corners > most && tolerance < 1.0 {
                 tolerance *= COARSER;
@@ -90,7 +96,7 @@ impl Tiling {
                 triangles.par_iter().zip(pieces).zip(outlines).flat_map_iter(|((triangle, pieces), outlines)| {
                     let looks = &looks;
                     let tile = move |(piece, outline): (Piece, Vec<Corner>)| looks.tile(*triangle, &piece, &outline);
-                    pieces.into_iter().zip(outlines).map(tile)
+                    pieces.into_iter().zip(outlines).filter(|(_, outline)| outline.len() > 2).map(tile)
                 });
             tiling.tiles = tiles.collect();
             tiling.tiles.extend(lamps);
@@ -108,26 +114,51 @@ impl Tiling {
 /// A corner of a tile, and the weights of the corners of its triangle there.
 type Corner = (DVec3, [f64; 3]);
 
-/// A point by its bits.
-fn key(point: DVec3) -> [u64; 3] {
-    // Adding 0 turns -0 into 0.
-    point.to_array().map(|x| (x + 0.0).to_bits())
+/// Places so near that they are one, by the lines of a grid.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    /// How far its lines are apart.
+    step: f64,
 }
 
-/// The corners of all pieces with those that neighbours have on their edges. Divides pieces that would have too many.
-fn outlines(pieces: &mut [Vec<Piece>]) -> Vec<Vec<Vec<Corner>>> {
+impl Grid {
+    /// The lines that are next to a point.
+    fn key(&self, point: DVec3) -> [i64; 3] {
+        point.to_array().map(|x| (x / self.step).round() as i64)
+    }
+
+    /// The point where lines cross.
+    fn point(&self, key: [i64; 3]) -> DVec3 {
+        DVec3::from(key.map(|line| line as f64 * self.step))
+    }
+
+    /// The crossing that is next to a point.
+    fn snapped(&self, point: DVec3) -> DVec3 {
+        self.point(self.key(point))
+    }
+}
+
+/// The corners of all pieces with those that neighbours have on their edges. Divides pieces that would have too many. Of a
+/// piece that is next to nothing, fewer than three are left.
+fn outlines(pieces: &mut [Vec<Piece>], grid: Grid) -> Vec<Vec<Vec<Corner>>> {
     loop {
-        let known: FxHashSet<[u64; 3]> = pieces.iter().flatten().flat_map(|piece| piece.corners.map(key)).collect();
-        let outlines: Vec<Vec<Vec<Corner>>> =
-            pieces.par_iter().map(|pieces| pieces.iter().map(|piece| outline(piece, &known)).collect()).collect();
+        let mut keys: Vec<[i64; 3]> =
+            pieces.iter().flatten().flat_map(|piece| piece.corners.map(|corner| grid.key(corner))).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        let points = Points::new(keys.into_iter().map(|key| grid.point(key)).collect());
+        let outlines: Vec<Vec<Vec<Corner>>> = pieces
+            .par_iter()
+            .map(|pieces| pieces.iter().map(|piece| outline(piece, &points, grid)).collect())
+            .collect();
         let mut divided = false;
         for (pieces, outlines) in pieces.iter_mut().zip(&outlines) {
             if outlines.iter().all(|outline| outline.len() <= MOST_IN_TILE) {
                 continue;
             }
             divided = true;
-            let halved = std::mem::take(pieces).into_iter().zip(outlines);
-            *pieces = halved
+            let parts = std::mem::take(pieces).into_iter().zip(outlines);
+            *pieces = parts
                 .flat_map(|(piece, outline)| match outline.len() {
                     0..=MOST_IN_TILE => vec![piece],
                     _ => piece.quarters().to_vec(),
@@ -140,25 +171,23 @@ fn outlines(pieces: &mut [Vec<Piece>]) -> Vec<Vec<Vec<Corner>>> {
     }
 }
 
-/// The corners of a piece and those that others have in the middle of its edges, in the middle of their halves, and so on.
-fn outline(piece: &Piece, known: &FxHashSet<[u64; 3]>) -> Vec<Corner> {
-    let mut corners = Vec::with_capacity(3);
+/// The corners of a piece and those that others have on its edges.
+fn outline(piece: &Piece, points: &Points, grid: Grid) -> Vec<Corner> {
+    let mut corners: Vec<Corner> = Vec::with_capacity(3);
     for i in 0..3 {
-        let of = |i: usize| (piece.corners[i], piece.weights[i]);
-        corners.push(of(i));
-        between(of(i), of((i + 1) % 3), known, &mut corners);
+        let j = (i + 1) % 3;
+        let ends = [i, j].map(|i| grid.snapped(piece.corners[i]));
+        let [from, to] = [i, j].map(|i| piece.weights[i]);
+        corners.push((ends[0], from));
+        let mixed = |part: f64| std::array::from_fn(|k| from[k] + (to[k] - from[k]) * part);
+        let others = points.between(ends, ON_EDGE * grid.step).into_iter();
+        corners.extend(others.map(|(part, point)| (point, mixed(part))));
+    }
+    corners.dedup_by(|one, other| one.0 == other.0);
+    if corners.len() > 1 && corners[0].0 == corners[corners.len() - 1].0 {
+        corners.pop();
     }
     corners
-}
-
-fn between(from: Corner, to: Corner, known: &FxHashSet<[u64; 3]>, corners: &mut Vec<Corner>) {
-    let middle = tree::middle(from, to);
-    if middle.0 == from.0 || middle.0 == to.0 || !known.contains(&key(middle.0)) {
-        return;
-    }
-    between(from, middle, known, corners);
-    corners.push(middle);
-    between(middle, to, known, corners);
 }
 
 /// The surfaces that emit and are no objects; they do not emit on their reverse.

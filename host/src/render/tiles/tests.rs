@@ -10,7 +10,7 @@ use crate::render::radiosity::{Part, Settings};
 use crate::scene::{Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::DMat4;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::FRAC_1_PI;
 
 fn matt(red: f64, green: f64, blue: f64) -> Material {
@@ -65,7 +65,8 @@ fn tiles_of_solids_meet_edge_to_edge_and_cover_them() {
         let mut edges: HashMap<([u64; 3], [u64; 3]), i32> = HashMap::new();
         for corners in tiles.iter().map(|tile| &tile.corners) {
             for (k, from) in corners.iter().enumerate() {
-                let [a, b] = [*from, corners[(k + 1) % corners.len()]].map(key);
+                let [a, b] =
+                    [*from, corners[(k + 1) % corners.len()]].map(|p| p.to_array().map(|x| (x + 0.0).to_bits()));
                 assert_ne!(a, b);
                 *edges.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
             }
@@ -73,7 +74,7 @@ fn tiles_of_solids_meet_edge_to_edge_and_cover_them() {
         assert!(edges.values().all(|sum| *sum == 0), "each edge is run along as often in each direction");
         let area: f64 = tiles.iter().map(|tile| newell(&tile.corners).length() / 2.0).sum();
         let expected = 2.0 * 16.0 + 4.0 * 2.0 + 6.0;
-        assert!((area / expected - 1.0).abs() < 1e-12, "{area} {expected}");
+        assert!((area / expected - 1.0).abs() < 1e-6, "{area} {expected}");
         assert_eq!(lamp.corners.len(), 4);
     }
 }
@@ -93,7 +94,7 @@ fn tiles_stand_for_more_elements_where_the_light_is_even_and_have_their_colours(
             let corners = prepared.corners(*triangle);
             let weights = crate::numeric::triangle::weights(corners, middle);
             let found: DVec3 = (0..3).map(|k| corners[k] * weights[k]).sum();
-            newell(&corners).dot(normal) > 0.0 && found.distance(middle) < 1e-9
+            newell(&corners).dot(normal) > 0.0 && found.distance(middle) < 1e-7
         });
         let Some(triangle) = around else { continue };
         let weights = crate::numeric::triangle::weights(prepared.corners(triangle), middle);
@@ -168,9 +169,10 @@ fn a_long_edge_beside_many_small_elements_is_cut_so_that_no_tile_has_too_many_co
     }
     assert_eq!(small.len(), 512);
     let mut pieces = vec![vec![triangle([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]])], small];
-    let outlines = outlines(&mut pieces);
+    let outlines = outlines(&mut pieces, Grid { step: NEAR });
     assert!(pieces[0].len() > 4, "{}", pieces[0].len());
     assert!(outlines.iter().flatten().all(|outline| outline.len() <= MOST_IN_TILE));
-    let beside = outlines[0].iter().flatten().filter(|(corner, _)| corner.y == 0.0).map(|(corner, _)| key(*corner));
-    assert_eq!(beside.collect::<FxHashSet<_>>().len(), 513, "they have all corners of those beside them");
+    let beside =
+        outlines[0].iter().flatten().filter(|(corner, _)| corner.y == 0.0).map(|(corner, _)| corner.x.to_bits());
+    assert_eq!(beside.collect::<HashSet<_>>().len(), 513, "they have all corners of those beside them");
 }

@@ -4,7 +4,7 @@ use super::{Corner, Tile};
 use crate::color::{Channels, srgb};
 use crate::illumination::optics::Painting;
 use crate::numeric::triangle::weights;
-use crate::render::radiosity::{Part, Radiosity, diffuse};
+use crate::render::radiosity::{Division, Part, Radiosity, diffuse};
 use crate::render::ready::Appearance;
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_1_PI;
@@ -23,7 +23,7 @@ pub(super) struct Piece {
 }
 
 /// The point in the middle between two.
-pub(super) fn middle((p, u): Corner, (q, v): Corner) -> Corner {
+fn middle((p, u): Corner, (q, v): Corner) -> Corner {
     (0.5 * (p + q), std::array::from_fn(|i| 0.5 * (u[i] + v[i])))
 }
 
@@ -56,13 +56,13 @@ pub(super) struct Node {
     piece: Piece,
     /// How far mixtures of the colours of its corners are from those of its elements, 0..=1.
     off: f32,
-    children: Option<Box<[Node; 4]>>,
+    children: Vec<Node>,
 }
 
 impl Node {
     /// How many elements there are in it.
     pub(super) fn leaves(&self) -> usize {
-        self.children.as_ref().map_or(1, |children| children.iter().map(Node::leaves).sum())
+        if self.children.is_empty() { 1 } else { self.children.iter().map(Node::leaves).sum() }
     }
 
     /// The largest pieces of it whose colours are off by no more than a tolerance.
@@ -73,12 +73,41 @@ impl Node {
     }
 
     fn add_pieces(&self, tolerance: f64, pieces: &mut Vec<Piece>) {
-        match &self.children {
-            Some(children) if f64::from(self.off) > tolerance => {
-                children.iter().for_each(|child| child.add_pieces(tolerance, pieces));
-            }
-            _ => pieces.push(self.piece),
+        if !self.children.is_empty() && f64::from(self.off) > tolerance {
+            self.children.iter().for_each(|child| child.add_pieces(tolerance, pieces));
+        } else {
+            pieces.push(self.piece);
         }
+    }
+}
+
+/// How the solution divides the outer and the inner side of a piece; the corners of the inner side run the other way.
+type Sides<'d> = [Option<&'d Division>; 2];
+
+/// The parts of a piece. Where its two sides are not divided alike, they are those of the side that has more of them.
+fn parts<'d>(triangle: [DVec3; 3], piece: &Piece, sides: Sides<'d>) -> Vec<(Piece, Sides<'d>)> {
+    /// Which quarter of the inner side lies behind a quarter of the outer one.
+    const BEHIND: [usize; 4] = [0, 2, 1, 3];
+    let [outer, inner] = sides.map(|side| side.filter(|side| !side.parts.is_empty()));
+    let quarters = |outer: Option<&'d Division>, inner: Option<&'d Division>| {
+        let of = |k: usize| [outer.map(|side| &side.parts[k]), inner.map(|side| &side.parts[BEHIND[k]])];
+        piece.quarters().into_iter().enumerate().map(|(k, quarter)| (quarter, of(k))).collect()
+    };
+    let is_cut = |side: Option<&Division>| side.is_some_and(|side| side.is_cut);
+    let leaves = |side: Option<&Division>| side.map_or(0, Division::leaves);
+    let whole = |corners: [DVec3; 3]| Piece { corners, weights: corners.map(|corner| weights(triangle, corner)) };
+    match (outer, inner) {
+        (None, None) => Vec::new(),
+        (outer, inner) if !is_cut(outer) && !is_cut(inner) => quarters(outer, inner),
+        (Some(outer), inner) if leaves(Some(outer)) >= leaves(inner) => match outer.is_cut {
+            true => outer.parts.iter().map(|part| (whole(part.corners), [Some(part), None])).collect(),
+            false => quarters(Some(outer), None),
+        },
+        (_, Some(inner)) if inner.is_cut => {
+            let turned = |[a, b, c]: [DVec3; 3]| [a, c, b];
+            inner.parts.iter().map(|part| (whole(turned(part.corners)), [None, Some(part)])).collect()
+        }
+        (_, inner) => quarters(None, inner),
     }
 }
 
@@ -92,26 +121,28 @@ impl Looks<'_> {
     /// A triangle with all elements of both its sides.
     pub(super) fn tree(&self, triangle: u32) -> Node {
         let piece = Piece::whole(self.appearance.prepared.corners(triangle));
-        self.node(triangle, piece, 0, &mut Vec::new())
+        let sides = [true, false].map(|outside| self.solution.division(triangle, outside));
+        self.node(triangle, piece, sides.each_ref().map(Option::as_ref), &mut Vec::new())
     }
 
     /// A piece with the elements in it, of which it adds the corners and their colours.
-    fn node(&self, triangle: u32, piece: Piece, depth: u32, samples: &mut Vec<(DVec3, Colors)>) -> Node {
+    fn node(&self, triangle: u32, piece: Piece, sides: Sides<'_>, samples: &mut Vec<(DVec3, Colors)>) -> Node {
         let center = piece.center();
         let colors = piece.weights.map(|weights| self.colors(triangle, aside(weights, center)));
-        if [true, false].iter().all(|outside| self.solution.divisions(triangle, *outside, center) <= depth) {
+        let parts = parts(self.appearance.prepared.corners(triangle), &piece, sides);
+        if parts.is_empty() {
             samples.extend(piece.corners.into_iter().zip(colors));
-            return Node { piece, off: 0.0, children: None };
+            return Node { piece, off: 0.0, children: Vec::new() };
         }
         let first = samples.len();
-        let children = piece.quarters().map(|quarter| self.node(triangle, quarter, depth + 1, samples));
+        let children = parts.into_iter().map(|(part, sides)| self.node(triangle, part, sides, samples)).collect();
         let off = |(point, seen): &(DVec3, Colors)| {
             let shares = weights(piece.corners, *point).map(|share| share as f32);
             let mixed = |side: usize| (0..3).map(|i| colors[i][side] * shares[i]).sum::<Vec3>();
             [0, 1].map(|side| (mixed(side) - seen[side]).abs().max_element()).into_iter().fold(0.0, f32::max)
         };
         let off = samples[first..].iter().map(off).fold(0.0, f32::max);
-        Node { piece, off, children: Some(Box::new(children)) }
+        Node { piece, off, children }
     }
 
     /// The tile of a piece with more corners.
