@@ -95,6 +95,11 @@ pub(super) fn part_in_sight(walls: &[Wall], borders: &[[DVec2; 2]], radius: f64)
     }
     let walls: Vec<[DVec2; 2]> = walls.iter().map(|wall| wall.ends.map(|end| end.as_dvec2())).collect();
     let mut angles: Vec<f64> = walls.iter().chain(borders).flatten().map(|end| end.to_angle()).collect();
+    // Which one is nearer changes where two of them cross.
+    for (number, wall) in walls.iter().enumerate() {
+        let others = walls[number + 1..].iter().chain(borders);
+        angles.extend(others.filter_map(|other| crossing(*wall, *other)).map(DVec2::to_angle));
+    }
     angles.sort_by(f64::total_cmp);
     let first = angles[0] + TAU;
     angles.push(first);
@@ -119,6 +124,14 @@ pub(super) fn part_in_sight(walls: &[Wall], borders: &[[DVec2; 2]], radius: f64)
         }
     }
     (1.0 - missing / TAU).clamp(LEAST_PART, 1.0)
+}
+
+/// Where two segments cross, if they do.
+fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
+    let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
+    let (s, t) = (side(c, d, a), side(c, d, b));
+    let is_between = (s > 0.0) != (t > 0.0) && (side(a, b, c) > 0.0) != (side(a, b, d) > 0.0);
+    is_between.then(|| a.lerp(b, s / (s - t)))
 }
 
 /// Where a ray from the origin meets a segment, if it does.
