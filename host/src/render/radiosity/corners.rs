@@ -11,6 +11,8 @@ const CURVED: f64 = 0.5;
 /// How far corners look out from the place where they are, as a part of the way to the middles of their elements: on an
 /// edge may lie another surface.
 const INWARDS: f64 = 1e-3;
+/// The sine of an angle below which elements are flat.
+const HOLLOW: f64 = 1e-4;
 
 /// A corner that elements share.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +29,17 @@ pub(super) struct Corner {
 impl Corner {
     /// From where it sees what its elements see, and its unit normal.
     pub(super) fn view(&self) -> [DVec3; 2] {
-        let middle = self.middles / self.count;
-        [self.at + (middle - self.at) * INWARDS, self.normals.normalize_or_zero()]
+        let normal = self.normals.normalize_or_zero();
+        let offset = self.middles / self.count - self.at;
+        // The middles about a tip are within the body.
+        let offset = offset - normal * offset.dot(normal).min(0.0);
+        [self.at + offset * INWARDS, normal]
+    }
+
+    /// Whether its elements rise from it, so that they see each other there.
+    pub(super) fn is_hollow(&self) -> bool {
+        let offset = self.middles / self.count - self.at;
+        offset.dot(self.normals) > HOLLOW * offset.length() * self.normals.length()
     }
 }
 

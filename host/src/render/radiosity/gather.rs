@@ -3,7 +3,8 @@
 //! A link brings the same light to all of the node that receives it, which shows as steps; it takes light that differs over
 //! the node that sends it for the same, and knows only in the mean how much of it is hidden. Each corner of elements asks
 //! all links of what it is part of again, for the form factor from there and for what can be seen. Where no light is lost,
-//! what is missing is its neighbourhood, which links pass over: light that is the same everywhere stays so.
+//! what is missing is filled up: in hollows by the neighbourhood, which links pass over, elsewhere in proportion. Light that is
+//! the same everywhere stays so.
 
 use super::corners::{Corner, Corners};
 use super::form_factor::{from_point, kernel};
@@ -63,18 +64,19 @@ impl Views<'_> {
                 *count += if *is_closed { 1.0 } else { f64::NEG_INFINITY };
             }
         }
-        let of = |(nodes, (own, count)): (&Vec<(u32, f32)>, &(Channels, f64))| {
+        let of = |((nodes, (own, count)), corner): ((&Vec<(u32, f32)>, &(Channels, f64)), &Corner)| {
             let (mut light, mut row) = (Channels::ZERO, 0.0);
             for (node, part) in nodes {
                 light += values[*node as usize] * f64::from(*part);
                 row += f64::from(*part);
             }
             match *count > 0.0 && row < 1.0 {
-                true => light + *own * ((1.0 - row) / count),
+                true if row <= 0.0 || corner.is_hollow() => light + *own * ((1.0 - row) / count),
+                true => light * row.recip(),
                 false => light * row.max(1.0).recip(),
             }
         };
-        self.of.par_iter().zip(&own).map(of).collect()
+        self.of.par_iter().zip(&own).zip(&self.corners.all).map(of).collect()
     }
 
     /// The mean over each leaf of what is known at its corners.
