@@ -64,19 +64,20 @@ impl Views<'_> {
                 *count += if *is_closed { 1.0 } else { f64::NEG_INFINITY };
             }
         }
-        let of = |((nodes, (own, count)), corner): ((&Vec<(u32, f32)>, &(Channels, f64)), &Corner)| {
+        let of = |corner: usize| {
+            let (own, count) = own[corner];
             let (mut light, mut row) = (Channels::ZERO, 0.0);
-            for (node, part) in nodes {
+            for (node, part) in &self.of[corner] {
                 light += values[*node as usize] * f64::from(*part);
                 row += f64::from(*part);
             }
-            match *count > 0.0 && row < 1.0 {
-                true if row <= 0.0 || corner.is_hollow() => light + *own * ((1.0 - row) / count),
+            match count > 0.0 && row < 1.0 {
+                true if row <= 0.0 || self.corners.all[corner].is_hollow() => light + own * ((1.0 - row) / count),
                 true => light * row.recip(),
                 false => light * row.max(1.0).recip(),
             }
         };
-        self.of.par_iter().zip(&own).zip(&self.corners.all).map(of).collect()
+        (0..self.of.len()).into_par_iter().map(of).collect()
     }
 
     /// The mean over each leaf of what is known at its corners.

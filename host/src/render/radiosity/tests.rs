@@ -333,3 +333,21 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
     assert!(stopped.report.links < whole.report.links);
     assert!(middle(&stopped, 0, false, Part::All).is_finite());
 }
+
+#[test]
+fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
+    use crate::render::ray_tracing::RayTracer;
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+    let mut room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
+    (room.settings.radiosity, room.settings.patch_error) = (true, 0.02);
+    let plan = Plan::new(&room, &room.view());
+    let links = |cancelled: bool| {
+        let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
+        let progress = |done: u64, _: u64| told.store(done, Ordering::Relaxed);
+        let watch = Watch { cancelled: &cancelled, progress: &progress };
+        let tracer = RayTracer::watched(&room, &plan, &watch).expect("a tracer");
+        assert!(told.load(Ordering::Relaxed) > 0);
+        tracer.radiosity().expect("a solution").report.links
+    };
+    assert!(links(true) < links(false));
+}
