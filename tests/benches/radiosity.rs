@@ -31,7 +31,7 @@ fn main() {
         return;
     }
     println!("{:>9} {:>9} {:>7} {:>9} {:>14}", "elements", "links", "steps", "seconds", "µs an element");
-    for (error, finest) in [(0.04, 0.1), (0.01, 0.015), (0.005, 0.004)] {
+    for (error, finest) in [(0.04, 0.1), (0.01, 0.015), (0.005, 0.004), (0.002, 0.0025)] {
         let report = pool.install(|| solved(&room, settings(error, finest), None)).report;
         let each = report.seconds / report.elements as f64 * 1e6;
         let host::render::radiosity::Report { elements, links, steps, seconds, .. } = report;

@@ -8,12 +8,18 @@ use rayon::prelude::*;
 
 /// Surfaces touch that are nearer than this, in diagonals of the scene.
 const TOUCHING: f64 = 1e-7;
+/// What two surfaces have in common is a point if it is no longer than so many times that.
+const POINTLIKE: f64 = 16.0;
+/// Surfaces rise steeply from others if the cosine between their normals is less.
+const STEEP: f64 = 0.7;
 
 /// Lines on triangles, each from one end to the other; the ends may lie beyond the triangle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contacts {
-    /// For each triangle of the scene; empty if there are none at all.
+    /// For each triangle of the scene those that lead over it; empty if there are none at all.
     of: Vec<Vec<[DVec3; 2]>>,
+    /// And those where another surface rises steeply, inside or at its edges.
+    creases: Vec<Vec<[DVec3; 2]>>,
     tolerance: f64,
 }
 
@@ -26,25 +32,38 @@ impl Contacts {
         let tolerance = TOUCHING * diagonal;
         let near = DVec3::splat(tolerance);
         let lines = |triangle: u32| {
-            let mut lines: Vec<[DVec3; 2]> = Vec::new();
+            let (mut lines, mut creases) = (Vec::new(), Vec::new());
             if takes_part(triangle) {
                 let own = prepared.corners(triangle);
                 let Bounds { min, max } = Bounds::of(own);
                 sight.world.each_near(Bounds { min: min - near, max: max + near }, |other| {
                     if other != triangle {
-                        meeting(own, prepared.corners(other), tolerance, |line| lines.push(line));
+                        let other = prepared.corners(other);
+                        meeting(own, other, tolerance, |line| lines.push(line));
+                        creases.extend(crease(own, other, tolerance));
                     }
                 });
                 // The order in which they are found is none of theirs.
                 let key = |line: &[DVec3; 2]| line.map(|end| end.to_array().map(|x| x.to_bits()));
-                lines.sort_unstable_by_key(key);
-                lines.dedup();
+                for lines in [&mut lines, &mut creases] {
+                    lines.sort_unstable_by_key(key);
+                    lines.dedup();
+                }
             }
-            lines
+            (lines, creases)
         };
-        let of: Vec<Vec<[DVec3; 2]>> = (0..prepared.triangles.len() as u32).into_par_iter().map(lines).collect();
-        let is_any = of.iter().any(|lines| !lines.is_empty());
-        Contacts { of: if is_any { of } else { Vec::new() }, tolerance }
+        let (of, creases) = (0..prepared.triangles.len() as u32).into_par_iter().map(lines).unzip();
+        Contacts { of, creases, tolerance }
+    }
+
+    /// The lines on a triangle where another surface rises steeply.
+    pub(super) fn creases(&self, triangle: u32) -> &[[DVec3; 2]] {
+        self.creases.get(triangle as usize).map_or(&[], |lines| lines)
+    }
+
+    /// Whether a line leads through a convex polygon or along an edge of it.
+    pub(super) fn touches(&self, line: &[DVec3; 2], polygon: &[DVec3], normal: DVec3) -> bool {
+        common(line, polygon, normal, -self.tolerance) > POINTLIKE * self.tolerance
     }
 
     /// The lines on a triangle.
@@ -130,7 +149,24 @@ fn between(a: DVec3, b: DVec3, low: f64, high: f64) -> DVec3 {
     a + (b - a) * (low / (low - high))
 }
 
-fn crosses([from, to]: &[DVec3; 2], polygon: &[DVec3], normal: DVec3, tolerance: f64) -> bool {
+/// The line in which a triangle meets another that rises steeply from it.
+fn crease(own: [DVec3; 3], other: [DVec3; 3], tolerance: f64) -> Option<[DVec3; 2]> {
+    let (normal, _) = normal_and_area(own);
+    let [one, two] = [normal, normal_and_area(other).0];
+    if one.dot(two).abs() > STEEP {
+        return None;
+    }
+    let on: Vec<DVec3> = other.into_iter().filter(|corner| (*corner - own[0]).dot(normal).abs() <= tolerance).collect();
+    let line = <[DVec3; 2]>::try_from(on).ok()?;
+    (common(&line, &own, normal, -tolerance) > POINTLIKE * tolerance).then_some(line)
+}
+
+fn crosses(line: &[DVec3; 2], polygon: &[DVec3], normal: DVec3, tolerance: f64) -> bool {
+    common(line, polygon, normal, tolerance) > tolerance
+}
+
+/// How much of a line is in a convex polygon and farther from its edges than a tolerance.
+fn common([from, to]: &[DVec3; 2], polygon: &[DVec3], normal: DVec3, tolerance: f64) -> f64 {
     let along = *to - *from;
     let (mut begin, mut end) = (0.0f64, 1.0f64);
     for i in 0..polygon.len() {
@@ -140,7 +176,7 @@ fn crosses([from, to]: &[DVec3; 2], polygon: &[DVec3], normal: DVec3, tolerance:
         let (height, slope) = ((*from - a).dot(inwards) - tolerance, along.dot(inwards));
         if slope.abs() <= f64::MIN_POSITIVE {
             if height <= 0.0 {
-                return false;
+                return 0.0;
             }
         } else if slope > 0.0 {
             begin = begin.max(-height / slope);
@@ -148,7 +184,7 @@ fn crosses([from, to]: &[DVec3; 2], polygon: &[DVec3], normal: DVec3, tolerance:
             end = end.min(-height / slope);
         }
     }
-    (end - begin) * along.length() > tolerance
+    ((end - begin) * along.length()).max(0.0)
 }
 
 /// Both parts of a convex polygon beside a line; none if one of them is next to nothing.
@@ -225,8 +261,19 @@ mod tests {
     }
 
     #[test]
+    fn steep_neighbours_make_creases_and_flat_ones_do_not() {
+        let at = DVec3::new;
+        let [a, b] = [at(1.0, 0.0, 0.0), at(3.0, 0.0, 0.0)];
+        assert_eq!(crease(FLOOR, [a, b, at(1.0, 0.0, 2.0)], 1e-9), Some([a, b]));
+        assert_eq!(crease(FLOOR, [a, b, at(1.0, -2.0, 0.5)], 1e-9), None);
+        // At a corner only, and beyond one.
+        let beyond = [at(4.0, 0.0, 0.0), at(6.0, 0.0, 0.0), at(4.0, 0.0, 2.0)];
+        assert_eq!(crease(FLOOR, beyond, 1e-9), None);
+    }
+
+    #[test]
     fn parts_of_a_cut_triangle_are_all_of_it_and_no_line_leads_through_one() {
-        let contacts = Contacts { of: Vec::new(), tolerance: 1e-9 };
+        let contacts = Contacts { tolerance: 1e-9, ..Contacts::default() };
         let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
         let foot = [at(0.5, 0.5), at(1.7, 0.6), at(1.6, 1.6), at(0.4, 1.5)];
         let lines: Vec<[DVec3; 2]> = (0..4).map(|i| [foot[i], foot[(i + 1) % 4]]).collect();

@@ -14,6 +14,14 @@ const FEW_ROUNDS: u32 = 8;
 /// A row is not multiplied by more, and not by less than one over it.
 const MOST_FACTOR: f64 = 4.0;
 
+/// A row of which light is lost is not made more than so many times what it is, and not less than one over it.
+const MOST_CHANGE: f64 = 2.0;
+
+/// A goal that a row can be brought to.
+fn within(goal: f64, row: f64) -> f64 {
+    goal.clamp(row / MOST_CHANGE, row * MOST_CHANGE)
+}
+
 /// As many rays tell how much light is lost in a neighbourhood.
 const NEIGHBOURING_RAYS: u64 = 2048;
 
@@ -142,7 +150,13 @@ impl<'a> Exchange<'a> {
             self.factor = looks.is_dark.iter().map(factor).collect();
         }
         let goal: Vec<f64> = match looks {
-            Some(looks) => self.goals(looks).iter().zip(&areas).map(|(goal, area)| goal * area).collect(),
+            Some(looks) => {
+                let rows = sums(self);
+                let goals = self.goals(looks).into_iter().zip(&areas).zip(rows);
+                goals
+                    .map(|((goal, area), row)| if goal < 1.0 { within(goal * area, row) } else { goal * area })
+                    .collect()
+            }
             None => sums(self).iter().zip(&areas).map(|(sum, area)| sum.min(*area)).collect(),
         };
         for _ in 0..if looks.is_some() { MOST_ROUNDS } else { FEW_ROUNDS } {

@@ -1,21 +1,24 @@
 //! The light of other elements once more, as it differs from element to element below what a link is for.
 //!
-//! A link brings the same light to all of the node that receives it, which shows as steps, and it knows only in the mean how
-//! much of it is hidden. Each element asks all links of what it is part of again, for the form factor from its own middle
-//! and for what can be seen from there. Where no light is lost, what comes of it is scaled so that all that is seen adds up
-//! to 1: light that is the same everywhere stays so.
+//! A link brings the same light to all of the node that receives it, which shows as steps; it takes light that differs over
+//! the node that sends it for the same, and knows only in the mean how much of it is hidden. Each corner of elements asks
+//! all links of what it is part of again, for the form factor from there and for what can be seen. Where no light is lost,
+//! what is missing is filled up: in hollows by the neighbourhood, which links pass over, elsewhere in proportion. Light that is
+//! the same everywhere stays so.
 
+use super::corners::{Corner, Corners};
 use super::form_factor::{from_point, kernel};
-use super::hierarchy::{Hierarchy, NONE, Node, POINTS};
+use super::hierarchy::{Hierarchy, NONE, POINTS};
 use super::links::Judged;
 use super::sight::Sight;
 use crate::color::Channels;
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// Light below this part of the error of a link is asked for with one ray instead of some.
 const LITTLE: f64 = 0.5;
 /// What parts of a node send may differ by so much of it.
-const UNEVEN: f64 = 0.2;
+const UNEVEN: f64 = 0.1;
 
 /// Gathers light.
 pub(super) struct Gatherer<'g, 'a> {
@@ -25,46 +28,73 @@ pub(super) struct Gatherer<'g, 'a> {
     pub(super) error: f64,
 }
 
-/// What each leaf sees of nodes from its middle.
+/// What each corner of leaves sees of nodes.
 pub(super) struct Views<'g> {
     hierarchy: &'g Hierarchy,
-    /// For each leaf, the nodes and the part of all that is seen that each is.
+    corners: &'g Corners,
+    /// For each corner, the nodes and the part of all that is seen that each is.
     of: Vec<Vec<(u32, f32)>>,
 }
 
 impl Views<'_> {
     /// The part of all that each leaf may see that exchanges light.
     pub(super) fn rows(&self) -> Vec<f64> {
-        self.of.iter().map(|nodes| nodes.iter().map(|(_, part)| f64::from(*part)).sum()).collect()
+        let row = |nodes: &Vec<(u32, f32)>| nodes.iter().map(|(_, part)| f64::from(*part)).sum::<f64>().min(1.0);
+        let rows: Vec<f64> = self.of.par_iter().map(row).collect();
+        self.corners
+            .of
+            .iter()
+            .map(|corners| corners.map(|corner| rows[corner as usize]).iter().sum::<f64>() / 3.0)
+            .collect()
     }
 
-    /// Irradiance of each leaf by light of others, W/m².
+    /// Irradiance of each corner by light of others, W/m².
     ///
     /// - `sent`: what each leaf sends, W/m². `is_closed`: of each, whether all that it sees exchanges light.
     pub(super) fn irradiance(&self, leaves: &[u32], sent: &[Channels], is_closed: &[bool]) -> Vec<Channels> {
         let mut values = vec![Channels::ZERO; self.hierarchy.nodes.len()];
         leaves.iter().zip(sent).for_each(|(leaf, sent)| values[*leaf as usize] = *sent);
         self.hierarchy.pull(&mut values);
-        let of = |(nodes, is_closed): (&Vec<(u32, f32)>, &bool)| {
+        // Of each corner, what its leaves send, if they are all closed.
+        let mut own = vec![(Channels::ZERO, 0.0); self.of.len()];
+        for ((corners, sent), is_closed) in self.corners.of.iter().zip(sent).zip(is_closed) {
+            for corner in corners {
+                let (sum, count) = &mut own[*corner as usize];
+                *sum += *sent;
+                *count += if *is_closed { 1.0 } else { f64::NEG_INFINITY };
+            }
+        }
+        let of = |corner: usize| {
+            let (own, count) = own[corner];
             let (mut light, mut row) = (Channels::ZERO, 0.0);
-            for (node, part) in nodes {
+            for (node, part) in &self.of[corner] {
                 light += values[*node as usize] * f64::from(*part);
                 row += f64::from(*part);
             }
-            match is_closed {
-                true if row > 0.0 => light * row.recip(),
-                _ => light * row.max(1.0).recip(),
+            match count > 0.0 && row < 1.0 {
+                true if row <= 0.0 || self.corners.all[corner].is_hollow() => light + own * ((1.0 - row) / count),
+                true => light * row.recip(),
+                false => light * row.max(1.0).recip(),
             }
         };
-        self.of.par_iter().zip(is_closed).map(of).collect()
+        (0..self.of.len()).into_par_iter().map(of).collect()
+    }
+
+    /// The mean over each leaf of what is known at its corners.
+    pub(super) fn means(&self, values: &[Channels]) -> Vec<Channels> {
+        let mean = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| values[corner as usize]);
+            (a + b + c) * (1.0 / 3.0)
+        };
+        self.corners.of.iter().map(mean).collect()
     }
 }
 
 impl<'g> Gatherer<'g, '_> {
-    /// What each leaf sees, divided the more the more what is seen differs.
+    /// What each corner sees, divided the more the more what is seen differs.
     ///
     /// - `sent`: about what each node sends, W/m².
-    pub(super) fn views(&self, links: &[Judged], leaves: &[u32], sent: &[Channels]) -> Views<'g> {
+    pub(super) fn views(&self, links: &[Judged], corners: &'g Corners, sent: &[Channels]) -> Views<'g> {
         let nodes = &self.hierarchy.nodes;
         let mut parent = vec![NONE; nodes.len()];
         for (place, node) in (0..).zip(nodes) {
@@ -72,16 +102,22 @@ impl<'g> Gatherer<'g, '_> {
         }
         let (rows, entries) = by_node(nodes.len(), links);
         let apart = self.apart(sent);
-        let of = |leaf: &u32| {
-            let node = &nodes[*leaf as usize];
+        let of = |(number, corner): (usize, &Corner)| {
+            let from = corner.view();
             let (mut found, mut pending) = (Vec::new(), Vec::new());
-            let mut at = *leaf;
+            let mut at = corner.leaf;
             while at != NONE {
                 pending.extend(&entries[rows[at as usize]..rows[at as usize + 1]]);
                 while let Some((other, is_clear)) = pending.pop() {
                     let partner = &nodes[other as usize];
-                    let factor = self.factor(node, other);
-                    if !partner.is_leaf() && factor * apart[other as usize] > UNEVEN * self.error {
+                    let factor = self.factor(from, other);
+                    let is_uneven = || factor * apart[other as usize] > UNEVEN * self.error;
+                    // Points do not stand for a node that reaches below the horizon.
+                    let sinks = || {
+                        let points = self.hierarchy.points(other);
+                        factor > 0.0 && !is_clear && points.iter().any(|[at, _]| (*at - from[0]).dot(from[1]) <= 0.0)
+                    };
+                    if !partner.is_leaf() && (is_uneven() || sinks()) {
                         let lit = partner.children().filter(|child| !nodes[*child].is_dark);
                         pending.extend(lit.map(|child| (child as u32, is_clear)));
                         continue;
@@ -90,7 +126,7 @@ impl<'g> Gatherer<'g, '_> {
                         continue;
                     }
                     let is_little = factor * sent[other as usize].max() < LITTLE * self.error;
-                    let seen = if is_clear { 1.0 } else { self.seen((*leaf, node), other, is_little) };
+                    let seen = if is_clear { 1.0 } else { self.seen((number as u32, from), other, is_little) };
                     if seen > 0.0 {
                         found.push((other, (factor * seen) as f32));
                     }
@@ -100,7 +136,8 @@ impl<'g> Gatherer<'g, '_> {
             found.shrink_to_fit();
             found
         };
-        Views { hierarchy: self.hierarchy, of: leaves.par_iter().map(of).collect() }
+        let of = corners.all.par_iter().enumerate().map(of).collect();
+        Views { hierarchy: self.hierarchy, corners, of }
     }
 
     /// How far what parts of each node send is from what all of it does in the mean, W/m² at the most.
@@ -115,27 +152,26 @@ impl<'g> Gatherer<'g, '_> {
         apart
     }
 
-    /// The form factor from the middle of an element to a node, as if nothing was between them.
-    fn factor(&self, node: &Node, other: u32) -> f64 {
+    /// The form factor from a point with its normal to a node, as if nothing was between them.
+    fn factor(&self, from: [DVec3; 2], other: u32) -> f64 {
         let partner = &self.hierarchy.nodes[other as usize];
         if partner.is_cluster() {
             let points = self.hierarchy.points(other);
-            let sum: f64 = points.iter().map(|point| kernel([node.middle, node.normal], *point)).sum();
+            let sum: f64 = points.iter().map(|point| kernel(from, *point)).sum();
             (sum * partner.area / POINTS as f64).min(1.0)
-        } else if (node.middle - partner.corners[0]).dot(partner.normal) > 0.0 {
-            from_point(node.middle, node.normal, &partner.polygon())
+        } else if (from[0] - partner.corners[0]).dot(partner.normal) > 0.0 {
+            from_point(from[0], from[1], &partner.polygon())
         } else {
             0.0
         }
     }
 
-    /// The part of a node that is seen from the middle of an element.
-    fn seen(&self, (leaf, node): (u32, &Node), other: u32, is_little: bool) -> f64 {
-        let from = [node.middle, node.normal];
+    /// The part of a node that is seen from a corner.
+    fn seen(&self, (number, from): (u32, [DVec3; 2]), other: u32, is_little: bool) -> f64 {
         let points = self.hierarchy.points(other);
         let (mut seen, mut all) = (0.0, 0.0);
         // Which of them is asked differs from pair to pair.
-        let shift = (leaf.wrapping_mul(0x9e37_79b9) ^ other.wrapping_mul(0x85eb_ca6b)) as usize >> 7;
+        let shift = (number.wrapping_mul(0x9e37_79b9) ^ other.wrapping_mul(0x85eb_ca6b)) as usize >> 7;
         for i in 0..POINTS {
             let to = points[(i + shift) % POINTS];
             let weight = kernel(from, to);
@@ -147,7 +183,8 @@ impl<'g> Gatherer<'g, '_> {
                 }
             }
         }
-        if all > 0.0 { seen / all } else { 0.0 }
+        // What is in sight of an element at the horizon is next to nothing, and near.
+        if all > 0.0 { seen / all } else { 1.0 }
     }
 }
 

@@ -17,6 +17,10 @@ pub(super) const POINTS: usize = 4;
 /// As many lines are cut along while an element may still be divided into four, and at the most.
 const FEW_LINES: usize = 3;
 const MOST_LINES: usize = 12;
+/// The longest edge of an element that is cut, in shortest ones: light changes quickly where surfaces meet.
+const NEAR_LINES: f64 = 2.0;
+/// The same of one from which another surface rises.
+const NEAR_CREASES: f64 = 4.0;
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -184,19 +188,25 @@ impl Hierarchy {
     /// Divides patches so that no line leads through an element, where that can be had with elements as short as the
     /// finest.
     ///
-    /// - `finest`, `coarsest`: lengths; what is longer than the second is divided into four before it is cut.
-    pub(super) fn cut(&mut self, contacts: &Contacts, [finest, coarsest]: [f64; 2]) {
+    /// - `finest`: a length.
+    pub(super) fn cut(&mut self, contacts: &Contacts, finest: f64) {
         let on = |patch: &u32| contacts.on(self.patches[*patch as usize].triangle).to_vec();
         let lined = (0..self.patches.len() as u32).map(|patch| (self.node_of[patch as usize], on(&patch)));
         let mut waiting: Vec<(u32, Vec<[DVec3; 2]>)> = lined.collect();
         while let Some((place, mut lines)) = waiting.pop() {
             let node = self.nodes[place as usize];
             lines.retain(|line| contacts.crosses(line, &node.corners, node.normal));
+            let length = node.longest_edge();
+            let creases = contacts.creases(self.patches[node.patch as usize].triangle);
+            let is_at_crease = || creases.iter().any(|line| contacts.touches(line, &node.corners, node.normal));
             if lines.is_empty() {
+                if length > NEAR_CREASES * finest && is_at_crease() {
+                    self.divide(place);
+                    waiting.extend(self.nodes[place as usize].children().map(|child| (child as u32, Vec::new())));
+                }
                 continue;
             }
-            let length = node.longest_edge();
-            if length >= 2.0 * finest && (length > coarsest || lines.len() > FEW_LINES) {
+            if length >= 2.0 * finest && (length > NEAR_LINES * finest || lines.len() > FEW_LINES) {
                 self.divide(place);
                 waiting.extend(self.nodes[place as usize].children().map(|child| (child as u32, lines.clone())));
             } else if lines.len() <= MOST_LINES {
@@ -250,11 +260,15 @@ impl Hierarchy {
             if node.is_cut {
                 let [a, b, c] = node.corners;
                 let point = a * weights[0] + b * weights[1] + c * weights[2];
+                // Off a child are the weights those of the nearest point of it, or about that.
                 let within = |child: usize| triangle::weights(self.nodes[child].corners, point);
-                let least = |child: usize| within(child).into_iter().fold(f64::INFINITY, f64::min);
-                let best = node.children().max_by(|one, other| least(*one).total_cmp(&least(*other)));
-                at = best.unwrap_or(node.child as usize) as u32;
-                weights = triangle::weights(self.nodes[at as usize].corners, point);
+                let off = |child: usize| {
+                    let ([a, b, c], weights) = (self.nodes[child].corners, within(child));
+                    point.distance_squared(a * weights[0] + b * weights[1] + c * weights[2])
+                };
+                let best = node.children().min_by(|one, other| off(*one).total_cmp(&off(*other)));
+                let best = best.unwrap_or(node.child as usize);
+                (at, weights) = (best as u32, within(best));
                 continue;
             }
             let corner = weights.iter().position(|weight| *weight >= 0.5);

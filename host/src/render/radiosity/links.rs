@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Error of form factors, as a part of the smaller element.
-const FORM_FACTOR_ERROR: f64 = 1e-3;
+const FORM_FACTOR_ERROR: f64 = 1e-2;
 /// How uncertain the light is that a link brings, as a part of it: where rays disagree, where none comes through, where
 /// all do.
 const PARTLY_SEEN: f64 = 0.5;

@@ -1,9 +1,11 @@
 //! Radiosity: light that goes from diffuse surface to diffuse surface, any number of times, for all views at once.
 //!
-//! Each side of a triangle that reflects diffusely is a patch. Patches are divided into elements where the light of lights
-//! varies and where what they exchange is not known well enough; above them, clusters exchange light that goes far. Form
-//! factors are those of unoccluded polygons, times what rays find to be visible. Rows of form factors are then balanced:
-//! where nothing escapes, they add up to 1, and stay symmetric.
+//! Each side of a triangle that reflects diffusely is a patch. Elements of patches end where surfaces touch, so that none is
+//! partly inside of something. They are divided where the light of lights bends, next to creases, and where what they
+//! exchange is not known well enough; above them, clusters exchange light that goes far. Form factors are those of
+//! unoccluded polygons, times what rays find to be visible; where no triangle is between two elements, no ray is asked. Rows
+//! of form factors are then balanced: where nothing escapes, they add up to 1, and stay symmetric. With the light that is
+//! then solved for, what comes to the corners of elements is found once more, each by its own view, a few times.
 //!
 //! What light cannot come to is left out first: rays join patches that see each other, and only what is joined to a lit
 //! one takes part. A closed dark room stays dark to the last bit.
@@ -14,6 +16,7 @@
 //! everywhere.
 
 mod contact;
+mod corners;
 mod direct;
 mod elements;
 mod exchange;
@@ -41,13 +44,14 @@ use crate::color::Channels;
 use crate::plan::{Plan, Stage};
 use crate::scene::Prepared;
 use contact::Contacts;
+use corners::Corners;
 use elements::Elements;
 use exchange::{Exchange, Link, Looks};
 use gather::{Gatherer, Views};
 use hierarchy::{Patch, normal_and_area};
 use links::{Bound, Judged, refine};
 use sight::Sight;
-use solver::{Solved, solve};
+use solver::solve;
 use std::time::Instant;
 use surface::SurfaceLight;
 
@@ -129,43 +133,43 @@ impl Radiosity {
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: Report::default() });
         }
-        eprintln!("T {:.2} lit", start.elapsed().as_secs_f64());
         let mut elements = Elements::new(hierarchy, &sight, exitance, shadows);
         let mean = elements.mean_irradiance();
         elements.divide_where_light_varies(&sight, BENT * settings.error * mean, lengths);
         let mut links: Vec<Judged> = Vec::new();
         let mut report = Report { patches: elements.hierarchy.patches.len(), ..Report::default() };
         let mut leaves = Vec::new();
-        let mut dark = Vec::new();
+        let mut at_corners = None;
         for round in 0..ROUNDS {
             let bound = Bound { irradiance: settings.error * elements.mean_irradiance(), finest };
-            eprintln!("T {:.2} round {round} {}", start.elapsed().as_secs_f64(), elements.hierarchy.nodes.len());
             refine(&sight, &mut elements, &mut links, bound, &stopped);
-            eprintln!("T {:.2} refined {}", start.elapsed().as_secs_f64(), elements.hierarchy.nodes.len());
             (watch.progress)(2 * round + 1, 2 * ROUNDS);
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
             let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
-            let views = is_last.then(|| gatherer.views(&links, &leaves, &elements.sent));
-            eprintln!("T {:.2} views", start.elapsed().as_secs_f64());
+            let corners = is_last.then(|| Corners::new(prepared, &elements.hierarchy, &leaves));
+            let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
             let looks = views
                 .as_ref()
                 .map(|views| visible::seen(&sight, &elements, (&leaves, views.rows()), settings.directions));
-            eprintln!("T {:.2} seen", start.elapsed().as_secs_f64());
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = looks.as_ref().zip(views.as_ref());
-            let solved = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
-            elements.take(&leaves, &solved.irradiance);
+            let (irradiance, light) = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
+            elements.take(&leaves, &irradiance);
             (watch.progress)(2 * round + 2, 2 * ROUNDS);
-            if let Some(looks) = looks {
-                dark = looks.is_dark;
+            if let (Some(corners), Some(looks)) = (corners, looks) {
+                at_corners = Some((corners, light, looks.is_dark));
                 break;
             }
         }
         report.elements = leaves.len();
         report.links = links.len();
-        let light = SurfaceLight::new(prepared, elements, &leaves, &dark);
-        eprintln!("T {:.2} end", start.elapsed().as_secs_f64());
+        let light = match at_corners {
+            Some((corners, light, is_dark)) => {
+                SurfaceLight::new(prepared, elements, (&leaves, &is_dark), (&corners, &light))
+            }
+            None => SurfaceLight::dark(prepared),
+        };
         report.seconds = start.elapsed().as_secs_f64();
         Ok(Radiosity { light, report })
     }
@@ -201,14 +205,15 @@ fn patches(prepared: &Prepared, plan: &Plan, sight: &Sight<'_>) -> Vec<Patch> {
     (0..prepared.triangles.len() as u32).flat_map(sides).collect()
 }
 
-/// Solves for the light of the elements as they are, and keeps the books.
+/// Solves for the light of the elements as they are, and keeps the books. Tells the irradiance of leaves by other elements,
+/// and the last time that at their corners.
 fn light(
     elements: &Elements<'_>,
     judged: &[Judged],
     last: Option<(&Looks, &Views<'_>)>,
     (tolerance, stopped): (f64, &dyn Fn() -> bool),
     report: &mut Report,
-) -> Result<Solved, RenderError> {
+) -> Result<(Vec<Channels>, Vec<Channels>), RenderError> {
     let links: Vec<Link> = judged.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
     let mut exchange = Exchange::new(&elements.hierarchy, &links);
     let leaves = exchange.leaves.clone();
@@ -216,7 +221,7 @@ fn light(
     let (reflectance, direct, extra) = (of(&elements.reflectance), of(&elements.direct), of(&elements.extra));
     let own = exchange.balance(last.map(|(looks, _)| looks));
     let first: Vec<Channels> = (0..leaves.len()).map(|i| extra[i] + reflectance[i] * direct[i]).collect();
-    let mut solved = solve(&exchange, &reflectance, &first, tolerance, stopped)?;
+    let solved = solve(&exchange, &reflectance, &first, tolerance, stopped)?;
     report.steps = solved.steps;
     report.solver_error = solved.error;
     let areas = exchange.areas();
@@ -232,14 +237,21 @@ fn light(
     report.absorbed = total(&|i| (Channels::ONE - reflectance[i]) * all(i));
     report.escaped = total(&|i| sent(i) * (1.0 - rows[i] / areas[i]));
     report.left = report.arrived - report.absorbed - report.escaped;
-    if let Some((_, views)) = last {
+    let (mut irradiance, mut at_corners) = (solved.irradiance, Vec::new());
+    if let Some((looks, views)) = last {
         for _ in 0..PASSES {
             let sent = |(i, light): (usize, &Channels)| extra[i] + reflectance[i] * (direct[i] + *light);
-            let sent: Vec<Channels> = solved.irradiance.iter().enumerate().map(sent).collect();
-            solved.irradiance = views.irradiance(&leaves, &sent, &exchange.is_closed);
+            let sent: Vec<Channels> = irradiance.iter().enumerate().map(sent).collect();
+            at_corners = views.irradiance(&leaves, &sent, &exchange.is_closed);
+            irradiance = views.means(&at_corners);
+            irradiance
+                .iter_mut()
+                .zip(&looks.is_dark)
+                .filter(|(_, dark)| **dark)
+                .for_each(|(light, _)| *light = Channels::ZERO);
         }
     }
-    Ok(solved)
+    Ok((irradiance, at_corners))
 }
 
 impl Elements<'_> {

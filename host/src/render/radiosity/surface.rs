@@ -3,16 +3,12 @@
 //! Corners that elements share have one value. Where a corner lies in the middle of an edge of a larger element, it has
 //! the value of that edge: there are no cracks.
 
+use super::corners::Corners;
 use super::elements::Elements;
 use super::hierarchy::{Hierarchy, NONE};
 use crate::color::Channels;
 use crate::scene::Prepared;
 use glam::DVec3;
-use std::collections::HashMap;
-
-/// Elements share a corner if the cosine between their normals is greater: of flat objects, and of curved ones.
-const FLAT: f64 = 0.985;
-const CURVED: f64 = 0.5;
 
 /// Which part of the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,35 +51,6 @@ impl Division {
     }
 }
 
-/// Corners by their place.
-#[derive(Default)]
-struct Corners {
-    at: HashMap<[u64; 3], Vec<(DVec3, u32)>>,
-    /// Sums and weights.
-    sums: Vec<([Channels; 2], f64)>,
-}
-
-fn key(point: DVec3) -> [u64; 3] {
-    // Adding 0 turns -0 into 0.
-    point.to_array().map(|x| (x + 0.0).to_bits())
-}
-
-impl Corners {
-    fn find(&self, point: DVec3, normal: DVec3, like: f64) -> Option<u32> {
-        let there = self.at.get(&key(point))?;
-        there.iter().find(|(other, _)| other.dot(normal) > like).map(|(_, number)| *number)
-    }
-
-    fn put(&mut self, point: DVec3, normal: DVec3, like: f64) -> u32 {
-        self.find(point, normal, like).unwrap_or_else(|| {
-            let number = self.sums.len() as u32;
-            self.at.entry(key(point)).or_default().push((normal, number));
-            self.sums.push(([Channels::ZERO; 2], 0.0));
-            number
-        })
-    }
-}
-
 impl SurfaceLight {
     /// No light anywhere.
     pub(super) fn dark(prepared: &Prepared) -> SurfaceLight {
@@ -91,45 +58,34 @@ impl SurfaceLight {
     }
 
     /// - `is_dark`: of each leaf, whether no light can come to it.
-    pub(super) fn new(prepared: &Prepared, elements: Elements<'_>, leaves: &[u32], is_dark: &[bool]) -> SurfaceLight {
-        let Elements { hierarchy, around, indirect, .. } = elements;
+    /// - `indirect`: irradiance at each corner by other elements, W/m².
+    pub(super) fn new(
+        prepared: &Prepared,
+        elements: Elements<'_>,
+        (leaves, is_dark): (&[u32], &[bool]),
+        (shared, indirect): (&Corners, &[Channels]),
+    ) -> SurfaceLight {
+        let Elements { hierarchy, around, .. } = elements;
         let mut patch_of = vec![[NONE; 2]; prepared.triangles.len()];
         for (number, patch) in (0..).zip(&hierarchy.patches) {
             patch_of[patch.triangle as usize][usize::from(!patch.outside)] = number;
         }
         let mut corners = vec![[NONE; 3]; hierarchy.nodes.len()];
-        let mut shared = Corners::default();
-        let lit = || leaves.iter().zip(is_dark).filter(|(_, is_dark)| !**is_dark).map(|(leaf, _)| *leaf as usize);
-        let like = |leaf: usize| {
-            let triangle = hierarchy.patches[hierarchy.nodes[leaf].patch as usize].triangle;
-            if prepared.corner_normals(triangle).is_some() { CURVED } else { FLAT }
-        };
-        for leaf in lit() {
-            let node = &hierarchy.nodes[leaf];
-            for ((place, corner), lit) in corners[leaf].iter_mut().zip(node.corners).zip(&around[leaf]) {
-                *place = shared.put(corner, node.normal, like(leaf));
+        let mut sums = vec![(Channels::ZERO, 0.0); indirect.len()];
+        for ((leaf, numbers), _) in leaves.iter().zip(&shared.of).zip(is_dark).filter(|(_, is_dark)| !**is_dark) {
+            let node = &hierarchy.nodes[*leaf as usize];
+            corners[*leaf as usize] = *numbers;
+            for ((number, corner), lit) in numbers.iter().zip(node.corners).zip(&around[*leaf as usize]) {
                 // The nearer the middle of an element, the more it tells.
                 let weight = corner.distance(node.middle).recip();
-                let (sum, all) = &mut shared.sums[*place as usize];
+                let (sum, all) = &mut sums[*number as usize];
+                *sum += lit.direct * weight;
                 *all += weight;
-                sum[0] += lit.direct * weight;
-                sum[1] += indirect[leaf] * weight;
             }
         }
-        let mean = |(sum, all): &([Channels; 2], f64)| sum.map(|part| part * all.recip());
-        let mut values: Vec<[Channels; 2]> = shared.sums.iter().map(mean).collect();
-        let mut edges: Vec<(f64, [u32; 3])> = Vec::new();
-        for leaf in lit() {
-            let node = &hierarchy.nodes[leaf];
-            for i in 0..3 {
-                let j = (i + 1) % 3;
-                let ends = [(node.corners[i], corners[leaf][i]), (node.corners[j], corners[leaf][j])];
-                hang(&shared, ends, node.normal, like(leaf), &mut edges);
-            }
-        }
-        // Those of the largest edges first: on them depend those within.
-        edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        for (_, [middle, from, to]) in edges {
+        let direct = sums.into_iter().map(|(sum, all)| if all > 0.0 { sum * all.recip() } else { sum });
+        let mut values: Vec<[Channels; 2]> = direct.zip(indirect).map(|(direct, light)| [direct, *light]).collect();
+        for (_, [middle, from, to]) in shared.hanging(&hierarchy, leaves) {
             let (from, to) = (values[from as usize], values[to as usize]);
             values[middle as usize] = [0, 1].map(|part| (from[part] + to[part]) * 0.5);
         }
@@ -170,22 +126,4 @@ impl SurfaceLight {
         let parts = node.children().filter(|_| !node.is_dark).map(|child| self.division_of(child)).collect();
         Division { corners: node.corners, parts, is_cut: node.is_cut }
     }
-}
-
-/// Corners in the middle of an edge, and in the middle of its halves.
-fn hang(
-    shared: &Corners,
-    [(from, a), (to, b)]: [(DVec3, u32); 2],
-    normal: DVec3,
-    like: f64,
-    edges: &mut Vec<(f64, [u32; 3])>,
-) {
-    let middle = 0.5 * (from + to);
-    let Some(number) = shared.find(middle, normal, like) else { return };
-    if middle == from || middle == to || number == a || number == b {
-        return;
-    }
-    edges.push((from.distance(to), [number, a, b]));
-    hang(shared, [(from, a), (middle, number)], normal, like, edges);
-    hang(shared, [(middle, number), (to, b)], normal, like, edges);
 }

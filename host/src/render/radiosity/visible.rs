@@ -57,7 +57,7 @@ pub(super) fn lit(
     [finest, coarsest]: [f64; 2],
 ) -> Hierarchy {
     let mut all = Hierarchy::new(patches);
-    all.cut(contacts, [finest, coarsest]);
+    all.cut(contacts, finest);
     let is_dark = dark(sight, &all, (exitance, shadows), coarsest);
     all.darken(&is_dark);
     let is_lit = |patch: usize| !all.nodes[all.node_of[patch] as usize].is_dark;
@@ -66,7 +66,7 @@ pub(super) fn lit(
     }
     let lit: Vec<usize> = (0..all.patches.len()).filter(|patch| is_lit(*patch)).collect();
     let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect());
-    hierarchy.cut(contacts, [finest, coarsest]);
+    hierarchy.cut(contacts, finest);
     // Patches are divided as they were before.
     let mut is_dark = vec![false; hierarchy.nodes.len()];
     let mut pairs: Vec<[u32; 2]> =

@@ -8,6 +8,7 @@ use super::visibility::{NONE, Strip};
 use crate::color::Channels;
 use crate::illumination::optics::{Painting, Side, Sighting};
 use crate::numeric::triangle::weights;
+use crate::render::element::Element;
 use crate::render::eye::{Eye, Sight};
 use crate::render::film::{Sample, Tally};
 use crate::render::radiosity::diffuse;
@@ -139,8 +140,9 @@ impl<'a> Shader<'a> {
         let mut last: Option<(Sample, u32)> = None;
         for i in 0..pixel.count() {
             let first = seen_by(samples, parts, i).first().map(|part| &surfaces[part.surface]);
-            let first = first.and_then(|seen| seen.found.map(|found| self.first(seen, &founds[found])));
-            let glows = self.glows(pixel, i, first.map(|(distance, ..)| (distance, 0))).is_some();
+            let found = first.and_then(|seen| seen.found.map(|found| (seen, &founds[found])));
+            let glows = self.glows((pixel, i), found.map(|(_, found)| found), 0).is_some();
+            let first = found.map(|(seen, found)| self.first(seen, found));
             let first = first.filter(|_| !glows);
             let covered = first.is_some() || glows;
             let radiance = if self.matte && !covered { DVec3::ZERO } else { samples[i].1 * scale };
@@ -253,7 +255,7 @@ impl<'a> Shader<'a> {
             let surface = &surfaces[part.surface];
             let Some(found) = surface.found.map(|found| &founds[found]) else { continue };
             if order == 0
-                && let Some(glow) = self.glows(pixel, i, Some((found.distance, comb)))
+                && let Some(glow) = self.glows((pixel, i), Some(found), comb)
             {
                 return glow;
             }
@@ -267,7 +269,7 @@ impl<'a> Shader<'a> {
             }
             passed *= self.passed(found, comb);
         }
-        if let Some(glow) = self.glows(pixel, i, Some((f64::INFINITY, comb))) {
+        if let Some(glow) = self.glows((pixel, i), None, comb) {
             return sum + passed * glow;
         }
         let at = pixel.place(i);
@@ -308,15 +310,19 @@ impl<'a> Shader<'a> {
         part
     }
 
-    /// The light of a surface that emits and is no object, if a sample sees one before something.
-    fn glows(&self, pixel: &Pixel<'_>, i: usize, before: Option<(f64, usize)>) -> Option<Channels> {
+    /// The light of a surface that emits and is no object, if a sample sees one before what is found there.
+    fn glows(&self, (pixel, i): (&Pixel<'_>, usize), found: Option<&Found<'_>>, comb: usize) -> Option<Channels> {
         if !self.has_surfaces {
             return None;
         }
-        let (distance, comb) = before.unwrap_or((f64::INFINITY, 0));
         let Sight { ray, t_min, t_max, .. } = self.eye.ray(pixel.place(i), [0.5; 2])?;
-        let t_max = t_max.min(distance / ray.direction.length());
-        self.appearance.glow(&ray, t_min, t_max, comb).map(|(_, glow)| glow.radiance)
+        // What was found once for the pixel is met elsewhere by each sample: a lamp may be close before it.
+        let met = found.map_or(f64::INFINITY, |found| {
+            let Element { position, face, .. } = found.element;
+            let t = (position - ray.origin).dot(face) / ray.direction.dot(face);
+            if t > 0.0 { t } else { found.distance / ray.direction.length() }
+        });
+        self.appearance.glow(&ray, t_min, t_max.min(met), comb).map(|(_, glow)| glow.radiance)
     }
 
     /// The part of light that goes straight through a surface.

@@ -1,0 +1,130 @@
+//! Corners of elements: those that lie at the same place of a smooth surface are one.
+
+use super::hierarchy::{Hierarchy, NONE};
+use crate::scene::Prepared;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// Elements share a corner if the cosine between their normals is greater: of flat objects, and of curved ones.
+const FLAT: f64 = 0.985;
+const CURVED: f64 = 0.5;
+/// How far corners look out from the place where they are, as a part of the way to the middles of their elements: on an
+/// edge may lie another surface.
+const INWARDS: f64 = 1e-3;
+/// The sine of an angle below which elements are flat.
+const HOLLOW: f64 = 1e-4;
+
+/// A corner that elements share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// One of the elements.
+    pub(super) leaf: u32,
+    /// Sums over the elements: of their middles and of their normals, and how many there are.
+    middles: DVec3,
+    normals: DVec3,
+    count: f64,
+    at: DVec3,
+}
+
+impl Corner {
+    /// From where it sees what its elements see, and its unit normal.
+    pub(super) fn view(&self) -> [DVec3; 2] {
+        let normal = self.normals.normalize_or_zero();
+        let offset = self.middles / self.count - self.at;
+        // The middles about a tip are within the body.
+        let offset = offset - normal * offset.dot(normal).min(0.0);
+        [self.at + offset * INWARDS, normal]
+    }
+
+    /// Whether its elements rise from it, so that they see each other there.
+    pub(super) fn is_hollow(&self) -> bool {
+        let offset = self.middles / self.count - self.at;
+        offset.dot(self.normals) > HOLLOW * offset.length() * self.normals.length()
+    }
+}
+
+/// The corners of leaves.
+#[derive(Default)]
+pub(super) struct Corners {
+    at: HashMap<[u64; 3], Vec<(DVec3, u32)>>,
+    /// Each once.
+    pub(super) all: Vec<Corner>,
+    /// Those of each leaf.
+    pub(super) of: Vec<[u32; 3]>,
+    /// Of each leaf, how alike normals must be.
+    like: Vec<f64>,
+}
+
+fn key(point: DVec3) -> [u64; 3] {
+    // Adding 0 turns -0 into 0.
+    point.to_array().map(|x| (x + 0.0).to_bits())
+}
+
+impl Corners {
+    pub(super) fn new(prepared: &Prepared, hierarchy: &Hierarchy, leaves: &[u32]) -> Corners {
+        let mut corners = Corners::default();
+        for leaf in leaves {
+            let node = &hierarchy.nodes[*leaf as usize];
+            let triangle = hierarchy.patches[node.patch as usize].triangle;
+            let like = if prepared.corner_normals(triangle).is_some() { CURVED } else { FLAT };
+            let mut numbers = [NONE; 3];
+            for (number, at) in numbers.iter_mut().zip(node.corners) {
+                *number = corners.put(at, node.normal, like, *leaf);
+                let corner = &mut corners.all[*number as usize];
+                corner.middles += node.middle;
+                corner.normals += node.normal;
+                corner.count += 1.0;
+            }
+            corners.of.push(numbers);
+            corners.like.push(like);
+        }
+        corners
+    }
+
+    fn find(&self, point: DVec3, normal: DVec3, like: f64) -> Option<u32> {
+        let there = self.at.get(&key(point))?;
+        there.iter().find(|(other, _)| other.dot(normal) > like).map(|(_, number)| *number)
+    }
+
+    fn put(&mut self, at: DVec3, normal: DVec3, like: f64, leaf: u32) -> u32 {
+        self.find(at, normal, like).unwrap_or_else(|| {
+            let number = self.all.len() as u32;
+            self.at.entry(key(at)).or_default().push((normal, number));
+            self.all.push(Corner { leaf, middles: DVec3::ZERO, normals: DVec3::ZERO, count: 0.0, at });
+            number
+        })
+    }
+
+    /// Corners that lie on edges of larger elements, each with the ends of the edge or of a half of it in the middle of which
+    /// it is, and the length of that; the longest first, since those within depend on them.
+    pub(super) fn hanging(&self, hierarchy: &Hierarchy, leaves: &[u32]) -> Vec<(f64, [u32; 3])> {
+        let mut edges: Vec<(f64, [u32; 3])> = Vec::new();
+        for ((leaf, numbers), like) in leaves.iter().zip(&self.of).zip(&self.like) {
+            let node = &hierarchy.nodes[*leaf as usize];
+            for i in 0..3 {
+                let j = (i + 1) % 3;
+                let ends = [(node.corners[i], numbers[i]), (node.corners[j], numbers[j])];
+                self.hang(ends, (node.normal, *like), &mut edges);
+            }
+        }
+        edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        edges
+    }
+
+    /// Corners in the middle of an edge, and in the middle of its halves.
+    fn hang(
+        &self,
+        [(from, a), (to, b)]: [(DVec3, u32); 2],
+        (normal, like): (DVec3, f64),
+        edges: &mut Vec<(f64, [u32; 3])>,
+    ) {
+        let middle = 0.5 * (from + to);
+        let Some(number) = self.find(middle, normal, like) else { return };
+        if middle == from || middle == to || number == a || number == b {
+            return;
+        }
+        edges.push((from.distance(to), [number, a, b]));
+        self.hang([(from, a), (middle, number)], (normal, like), edges);
+        self.hang([(middle, number), (to, b)], (normal, like), edges);
+    }
+}
