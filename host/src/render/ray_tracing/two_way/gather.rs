@@ -30,8 +30,9 @@ const LEAST: u32 = 10;
 const RINGS: usize = 32;
 /// Discs that are tried: so many rings each.
 const DISCS: [usize; 10] = [1, 2, 3, 4, 6, 8, 11, 16, 22, 32];
-/// Two discs tell the same if they differ by no more than so many standard errors.
-const SAME: f64 = 1.0;
+/// Two discs tell the same if they differ by no more than so many standard errors. With few of them, a disc is often taken
+/// because chance made it tell little, and pictures get too dark; with many, edges blur.
+const SAME: f64 = 3.0;
 /// So many walls around a place are looked at for each light; of more, the octree finds those in the way.
 const MANY_WALLS: usize = 64;
 /// How far above or below the plane at a place light may have arrived to count there, over the radius.

@@ -189,7 +189,7 @@ mod tests {
         let corner = [wall([-3.0, 0.3], [3.0, 0.3]), wall([-0.2, -2.0], [-0.2, 2.0])];
         let behind = [wall([0.2, -0.3], [0.25, 0.4]), wall([0.5, -0.2], [0.45, 0.1])];
         // The surface is below a line, and has a hole.
-        let line = vec![segment([2.0, 0.6], [-2.0, 0.6])];
+        let line = [segment([2.0, 0.6], [-2.0, 0.6])];
         let hole = [[0.1, -0.5], [0.1, -0.2], [0.4, -0.2], [0.4, -0.5]];
         let hole: Vec<[DVec2; 2]> = (0..4).map(|i| segment(hole[i], hole[(i + 1) % 4])).collect();
         let is_on = |p: DVec2, has_line: bool, has_hole: bool| {
