@@ -3,7 +3,6 @@
 //! First proves that the pictures are the same, bit by bit. The time for making triangles and octree is not counted, that for
 //! finding what stands between voxels and lights is. `cargo bench -p tests --bench light_buffer`
 
-use glam::DQuat;
 use host::plan::Plan;
 use host::render::ray_tracing::RayTracer;
 use host::render::{Order, Renderer, Rendering, Watch};
@@ -30,7 +29,9 @@ fn main() {
     let runs = [&prepared, &without].map(|prepared| {
         let plan = Plan::new(prepared, &View::Camera(camera));
         let tracer = RayTracer::new(prepared, &plan).expect("an octree");
-        (0..VIEWS).map(|index| render(&tracer, turned(&camera, index), samples)).collect::<Vec<_>>()
+        (0..VIEWS)
+            .map(|index| render(&tracer, camera.turned((TURN * f64::from(index)).to_radians()), samples))
+            .collect::<Vec<_>>()
     });
     let [with, plain] = &runs;
     assert!(with.iter().zip(plain).all(|(a, b)| a.picture == b.picture), "a picture depends on the light buffer");
@@ -50,10 +51,4 @@ fn render(tracer: &RayTracer<'_>, camera: Camera, samples: u32) -> Rendering {
     let settings = &tracer.prepared().settings;
     let order = Order { threads: NonZeroUsize::new(2), samples, ..Order::of(settings) };
     tracer.render(&View::Camera(camera), &order, &Watch::NOBODY).expect("a picture")
-}
-
-/// A camera that has turned about the point it looks at.
-fn turned(camera: &Camera, index: u32) -> Camera {
-    let turn = DQuat::from_axis_angle(camera.up.normalize(), (TURN * f64::from(index)).to_radians());
-    Camera { from: camera.at + turn * (camera.from - camera.at), ..*camera }
 }

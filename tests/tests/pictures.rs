@@ -100,3 +100,26 @@ fn a_rendering_that_goes_on_from_a_file_is_as_if_it_had_never_ended() {
     let none = peris(&["render", "a.rhai", "--resume", "a.state"], folder);
     assert!(none.code == Some(1) && none.errors.contains("a.state"), "{}", none.errors);
 }
+
+#[test]
+fn several_views_share_caught_light_which_a_database_keeps_for_the_next_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let script = SCENE.replace("metal(\"copper\", 0.3)", "glass(#{})").replace("samples(16)", "samples(4)");
+    fs::write(folder.join("a.rhai"), script).unwrap();
+    let common = ["render", "a.rhai", "--renderer", "two-way", "--json"];
+    let told = json(&[&common[..], &["--views", "3", "--turn", "20", "--light", "a.redb"]].concat(), folder);
+    let told = told.as_array().unwrap();
+    let files: Vec<&str> = told.iter().map(|view| view["files"][0].as_str().unwrap()).collect();
+    assert_eq!(files, ["a-1.png", "a-2.png", "a-3.png"]);
+    let pictures: Vec<Vec<u8>> = files.iter().map(|file| fs::read(folder.join(file)).unwrap()).collect();
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
+    let again = json(&[&common[..], &["--light", "a.redb", "-o", "b.png"]].concat(), folder);
+    let of = |key: &str| again["caught_light"][key].as_u64().unwrap();
+    assert!(2 * of("before") > of("ways"), "{again}");
+    assert_eq!(fs::read(folder.join("b.png")).unwrap(), pictures[0]);
+    let listed = peris(&["db", "list", "a.redb", "--kind", "caught-light"], folder);
+    assert!(listed.out.contains("light 1, pass 0"), "{}", listed.out);
+    let wrong = peris(&["render", "a.rhai", "--renderer", "scan-line", "--light", "a.redb"], folder);
+    assert_eq!(wrong.code, Some(2), "{}", wrong.errors);
+}

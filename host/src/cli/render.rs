@@ -5,18 +5,20 @@ use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, load, watch_
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::radiosity::{Radiosity, Report};
-use crate::render::ray_tracing::{Explanation, RayTracer};
+use crate::render::ray_tracing::{Explanation, RayTracer, Shelf};
 use crate::render::scan_line::ScanLine;
 use crate::render::{Film, Fingerprint, Order, RenderError, Renderer, Rendering, Watch};
-use crate::scene::{Prepared, Scene, View};
+use crate::scene::{Camera, Prepared, Scene, View};
 use clap::{Args, FromArgMatches, ValueEnum};
 use glam::DVec3;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Most samples of a pixel that are explained.
 const EXPLAINED: usize = 4;
+/// Most views at once.
+const MOST_VIEWS: i64 = 10_000;
 
 pub(super) const ROW: Row = Row {
     name: "render",
@@ -80,6 +82,17 @@ struct Arguments {
     /// be added at any time
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
+    /// Renders so many views: the camera goes round what it looks at, and the files are numbered; what does not depend on
+    /// the view is done once
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=MOST_VIEWS), conflicts_with_all = ["resume", "pixel"])]
+    views: Option<u32>,
+    /// How far the camera goes from one view to the next [default: a full turn in all]
+    #[arg(long, value_name = "DEGREES", requires = "views", allow_negative_numbers = true)]
+    turn: Option<f64>,
+    /// Keeps the light that two-way ray tracing catches in this database (.redb), which is made if need be, and takes from
+    /// there what was caught before, for as long as geometry, materials and lamps are the same
+    #[arg(long, value_name = "DATABASE")]
+    light: Option<PathBuf>,
     /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too; by ray tracing
     /// without --resume also emitted, direct, caustic and indirect light, which together are the picture
     #[arg(long)]
@@ -122,8 +135,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     settings.interreflection |= arguments.renderer == Kind::Radiosity;
     let start = Instant::now();
     let prepared = Prepared::new(&scene)?;
-    let view = prepared.view();
-    let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
+    let views = arguments.views_of(&prepared)?;
+    let plan = Plan::of_views(&prepared, &views, arguments.everything);
+    let shelf = arguments.light.as_ref().map(|path| Shelf::new(path, &scene, &prepared)).transpose()?;
     let order = Order {
         threads: arguments.threads,
         target: arguments.error,
@@ -133,51 +147,163 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let progress = Progress::new("rendering", arguments.json);
     let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
-    let mut books = None;
-    let (rendering, build_seconds) = match arguments.renderer {
+    let mut job = Job { arguments, outputs: &outputs, views: &views, prepared: &prepared, start, books: None };
+    match arguments.renderer {
         Kind::Radiosity => {
             let settings = prepared.settings.into();
             let solution = in_pool(arguments, || Radiosity::new(&prepared, &plan, &settings, None, &watch))?;
-            books = Some(solution.report);
+            job.books = Some(solution.report);
             let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
-            scan_line.left_out(&view).iter().for_each(|what| eprintln!("warning: by radiosity, {what}"));
-            let build_seconds = start.elapsed().as_secs_f64();
-            (scan_line.render(&view, &order, &watch).map_err(Failure::from), build_seconds)
+            scan_line.left_out(&views[0]).iter().for_each(|what| eprintln!("warning: by radiosity, {what}"));
+            job.perform(&progress, |view| Ok(scan_line.render(view, &order, &watch)?))
         }
         Kind::ScanLine => {
             let scan_line = ScanLine::new(&prepared, &plan)?;
-            scan_line.left_out(&view).iter().for_each(|what| eprintln!("warning: by scan line, {what}"));
-            let build_seconds = start.elapsed().as_secs_f64();
-            (scan_line.render(&view, &order, &watch).map_err(Failure::from), build_seconds)
+            scan_line.left_out(&views[0]).iter().for_each(|what| eprintln!("warning: by scan line, {what}"));
+            job.perform(&progress, |view| Ok(scan_line.render(view, &order, &watch)?))
         }
         Kind::RayTracing | Kind::TwoWay => {
-            let tracer = in_pool(arguments, || RayTracer::watched(&prepared, &plan, &watch))?;
-            books = tracer.radiosity().map(|solution| solution.report);
-            let build_seconds = start.elapsed().as_secs_f64();
+            let tracer = in_pool(arguments, || RayTracer::watched(&prepared, &plan, shelf.as_ref(), &watch))?;
+            job.books = tracer.radiosity().map(|solution| solution.report);
             if let Some(pixel) = arguments.pixel {
                 progress.finish();
-                return explain(arguments, &tracer, &view, &order, pixel);
+                return explain(arguments, &tracer, &views[0], &order, pixel);
             }
-            (trace(arguments, &scene, &tracer, (&view, &order), &watch), build_seconds)
+            job.perform(&progress, |view| trace(arguments, &scene, &tracer, (view, &order), &watch))
         }
-    };
-    progress.finish();
-    let rendering = rendering?;
-    outputs.iter().try_for_each(|path| match arguments.layers && Picture::is_exr(path) {
-        true => rendering.film.write_layers(path, &prepared),
-        false => rendering.picture.write(path),
-    })?;
-    report(arguments, &outputs, &prepared, (&rendering, books), build_seconds)?;
-    if rendering.complete {
+    }
+}
+
+/// Pictures that are made.
+struct Job<'a> {
+    arguments: &'a Arguments,
+    outputs: &'a [PathBuf],
+    views: &'a [View],
+    prepared: &'a Prepared,
+    start: Instant,
+    /// What radiosity took.
+    books: Option<Report>,
+}
+
+impl Job<'_> {
+    /// Renders each view, writes it and reports on it.
+    fn perform(
+        &self,
+        progress: &Progress,
+        mut render: impl FnMut(&View) -> Result<Rendering, Failure>,
+    ) -> Result<(), Failure> {
+        let build_seconds = self.start.elapsed().as_secs_f64();
+        let mut reports = Vec::new();
+        for (number, view) in self.views.iter().enumerate() {
+            let rendering = render(view);
+            progress.finish();
+            let rendering = rendering?;
+            let outputs: Vec<PathBuf> = self.outputs.iter().map(|path| self.numbered(path, number)).collect();
+            outputs.iter().try_for_each(|path| match self.arguments.layers && Picture::is_exr(path) {
+                true => rendering.film.write_layers(path, self.prepared),
+                false => rendering.picture.write(path),
+            })?;
+            match self.arguments.json {
+                true => reports.push(self.json(&outputs, &rendering, build_seconds)),
+                false => self.report(&outputs, &rendering, build_seconds),
+            }
+            if !rendering.complete {
+                let [least, most] = rendering.film.samples();
+                let message = format!("interrupted; pixels have {least} to {most} samples, which are kept");
+                self.say_json(reports)?;
+                return Err(Failure::new(Exit::Interrupted, anyhow::anyhow!(message)));
+            }
+        }
+        self.say_json(reports)
+    }
+
+    /// The file of a view.
+    fn numbered(&self, path: &Path, number: usize) -> PathBuf {
+        let Some(count) = self.arguments.views else { return path.into() };
+        let digits = count.ilog10() as usize + 1;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        path.with_file_name(format!("{stem}-{:0digits$}.{ending}", number + 1))
+    }
+
+    /// Prints what is known for programs: of each view, if several were asked for.
+    fn say_json(&self, mut reports: Vec<serde_json::Value>) -> Result<(), Failure> {
+        match self.arguments.views {
+            _ if !self.arguments.json => {}
+            Some(_) => say!("{}", serde_json::to_string_pretty(&reports)?),
+            None => say!("{}", serde_json::to_string_pretty(&reports.pop())?),
+        }
         Ok(())
-    } else {
+    }
+
+    fn json(&self, outputs: &[PathBuf], rendering: &Rendering, build_seconds: f64) -> serde_json::Value {
+        let picture = &rendering.picture;
+        serde_json::json!({
+            "files": outputs,
+            "width": picture.width(),
+            "height": picture.height(),
+            "samples": rendering.film.samples(),
+            "standard_error": Some(rendering.film.standard_error()).filter(|error| error.is_finite()),
+            "seed": self.prepared.settings.seed,
+            "triangles": self.prepared.triangles.len(),
+            "build_seconds": build_seconds,
+            "render_seconds": rendering.seconds,
+            "threads": rendering.threads,
+            "rays": rendering.rays,
+            "caught_light": rendering.balance,
+            "spans": rendering.spans,
+            "radiosity": self.books,
+            "complete": rendering.complete,
+        })
+    }
+
+    fn report(&self, outputs: &[PathBuf], rendering: &Rendering, build_seconds: f64) {
+        let picture = &rendering.picture;
         let [least, most] = rendering.film.samples();
-        let message = format!("interrupted; pixels have {least} to {most} samples, which are kept");
-        Err(Failure::new(Exit::Interrupted, anyhow::anyhow!(message)))
+        let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
+        say!(
+            "{}: {} x {} pixels, {} to {} samples each; standard error of luminance {:.2e}",
+            names.join(", "),
+            picture.width(),
+            picture.height(),
+            least,
+            most,
+            rendering.film.standard_error()
+        );
+        say!("{} triangles, built in {build_seconds:.3} s", self.prepared.triangles.len());
+        if let Some(balance) = &rendering.balance {
+            say!("{balance}");
+        }
+        self.books.iter().flat_map(Report::lines).for_each(|line| say!("{line}"));
+        let Rendering { rays, spans, seconds, threads, .. } = rendering;
+        if matches!(self.arguments.renderer, Kind::ScanLine | Kind::Radiosity) {
+            let (all, shadows) = (spans.surfaces, spans.shadows);
+            say!("{all} spans of surfaces, {shadows} of shadow polygons in {seconds:.3} s on {threads} threads");
+            return;
+        }
+        say!(
+            "{} rays (primary {}, shadow {}, reflected {}; {} spared) in {seconds:.3} s on {threads} threads: {:.2} million a second",
+            rays.total(),
+            rays.primary,
+            rays.shadow,
+            rays.reflected,
+            rays.spared,
+            rendering.mega_rays_per_second()
+        );
     }
 }
 
 impl Arguments {
+    /// From where the scene is seen.
+    fn views_of(&self, prepared: &Prepared) -> Result<Vec<View>, Failure> {
+        let count = self.views.unwrap_or(1);
+        let step = self.turn.unwrap_or(360.0 / f64::from(count)).to_radians();
+        let camera = prepared.camera;
+        let views = (0..count).map(|number| camera.turned(step * f64::from(number)));
+        let sound = |camera: Camera| camera.check().map(|()| View::Camera(camera));
+        Ok(views.map(sound).collect::<Result<_, _>>()?)
+    }
+
     /// Refuses what a renderer does not know.
     fn check(&self) -> Result<(), Failure> {
         let given = [
@@ -186,6 +312,10 @@ impl Arguments {
             ("--resume", self.resume.is_some()),
             ("--pixel", self.pixel.is_some()),
         ];
+        if self.light.is_some() && matches!(self.renderer, Kind::ScanLine | Kind::Radiosity) {
+            let message = "--light is of two-way ray tracing only";
+            return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        }
         match given.iter().find(|(_, given)| *given && self.renderer != Kind::RayTracing) {
             Some((name, _)) => {
                 let word = if self.renderer == Kind::ScanLine { "scan line" } else { "radiosity" };
@@ -285,69 +415,6 @@ fn size(width: u32, height: u32, new_width: Option<u32>, new_height: Option<u32>
         (None, Some(h)) => (scaled(width, h, height), h),
         (Some(w), Some(h)) => (w, h),
     }
-}
-
-fn report(
-    arguments: &Arguments,
-    outputs: &[PathBuf],
-    prepared: &Prepared,
-    (rendering, books): (&Rendering, Option<Report>),
-    build_seconds: f64,
-) -> Result<(), Failure> {
-    let picture = &rendering.picture;
-    if arguments.json {
-        let json = serde_json::json!({
-            "files": outputs,
-            "width": picture.width(),
-            "height": picture.height(),
-            "samples": rendering.film.samples(),
-            "standard_error": Some(rendering.film.standard_error()).filter(|error| error.is_finite()),
-            "seed": prepared.settings.seed,
-            "triangles": prepared.triangles.len(),
-            "build_seconds": build_seconds,
-            "render_seconds": rendering.seconds,
-            "threads": rendering.threads,
-            "rays": rendering.rays,
-            "caught_light": rendering.balance,
-            "spans": rendering.spans,
-            "radiosity": books,
-            "complete": rendering.complete,
-        });
-        say!("{}", serde_json::to_string_pretty(&json)?);
-        return Ok(());
-    }
-    let [least, most] = rendering.film.samples();
-    let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
-    say!(
-        "{}: {} x {} pixels, {} to {} samples each; standard error of luminance {:.2e}",
-        names.join(", "),
-        picture.width(),
-        picture.height(),
-        least,
-        most,
-        rendering.film.standard_error()
-    );
-    say!("{} triangles, built in {build_seconds:.3} s", prepared.triangles.len());
-    if let Some(balance) = &rendering.balance {
-        say!("{balance}");
-    }
-    books.iter().flat_map(Report::lines).for_each(|line| say!("{line}"));
-    let Rendering { rays, spans, seconds, threads, .. } = rendering;
-    if matches!(arguments.renderer, Kind::ScanLine | Kind::Radiosity) {
-        let (all, shadows) = (spans.surfaces, spans.shadows);
-        say!("{all} spans of surfaces, {shadows} of shadow polygons in {seconds:.3} s on {threads} threads");
-        return Ok(());
-    }
-    say!(
-        "{} rays (primary {}, shadow {}, reflected {}; {} spared) in {seconds:.3} s on {threads} threads: {:.2} million a second",
-        rays.total(),
-        rays.primary,
-        rays.shadow,
-        rays.reflected,
-        rays.spared,
-        rendering.mega_rays_per_second()
-    );
-    Ok(())
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ struct Sheet {
 }
 
 impl Record {
-    /// The record as JSON; none of a mesh or a picture.
+    /// The record as JSON; none of a mesh, a picture or caught light.
     pub fn json(&self) -> Option<serde_json::Value> {
         let Origin { what, source, terms } = self.origin.clone();
         let mut sheet =
@@ -60,7 +60,7 @@ impl Record {
             Content::Material(material) => sheet.material = Some((**material).clone()),
             Content::Light(light) => sheet.light = Some((**light).clone()),
             Content::Spectrum(curves) => sheet.spectrum = Some(curves.clone()),
-            Content::Geometry(_) | Content::Texture(_) => return None,
+            Content::Geometry(_) | Content::Texture(_) | Content::CaughtLight(_) => return None,
         }
         serde_json::to_value(&sheet).ok()
     }
@@ -103,6 +103,7 @@ pub fn write(record: &Record, path: &Path) -> Result<(), DatabaseError> {
         (Content::Geometry(_), _) => return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh")),
         (Content::Texture(picture), "png" | "exr") => return Ok(picture.write(path)?),
         (Content::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
+        (Content::CaughtLight(_), _) => return Err(failed("caught light is of use in its database only")),
         (Content::Spectrum(curves), "txt") => {
             let named = match curves {
                 Curves::Reflectance(spectrum) | Curves::Light(spectrum) => vec![(&*record.name, spectrum)],

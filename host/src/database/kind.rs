@@ -5,7 +5,7 @@ use std::fmt;
 
 /// What a record is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// A mesh with its groups.
     Geometry,
@@ -17,11 +17,14 @@ pub enum Kind {
     Light,
     /// A quantity over the wavelength, or several.
     Spectrum,
+    /// Light of a lamp that was caught on the surfaces of a scene.
+    CaughtLight,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 5] = [Kind::Geometry, Kind::Texture, Kind::Material, Kind::Light, Kind::Spectrum];
+    pub const ALL: [Kind; 6] =
+        [Kind::Geometry, Kind::Texture, Kind::Material, Kind::Light, Kind::Spectrum, Kind::CaughtLight];
 
     /// The kind in a word; the name of its table, too.
     pub fn word(self) -> &'static str {
@@ -31,6 +34,7 @@ impl Kind {
             Kind::Material => "material",
             Kind::Light => "light",
             Kind::Spectrum => "spectrum",
+            Kind::CaughtLight => "caught-light",
         }
     }
 

@@ -1,4 +1,4 @@
-//! Databases: geometry, textures, materials, light sources and spectra, on disk and in the program.
+//! Databases: geometry, textures, materials, light sources, spectra and caught light, on disk and in the program.
 //!
 //! A database is one file. What one transaction writes is there as a whole or not at all, also after a crash; one process
 //! writes at a time, and any number of processes and threads read meanwhile, each what was there when it began. A record
@@ -7,6 +7,7 @@
 //!
 //! The database that ships with the program has records of the same kinds and is read-only.
 
+mod caught;
 mod check;
 mod error;
 mod exchange;
@@ -18,6 +19,7 @@ mod store;
 #[cfg(test)]
 mod tests;
 
+pub use caught::{CaughtBlock, CaughtLight};
 pub use check::{Problem, Report};
 pub use error::DatabaseError;
 pub use exchange::{Quantity, read, write};

@@ -3,7 +3,7 @@
 //! The bytes of a record are its version and a checksum, four bytes each, lowest first, and then in bincode a head (what
 //! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
 
-use super::{DatabaseError, Kind};
+use super::{CaughtLight, DatabaseError, Kind};
 use crate::color::shipped::Metal;
 use crate::color::{Origin, Spectrum};
 use crate::illumination::light::{Light, SkyMap};
@@ -48,6 +48,8 @@ pub enum Content {
     Light(Box<Light>),
     /// A quantity over the wavelength, or several.
     Spectrum(Curves),
+    /// Light of a lamp that was caught on surfaces.
+    CaughtLight(Box<CaughtLight>),
 }
 
 /// Quantities over the wavelength.
@@ -119,6 +121,7 @@ impl Content {
             Content::Material(_) => Kind::Material,
             Content::Light(_) => Kind::Light,
             Content::Spectrum(_) => Kind::Spectrum,
+            Content::CaughtLight(_) => Kind::CaughtLight,
         }
     }
 
@@ -132,6 +135,7 @@ impl Content {
             Content::Material(material) => material.word().into(),
             Content::Light(light) => light.words().into(),
             Content::Spectrum(curves) => curves.summary(),
+            Content::CaughtLight(caught) => caught.summary(),
         }
     }
 
@@ -156,6 +160,7 @@ impl Content {
                 _ => light.check().map_err(|error| error.to_string()),
             },
             Content::Spectrum(curves) => curves.check(),
+            Content::CaughtLight(caught) => caught.check(),
         }
     }
 
@@ -170,6 +175,7 @@ impl Content {
             Content::Material(material) => encoded(material),
             Content::Light(light) => encoded(light),
             Content::Spectrum(curves) => encoded(curves),
+            Content::CaughtLight(caught) => encoded(caught),
         }
     }
 
@@ -180,6 +186,7 @@ impl Content {
             Kind::Material => Content::Material(Box::new(decoded(bytes)?)),
             Kind::Light => Content::Light(Box::new(decoded(bytes)?)),
             Kind::Spectrum => Content::Spectrum(decoded(bytes)?),
+            Kind::CaughtLight => Content::CaughtLight(Box::new(decoded(bytes)?)),
         };
         content.check().map(|()| content)
     }

@@ -18,7 +18,7 @@ pub fn names(kind: Kind) -> Vec<&'static str> {
         Kind::Spectrum => {
             [shipped::lights(), shipped::metals(), shipped::reflectances(), shipped::functions()].concat()
         }
-        Kind::Texture | Kind::Light => Vec::new(),
+        Kind::Texture | Kind::Light | Kind::CaughtLight => Vec::new(),
     }
 }
 
@@ -54,7 +54,7 @@ pub fn find(kind: Kind, name: &str) -> Result<Option<Record>, DatabaseError> {
         }
         Kind::Material => shipped::glass(name).map(clear),
         Kind::Spectrum => curves(name).map(Content::Spectrum),
-        Kind::Texture | Kind::Light => return Ok(None),
+        Kind::Texture | Kind::Light | Kind::CaughtLight => return Ok(None),
     };
     Ok(Some(Record { name: name.into(), origin, content: made.map_err(failed)? }))
 }

@@ -84,7 +84,23 @@ fn many() -> Vec<Record> {
     let number = |index: usize, content| record(&format!("thing {index}"), content);
     all.extend(bodies.into_iter().enumerate().map(|(i, body)| number(i, Content::Material(Box::new(body.into())))));
     all.extend(lights.into_iter().enumerate().map(|(i, light)| number(i, Content::Light(Box::new(light)))));
+    all.push(record("beam", Content::CaughtLight(Box::new(beam()))));
     all
+}
+
+fn beam() -> CaughtLight {
+    let block = CaughtBlock {
+        aim: 1,
+        number: 2,
+        ways: 1024,
+        balance: [1.0, 0.5, -0.1, 0.2, 0.9, 0.2, 0.1, 0.0],
+        positions: vec![[0.1, 0.2, -0.3], [1e9, 0.0, 0.0]],
+        towards: vec![[0.0, 1.0, 0.0], [0.6, 0.8, 0.0]],
+        flux: vec![0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
+        sides: vec![3, 77],
+        combs: vec![0, 0x83],
+    };
+    CaughtLight { lanes: 3, blocks: vec![block] }
 }
 
 fn filled(path: &Path) -> Vec<Record> {
@@ -188,6 +204,10 @@ fn impossible_content_is_not_stored() {
         Content::Geometry(Box::new(open)),
         Content::Spectrum(Curves::Reflectance(bright)),
         Content::Spectrum(Curves::Functions(Vec::new())),
+        Content::CaughtLight(Box::new(CaughtLight {
+            blocks: vec![CaughtBlock { flux: vec![1.0], ..CaughtBlock::default() }],
+            ..beam()
+        })),
         Content::Material(Box::new(Material { emission: Color::grey(-1.0), ..Material::default() })),
     ] {
         let error = store.add(&[record("x", content)], false).expect_err("impossible");
@@ -239,7 +259,7 @@ fn a_record_under_another_name_is_damaged() {
 
 proptest! {
     #[test]
-    fn any_change_of_a_record_is_found(which in 0_usize..11, at in any::<prop::sample::Index>(), flip in 1_u8..) {
+    fn any_change_of_a_record_is_found(which in 0_usize..12, at in any::<prop::sample::Index>(), flip in 1_u8..) {
         let record = &many()[which];
         let mut bytes = record.to_bytes().expect("bytes");
         let at = at.index(bytes.len());

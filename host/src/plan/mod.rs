@@ -78,15 +78,18 @@ impl Decision {
 impl Plan {
     /// The leanest plan that gives the full picture of `prepared` seen through `view`.
     pub fn new(prepared: &Prepared, view: &View) -> Plan {
-        Plan::decide(prepared, view, false)
+        Plan::of_views(prepared, std::slice::from_ref(view), false)
     }
 
     /// The plan that leaves nothing out.
     pub fn everything(prepared: &Prepared, view: &View) -> Plan {
-        Plan::decide(prepared, view, true)
+        Plan::of_views(prepared, std::slice::from_ref(view), true)
     }
 
-    fn decide(prepared: &Prepared, view: &View, forced: bool) -> Plan {
+    /// The plan for several views.
+    ///
+    /// - `forced`: whether nothing is left out.
+    pub fn of_views(prepared: &Prepared, views: &[View], forced: bool) -> Plan {
         let mut plan = Plan {
             forced,
             entries: Vec::new(),
@@ -96,7 +99,7 @@ impl Plan {
         };
         let lights: Vec<Decision> = prepared.lights.iter().map(light).collect();
         let facts = stage::Facts::new(prepared, lights.iter().map(|d| d.needed).collect());
-        let objects = reach::objects(prepared, view, &facts);
+        let objects = reach::objects(prepared, views, &facts);
         let facts = facts.within(objects.iter().map(|d| d.needed).collect());
         for stage in Stage::ALL {
             plan.stages[stage as usize] =

@@ -6,14 +6,14 @@ use crate::numeric::bounds::Bounds;
 use crate::scene::{Prepared, View};
 use glam::DVec3;
 
-/// Decides for each object whether it can influence the picture.
-pub(super) fn objects(prepared: &Prepared, view: &View, facts: &Facts<'_>) -> Vec<Decision> {
-    let Some(projection) = view.projection() else {
+/// Decides for each object whether it can influence one of the pictures.
+pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) -> Vec<Decision> {
+    let Some(projections) = views.iter().map(View::projection).collect::<Option<Vec<_>>>() else {
         return prepared.objects.iter().map(|_| Decision::new(true, "the view is not known")).collect();
     };
     let window = View::window(prepared.settings.width, prepared.settings.height);
-    let visible: Vec<bool> =
-        prepared.objects.iter().map(|o| o.count > 0 && !o.bounds.is_outside(&projection.to_clip, window)).collect();
+    let is_seen = |bounds: &Bounds| projections.iter().any(|seen| !bounds.is_outside(&seen.to_clip, window));
+    let visible: Vec<bool> = prepared.objects.iter().map(|o| o.count > 0 && is_seen(&o.bounds)).collect();
     let seen = prepared.objects.iter().zip(&visible).filter(|(_, v)| **v);
     let seen = seen.fold(Bounds::EMPTY, |b, (o, _)| b.union(o.bounds));
     let mirrors = facts.reflection().needed;

@@ -92,6 +92,11 @@ impl<'a> Appearance<'a> {
         Ok(())
     }
 
+    /// The object, and which material of it, that a source is the light of; none of other lights.
+    pub(super) fn emitter(&self, source: usize) -> Option<(u32, u32)> {
+        self.emitters.iter().find(|(_, emitted)| *emitted == source).map(|(emitter, _)| *emitter)
+    }
+
     /// Objects that emit are lights, too.
     fn add_emitters(&mut self, plan: &Plan) {
         let prepared = self.prepared;

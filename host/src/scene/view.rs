@@ -2,7 +2,7 @@
 
 use super::SceneError;
 use crate::numeric::bounds::Bounds;
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
 /// How steeply the automatic camera looks down.
@@ -97,6 +97,14 @@ impl Camera {
         let forward = (self.at - self.from).try_normalize()?;
         let right = forward.cross(self.up.try_normalize()?).try_normalize()?;
         Some([right, right.cross(forward), forward])
+    }
+
+    /// The camera after it went round what it looks at.
+    ///
+    /// - `angle`: about its upward direction, radians, to the right as it sees itself go.
+    pub fn turned(&self, angle: f64) -> Camera {
+        let turn = DQuat::from_axis_angle(self.up.normalize_or(DVec3::Y), angle);
+        Camera { from: self.at + turn * (self.from - self.at), ..*self }
     }
 
     /// Tangent of half the field of view.

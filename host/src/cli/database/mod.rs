@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub(super) const ROW: Row = Row {
     name: "db",
     summary: "Lists, shows, plots, adds, removes, exports and checks records of databases: geometry, textures, \
-              materials, lights, spectra.",
+              materials, lights, spectra, caught light.",
     arguments: |command| {
         let command = command.subcommand_required(true).arg_required_else_help(true);
         let help = |sub: Command| sub.after_help(super::exit::table());

@@ -31,6 +31,9 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Path) -> Result<(), 
                 return Err(anyhow::anyhow!("the light \"{}\" has no spectrum, but {bands}", record.name).into());
             }
         },
+        Content::CaughtLight(_) => {
+            return Err(anyhow::anyhow!("caught light is seen in its scene only: render that with --light").into());
+        }
         Content::Texture(picture) => {
             let path = folder.join(format!("{name}.png"));
             picture.write(&path)?;

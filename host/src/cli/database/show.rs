@@ -15,6 +15,10 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), Failure> {
             Content::Texture(picture) => {
                 serde_json::json!({ "width": picture.width(), "height": picture.height(), "mean": mean(picture) })
             }
+            Content::CaughtLight(caught) => {
+                let bounds = caught.bounds().map(|corners| corners.map(|corner| corner.to_array()));
+                serde_json::json!({ "ways": caught.ways(), "caught": caught.len(), "bounds": bounds })
+            }
             _ => serde_json::Value::Null,
         };
         if let (Some(all), serde_json::Value::Object(more)) = (all.as_object_mut(), more) {
@@ -45,6 +49,11 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), Failure> {
             }
         },
         Content::Material(material) => say!("{}", serde_json::to_string_pretty(material)?),
+        Content::CaughtLight(caught) => {
+            if let Some([low, high]) = caught.bounds() {
+                say!("bounds    {low} to {high}");
+            }
+        }
         Content::Light(light) => say!("{}", serde_json::to_string_pretty(light)?),
     }
     Ok(())

@@ -345,7 +345,7 @@ fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
         let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
         let progress = |done: u64, _: u64| told.store(done, Ordering::Relaxed);
         let watch = Watch { cancelled: &cancelled, progress: &progress };
-        let tracer = RayTracer::watched(&room, &plan, &watch).expect("a tracer");
+        let tracer = RayTracer::watched(&room, &plan, None, &watch).expect("a tracer");
         assert!(told.load(Ordering::Relaxed) > 0);
         tracer.radiosity().expect("a solution").report.links
     };

@@ -24,6 +24,8 @@ mod light_tests;
 #[cfg(test)]
 mod motion_tests;
 #[cfg(test)]
+mod shelf_tests;
+#[cfg(test)]
 mod texture_tests;
 #[cfg(test)]
 mod two_way_extreme_tests;
@@ -34,7 +36,7 @@ mod tests;
 
 pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
-pub use two_way::Balance;
+pub use two_way::{Balance, Shelf};
 
 use super::eye::Eye;
 use super::film::{ByClass, Film, Sample, Tally};
@@ -62,7 +64,7 @@ const SAMPLES_OF_LIGHT: u32 = 8;
 pub struct RayTracer<'a> {
     plan: &'a Plan,
     world: World<'a>,
-    two_way: Option<TwoWay>,
+    two_way: Option<TwoWay<'a>>,
 }
 
 /// One sample of a pixel, explained.
@@ -84,19 +86,26 @@ impl<'a> RayTracer<'a> {
     /// # Errors
     /// [`RenderError::Octree`], [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
-        RayTracer::watched(prepared, plan, &Watch::NOBODY)
+        RayTracer::watched(prepared, plan, None, &Watch::NOBODY)
     }
 
     /// As [`RayTracer::new`], watched while radiosity is solved for, where the plan needs it.
+    ///
+    /// - `shelf`: where caught light is kept beyond this tracer; nowhere without one.
     ///
     /// When it is stopped, the light that surfaces send each other is known coarsely.
     ///
     /// # Errors
     /// As [`RayTracer::new`], and [`RenderError::Radiosity`].
-    pub fn watched(prepared: &'a Prepared, plan: &'a Plan, watch: &Watch<'_>) -> Result<RayTracer<'a>, RenderError> {
+    pub fn watched(
+        prepared: &'a Prepared,
+        plan: &'a Plan,
+        shelf: Option<&'a Shelf>,
+        watch: &Watch<'_>,
+    ) -> Result<RayTracer<'a>, RenderError> {
         let mut world = World::new(prepared, plan)?;
         let keeps = |object| plan.keeps_object(object);
-        let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps)).flatten();
+        let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps, shelf)).flatten();
         if plan.needs(Stage::Radiosity) {
             let caught = two_way.as_ref().and_then(|two_way| two_way.caught(&world, 0, watch));
             let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));

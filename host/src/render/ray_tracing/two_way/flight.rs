@@ -53,6 +53,8 @@ pub(super) fn side_of(surface: u32, outside: bool) -> u32 {
 pub struct Balance {
     /// Ways that were followed.
     pub ways: u64,
+    /// How many of them were taken from a database.
+    pub before: u64,
     /// Sent out towards what mirrors or refracts.
     pub sent: f64,
     /// Sent again by what spreads light.
@@ -77,16 +79,35 @@ impl Balance {
         let arrived = self.straight + self.caught + self.absorbed + self.escaped + self.stopped;
         (self.sent + self.again + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
     }
+
+    /// The same for ways with another flux.
+    pub(super) fn scaled(&self, factor: f64) -> Balance {
+        Balance {
+            ways: self.ways,
+            before: self.before,
+            sent: self.sent * factor,
+            again: self.again * factor,
+            gained: self.gained * factor,
+            straight: self.straight * factor,
+            caught: self.caught * factor,
+            absorbed: self.absorbed * factor,
+            escaped: self.escaped * factor,
+            stopped: self.stopped * factor,
+        }
+    }
 }
 
 impl std::fmt::Display for Balance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let part = |watts: f64| 100.0 * watts / self.sent.max(f64::MIN_POSITIVE);
+        write!(f, "{} ways of light followed", self.ways)?;
+        if self.before > 0 {
+            write!(f, ", {} of them before", self.before)?;
+        }
         write!(
             f,
-            "{} ways of light followed: {:.5} W sent, {:.2} % again by what spreads it ({:+.2} % by chance); caught \
+            ": {:.5} W sent, {:.2} % again by what spreads it ({:+.2} % by chance); caught \
              {:.2} %, absorbed {:.2} %, escaped {:.2} %, straight {:.2} %, stopped {:.2} %; {:.1e} of it is missing",
-            self.ways,
             self.sent,
             part(self.again),
             part(self.gained),
@@ -106,6 +127,7 @@ impl std::ops::Add for Balance {
     fn add(self, other: Balance) -> Balance {
         Balance {
             ways: self.ways + other.ways,
+            before: self.before + other.before,
             sent: self.sent + other.sent,
             again: self.again + other.again,
             gained: self.gained + other.gained,

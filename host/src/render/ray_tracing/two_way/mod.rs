@@ -18,10 +18,13 @@
 mod aim;
 mod flight;
 mod gather;
+mod lamps;
+mod shelf;
 mod surfaces;
 mod walls;
 
 pub use flight::Balance;
+pub use shelf::Shelf;
 
 use super::world::{Found, World};
 use crate::color::{Channels, LANES};
@@ -32,23 +35,17 @@ use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
 use crate::render::Watch;
 use crate::render::radiosity::diffuse;
-use aim::{Aimed, Ball, Guide};
+use aim::{Aimed, Ball};
 use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
 use gather::{Captured, Detail, Place, Surroundings};
 use glam::DVec3;
+use lamps::{Aim, Lamp};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use surfaces::Surfaces;
 
-/// Ways that are followed first, to see where light goes: an eighth of those of a pass, within limits.
-const PILOT: std::ops::RangeInclusive<u32> = 1 << 12..=1 << 14;
-/// What stands for a pass when they are followed.
-const PILOT_PASS: u64 = u64::MAX;
-/// The least of them for each lamp and ball.
-const LEAST_PILOT: u32 = 32;
-/// Of the ways of a lamp and ball, the least part of the mean of all, however little came of them.
-const LEAST_PART: f64 = 0.05;
 /// Ways that one thread follows before it takes others.
 const CHUNK: u32 = 1024;
 /// The largest disc over which caught light is spread, as a part of the diagonal of the scene.
@@ -56,54 +53,46 @@ const REACH: f64 = 0.05;
 
 /// How far above a surface ways along it lead, as a part of the size of the scene.
 const LIFT: f64 = 1e-9;
-/// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
-const NARROW: f64 = 0.9;
-
 /// Memory that caught light takes while it is kept for further views, bytes at the most.
 const MOST_BYTES: usize = 1 << 30;
 
 /// Follows light from lamps.
-pub(super) struct TwoWay {
+pub(super) struct TwoWay<'a> {
     surfaces: Surfaces,
     /// Triangles that stand in the way of light.
     opaque: Sorted,
     /// Those around what mirrors or refracts, and then others at which lamps are aimed.
     balls: Vec<Ball>,
     bodies: usize,
-    /// How many ways go from each lamp to each ball.
-    quotas: Vec<Quota>,
+    lamps: Vec<Lamp>,
     turns: u32,
-    /// The flux of light as it is caught, in the mean, W; none before some of it was.
-    typical: Option<f64>,
     reach: f64,
     seed: u64,
     /// What was caught, pass by pass, as far as it is kept.
     kept: Mutex<Vec<Arc<Capture>>>,
+    shelf: Option<&'a Shelf>,
 }
 
-/// Ways from a lamp to a ball.
-#[derive(Clone, Debug)]
-struct Quota {
-    /// An index into the sources.
+/// Ways that are followed together: so many from a lamp to one ball.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Chunk {
     lamp: usize,
-    ball: usize,
-    count: u32,
-    /// Where it is best aimed at.
-    guide: Guide,
+    aim: usize,
+    number: u32,
 }
 
-/// What a few ways from a lamp to a ball brought.
-struct Explored {
-    /// Flux, W.
-    caught: f64,
-    /// The root mean square of the flux of a way, were it the only one. With ways in proportion to this, chance shows least in
-    /// all together.
-    ///
-    /// # Source
-    /// Neyman 1934, optimal allocation.
-    deviation: f64,
-    /// Where they have to be sent.
-    guide: Guide,
+/// What such ways brought, as if each of them were all of the lamp.
+#[derive(Clone, Debug)]
+struct Block {
+    caught: Vec<Caught>,
+    balance: Balance,
+}
+
+impl Block {
+    fn scaled(mut self, factor: f64) -> Block {
+        self.caught.iter_mut().for_each(|caught| caught.flux *= factor);
+        Block { balance: self.balance.scaled(factor), ..self }
+    }
 }
 
 /// What a pass caught.
@@ -116,14 +105,20 @@ struct Capture {
 /// Light that was caught, with what is needed to show it.
 pub(super) struct CaughtLight<'a> {
     world: &'a World<'a>,
-    two_way: &'a TwoWay,
+    two_way: &'a TwoWay<'a>,
     capture: Arc<Capture>,
     shrink: f64,
 }
 
-impl TwoWay {
+impl<'s> TwoWay<'s> {
     /// Looks where light of lamps goes; none if nothing of it goes through mirrors or glass to where it can be caught.
-    pub(super) fn new(world: &World<'_>, keeps: impl Fn(usize) -> bool) -> Option<TwoWay> {
+    ///
+    /// - `shelf`: where caught light is kept beyond this, if anywhere.
+    pub(super) fn new(
+        world: &World<'_>,
+        keeps: impl Fn(usize) -> bool,
+        shelf: Option<&'s Shelf>,
+    ) -> Option<TwoWay<'s>> {
         let appearance = &world.appearance;
         let prepared = appearance.prepared;
         let settings = &prepared.settings;
@@ -146,85 +141,25 @@ impl TwoWay {
         let mut two_way = TwoWay {
             surfaces: Surfaces::new(prepared, takes),
             opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(opaque),
-            quotas: Vec::new(),
+            lamps: Vec::new(),
             turns: settings.reflection_depth.max(LEAST_TURNS),
             reach: settings.photon_radius.unwrap_or(REACH * prepared.bounds.diagonal()),
-            typical: None,
             seed: settings.seed,
             kept: Mutex::new(Vec::new()),
+            shelf,
             bodies: balls.len(),
             balls,
         };
         let spreads = |triangle: u32| matches!(of(triangle), (true, optics) if optics.is_broad());
         two_way.divide(world, &lamps, aim::everything(prepared, spreads));
-        (!two_way.quotas.is_empty()).then_some(two_way)
-    }
-
-    /// Divides the ways among lamps and balls, as a few of them are of use.
-    ///
-    /// - `everything`: the ball around what sends light on by broad turns; none if nothing does.
-    fn divide(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<Ball>) {
-        let wide = everything.map(|ball| {
-            self.balls.push(ball);
-            self.balls.len() - 1
-        });
-        let all = |lamp: &usize| (0..self.balls.len()).map(|ball| (*lamp, ball)).collect::<Vec<_>>();
-        let mut pairs: Vec<(usize, usize)> = lamps.iter().flat_map(all).collect();
-        for lamp in lamps {
-            // In the cone of a spot, however thin it is.
-            let cone = world.appearance.sources[*lamp].1.cone().filter(|(.., cosine)| *cosine > NARROW);
-            if let Some((at, axis, cosine)) = cone {
-                let far = world.appearance.prepared.bounds.diagonal();
-                pairs.push((*lamp, self.balls.len()));
-                self.balls.push(Ball::in_cone(at, axis * far, cosine));
+        if let Some(shelf) = shelf {
+            let (photons, lamps) = (settings.photons, lamps.len());
+            for lamp in &mut two_way.lamps {
+                let pilot = TwoWay::pilot(photons, lamps, lamp.aims.len());
+                lamp.name = Some(shelf.name(world, lamp, &keeps, pilot));
             }
         }
-        let photons = world.appearance.prepared.settings.photons;
-        let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
-        let count = (pilot / pairs.len() as u32).max(LEAST_PILOT);
-        self.quotas = pairs.into_iter().map(|(lamp, ball)| Quota { lamp, ball, count, guide: Guide::even() }).collect();
-        let found: Vec<Explored> =
-            (0..self.quotas.len()).into_par_iter().map(|quota| self.explore(world, quota, wide)).collect();
-        let all: f64 = found.iter().map(|explored| explored.deviation).sum();
-        let photons = f64::from(photons);
-        if all <= 0.0 {
-            self.quotas.clear();
-            return;
-        }
-        self.typical = Some(found.iter().map(|explored| explored.caught).sum::<f64>() / photons);
-        let least = LEAST_PART / found.len() as f64;
-        let part = |explored: &Explored| (explored.deviation / all).max(least);
-        let sum: f64 = found.iter().map(part).sum();
-        for (quota, explored) in self.quotas.iter_mut().zip(found) {
-            quota.count = (part(&explored) / sum * photons).ceil() as u32;
-            quota.guide = explored.guide;
-        }
-    }
-
-    /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
-    fn explore(&self, world: &World<'_>, quota: usize, wide: Option<usize>) -> Explored {
-        let Quota { ball, count, .. } = self.quotas[quota];
-        let mut used = Vec::new();
-        let (mut caught, mut squares) = (0.0, 0.0);
-        for index in 0..count {
-            let (_, balance) = self.follow(world, PILOT_PASS, quota, index..index + 1);
-            // What goes everywhere is of use everywhere: what little of it is found tells too little.
-            let is_of_use = if Some(ball) == wide { balance.sent > 0.0 } else { balance.caught > 0.0 };
-            if is_of_use {
-                let choices = Choices::new(self.sequence(PILOT_PASS, quota), index);
-                used.push(choices.point(Purpose::Aim, 0));
-            }
-            caught += balance.caught;
-            squares += balance.caught * balance.caught;
-        }
-        Explored { caught, deviation: (squares * f64::from(count)).sqrt(), guide: Guide::around(&used) }
-    }
-
-    /// The choices of a pass for the ways from a lamp to a ball.
-    fn sequence(&self, pass: u64, quota: usize) -> Sequence {
-        let Quota { lamp, ball, .. } = self.quotas[quota];
-        let number = (lamp * self.balls.len() + ball) as u64;
-        Sequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number)
+        (!two_way.lamps.is_empty()).then_some(two_way)
     }
 
     /// Follows all ways of a pass; none if it was cancelled.
@@ -249,65 +184,114 @@ impl TwoWay {
     }
 
     fn capture(&self, world: &World<'_>, pass: u32, watch: &Watch<'_>) -> Option<Capture> {
-        let chunks = (0..self.quotas.len()).flat_map(|quota| {
-            let count = self.quotas[quota].count;
-            (0..count.div_ceil(CHUNK)).map(move |k| (quota, k * CHUNK..((k + 1) * CHUNK).min(count)))
-        });
-        let chunks: Vec<(usize, Range<u32>)> = chunks.collect();
-        let follow = |(quota, range): (usize, Range<u32>)| {
-            (!watch.is_cancelled()).then(|| self.follow(world, u64::from(pass), quota, range))
+        let lanes = world.appearance.wavelengths.lanes();
+        let before = self.before(pass, lanes);
+        let mut wanted: Vec<Chunk> = Vec::new();
+        for (lamp, Lamp { aims, .. }) in self.lamps.iter().enumerate() {
+            for (aim, Aim { count, .. }) in aims.iter().enumerate() {
+                wanted.extend((0..count.div_ceil(CHUNK)).map(|number| Chunk { lamp, aim, number }));
+            }
+        }
+        let ways = |chunk: &Chunk| {
+            let count = self.lamps[chunk.lamp].aims[chunk.aim].count;
+            chunk.number * CHUNK..((chunk.number + 1) * CHUNK).min(count)
         };
-        let parts: Option<Vec<(Vec<Caught>, Balance)>> = chunks.into_par_iter().map(follow).collect();
-        let parts = parts?;
-        let balance = parts.iter().fold(Balance::default(), |sum, (_, balance)| sum + *balance);
-        let caught: Vec<Caught> = parts.into_iter().flat_map(|(caught, _)| caught).collect();
-        Some(Capture { pass, light: Captured::new(&caught, world.appearance.wavelengths.lanes()), balance })
+        let follow = |chunk: &Chunk| {
+            let ways = ways(chunk);
+            let known = before.get(chunk).filter(|_| ways.len() == CHUNK as usize);
+            let followed = || known.cloned().unwrap_or_else(|| self.follow(world, u64::from(pass), chunk, ways));
+            (!watch.is_cancelled()).then(followed)
+        };
+        let blocks: Option<Vec<Block>> = wanted.par_iter().map(follow).collect();
+        let blocks = blocks?;
+        let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| ways(chunk).len() == CHUNK as usize);
+        self.keep(world, pass, whole.map(|(chunk, block)| (*chunk, block)).collect(), &before);
+        let scaled = |(chunk, block): (&Chunk, Block)| {
+            let Aim { count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
+            block.scaled(part / f64::from(count))
+        };
+        let blocks: Vec<Block> = wanted.iter().zip(blocks).map(scaled).collect();
+        let balance = blocks.iter().fold(Balance::default(), |sum, block| sum + block.balance);
+        let caught: Vec<Caught> = blocks.into_iter().flat_map(|block| block.caught).collect();
+        Some(Capture { pass, light: Captured::new(&caught, lanes), balance })
     }
 
-    /// Follows some ways from a lamp to a ball.
-    fn follow(&self, world: &World<'_>, pass: u64, quota: usize, range: Range<u32>) -> (Vec<Caught>, Balance) {
+    /// What of the light of a pass was followed in other runs.
+    fn before(&self, pass: u32, lanes: usize) -> HashMap<Chunk, Block> {
+        let Some(shelf) = self.shelf else { return HashMap::new() };
+        let named = self.lamps.iter().enumerate().filter_map(|(lamp, Lamp { name, .. })| Some((lamp, name.as_ref()?)));
+        named.flat_map(|(lamp, name)| shelf.load(&format!("{name}-{pass}"), lamp, lanes)).collect()
+    }
+
+    /// Keeps light of a pass for other runs, with what was kept before, of each lamp of which something is new.
+    fn keep(&self, world: &World<'_>, pass: u32, now: HashMap<Chunk, &Block>, before: &HashMap<Chunk, Block>) {
+        let Some(shelf) = self.shelf else { return };
+        for (number, lamp) in self.lamps.iter().enumerate() {
+            let Some(name) = &lamp.name else { continue };
+            if now.keys().any(|chunk| chunk.lamp == number && !before.contains_key(chunk)) {
+                let mut all: HashMap<Chunk, &Block> = before.iter().map(|(chunk, block)| (*chunk, block)).collect();
+                all.extend(&now);
+                all.retain(|chunk, _| chunk.lamp == number);
+                let what = format!("light {}, pass {pass}", world.appearance.sources[lamp.source].0 + 1);
+                shelf.save(&format!("{name}-{pass}"), what, world.appearance.wavelengths.lanes(), &all);
+            }
+        }
+    }
+
+    /// Follows some ways from a lamp.
+    fn follow(&self, world: &World<'_>, pass: u64, chunk: &Chunk, ways: Range<u32>) -> Block {
+        let lamp = &self.lamps[chunk.lamp];
         let mut flight = Flight {
             world,
             surfaces: &self.surfaces,
             balls: &self.balls[..self.bodies],
             turns: self.turns,
-            typical: self.typical,
+            typical: lamp.caught,
             waiting: Vec::new(),
             caught: Vec::new(),
             balance: Balance::default(),
         };
-        let sequence = self.sequence(pass, quota);
-        for index in range {
+        let sequence = self.sequence(world, pass, chunk);
+        for index in ways {
             let choices = Choices::new(sequence, index);
-            match self.start(world, &self.quotas[quota], &choices) {
+            match self.start(world, lamp, &lamp.aims[chunk.aim], &choices) {
                 Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.follow(&start, &choices),
                 _ => flight.balance.ways += 1,
             }
         }
-        (flight.caught, flight.balance)
+        // As exactly as it is kept.
+        let rounded = |flux: Channels| Channels(flux.0.map(|flux| f64::from(flux as f32)));
+        let caught = flight.caught.into_iter().map(|caught| Caught { flux: rounded(caught.flux), ..caught });
+        Block { caught: caught.collect(), balance: flight.balance }
     }
 
-    /// Light as it leaves a lamp towards a ball.
-    fn start(&self, world: &World<'_>, quota: &Quota, choices: &Choices) -> Option<Ray0> {
+    /// The choices of a pass for ways from a lamp.
+    fn sequence(&self, world: &World<'_>, pass: u64, chunk: &Chunk) -> Sequence {
+        let light = world.appearance.sources[self.lamps[chunk.lamp].source].0;
+        let number = (light as u64) << 32 | chunk.aim as u64;
+        Sequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number)
+    }
+
+    /// Light as it leaves a lamp, as if this were all of it.
+    fn start(&self, world: &World<'_>, lamp: &Lamp, aim: &Aim, choices: &Choices) -> Option<Ray0> {
         let appearance = &world.appearance;
-        let source = &appearance.sources[quota.lamp].1;
+        let source = &appearance.sources[lamp.source].1;
         let [comb, time] = choices.point(Purpose::Wavelengths, 0);
         let comb = appearance.wavelengths.comb(comb);
         let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.shutter } else { 0.0 };
-        let aim = quota.guide.draw(choices.point(Purpose::Aim, 0));
-        let ball = &self.balls[quota.ball];
+        let place = aim.guide.draw(choices.point(Purpose::Aim, 0));
+        let ball = &self.balls[aim.ball];
         // However a way might have been drawn.
-        let others = || self.quotas.iter().filter(|other| other.lamp == quota.lamp);
         let all = |density: &dyn Fn(&Ball) -> Option<Aimed>| -> f64 {
-            let of = |other: &Quota| {
+            let of = |other: &Aim| {
                 let (density, place) = density(&self.balls[other.ball])?;
-                Some(f64::from(other.count) * density * other.guide.density(place))
+                Some(other.part * density * other.guide.density(place))
             };
-            others().filter_map(of).sum()
+            lamp.aims.iter().filter_map(of).sum()
         };
         match source.start(choices.point(Purpose::Start, 0), comb)? {
             Start::Place { at, normal, area } => {
-                let direction = ball.direction(at, aim);
+                let direction = ball.direction(at, place);
                 let density = all(&|ball| ball.density(at, direction));
                 let flux = source.intensity(normal, direction, comb) * density.recip();
                 // Clear of the lamp itself.
@@ -316,7 +300,7 @@ impl TwoWay {
                 Some(Ray0 { ray: Ray { origin: at + clear, direction }, flux, comb, time })
             }
             Start::Parallel { direction, irradiance } => {
-                let on = ball.line(direction, aim);
+                let on = ball.line(direction, place);
                 let density = all(&|ball| ball.line_density(direction, on));
                 let bounds = &appearance.prepared.bounds;
                 let far = 2.0 * bounds.diagonal() + on.distance(bounds.center());

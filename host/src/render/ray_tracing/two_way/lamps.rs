@@ -1,0 +1,143 @@
+//! How ways of light are divided among lamps, and what they are aimed at.
+//!
+//! What a lamp sends to where is found for each lamp by itself; only how many ways it gets depends on the others. Where other
+//! lamps change, its ways thus stay the same, though there may be fewer or more of them.
+
+use super::super::world::World;
+use super::aim::{Ball, Guide};
+use super::flight::{Choices, Purpose};
+use super::{Chunk, TwoWay};
+use rayon::prelude::*;
+
+/// Ways that are followed first, to see where light goes: an eighth of those of a pass, within limits.
+const PILOT: std::ops::RangeInclusive<u32> = 1 << 12..=1 << 14;
+/// What stands for a pass when they are followed.
+const PILOT_PASS: u64 = u64::MAX;
+/// The least of them for each lamp and ball.
+const LEAST_PILOT: u32 = 32;
+/// Of the ways of a lamp and ball, the least part of the mean of all, however little came of them.
+const LEAST_PART: f64 = 0.05;
+/// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
+const NARROW: f64 = 0.9;
+
+/// A lamp with what it is aimed at.
+#[derive(Clone, Debug)]
+pub(super) struct Lamp {
+    /// An index into the sources.
+    pub(super) source: usize,
+    pub(super) aims: Vec<Aim>,
+    /// What is caught of its flux, W; none before some of it was.
+    pub(super) caught: Option<f64>,
+    /// The name of its light in a database, less the pass; none without one.
+    pub(super) name: Option<String>,
+}
+
+/// Ways from a lamp to a ball.
+#[derive(Clone, Debug)]
+pub(super) struct Aim {
+    pub(super) ball: usize,
+    /// How probable it is that a way of the lamp goes there; all together are 1.
+    pub(super) part: f64,
+    /// How many do.
+    pub(super) count: u32,
+    /// Where it is best aimed at.
+    pub(super) guide: Guide,
+}
+
+/// What a few ways from a lamp to a ball brought.
+struct Explored {
+    /// Flux, W.
+    caught: f64,
+    /// The root mean square of what a way adds to it. With ways in proportion to this, chance shows least in all together.
+    ///
+    /// # Source
+    /// Neyman 1934, optimal allocation.
+    deviation: f64,
+    /// Where they have to be sent.
+    guide: Guide,
+}
+
+impl TwoWay<'_> {
+    /// How many ways from each of so many lamps, and to each of so many balls, are followed first.
+    pub(super) fn pilot(photons: u32, lamps: usize, balls: usize) -> u32 {
+        let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
+        // A lamp more or less seldom matters to the others.
+        let each = pilot >> lamps.next_power_of_two().trailing_zeros().min(31);
+        (each / balls as u32).max(LEAST_PILOT)
+    }
+
+    /// Divides the ways among lamps and balls, as a few of them are of use.
+    ///
+    /// - `lamps`: indices into the sources. `everything`: the ball around what sends light on by broad turns; none if
+    ///   nothing does.
+    pub(super) fn divide(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<Ball>) {
+        let photons = world.appearance.prepared.settings.photons;
+        let wide = everything.map(|ball| {
+            self.balls.push(ball);
+            self.balls.len() - 1
+        });
+        let all = self.balls.len();
+        for lamp in lamps {
+            let mut balls: Vec<usize> = (0..all).collect();
+            // In the cone of a spot, however thin it is.
+            let cone = world.appearance.sources[*lamp].1.cone().filter(|(.., cosine)| *cosine > NARROW);
+            if let Some((at, axis, cosine)) = cone {
+                let far = world.appearance.prepared.bounds.diagonal();
+                balls.push(self.balls.len());
+                self.balls.push(Ball::in_cone(at, axis * far, cosine));
+            }
+            let (part, count) = (1.0 / balls.len() as f64, TwoWay::pilot(photons, lamps.len(), balls.len()));
+            let aims = balls.into_iter().map(|ball| Aim { ball, part, count, guide: Guide::even() }).collect();
+            self.lamps.push(Lamp { source: *lamp, aims, caught: None, name: None });
+        }
+        let chunks =
+            (0..self.lamps.len()).flat_map(|lamp| (0..self.lamps[lamp].aims.len()).map(move |aim| (lamp, aim)));
+        let chunks: Vec<Chunk> = chunks.map(|(lamp, aim)| Chunk { lamp, aim, number: 0 }).collect();
+        let found: Vec<Explored> = chunks.par_iter().map(|chunk| self.explore(world, chunk, wide)).collect();
+        let all: f64 = found.iter().map(|explored| explored.deviation).sum();
+        if all <= 0.0 {
+            self.lamps.clear();
+            return;
+        }
+        let mut found = found.into_iter();
+        let mut shares: Vec<f64> = Vec::with_capacity(self.lamps.len());
+        for lamp in &mut self.lamps {
+            let found: Vec<Explored> = found.by_ref().take(lamp.aims.len()).collect();
+            let deviation: f64 = found.iter().map(|explored| explored.deviation).sum();
+            lamp.caught = Some(found.iter().map(|explored| explored.caught).sum()).filter(|caught| *caught > 0.0);
+            let least = LEAST_PART / found.len() as f64;
+            let part = |explored: &Explored| (explored.deviation / deviation.max(f64::MIN_POSITIVE)).max(least);
+            let sum: f64 = found.iter().map(part).sum();
+            for (aim, explored) in lamp.aims.iter_mut().zip(found) {
+                (aim.part, aim.guide) = (part(&explored) / sum, explored.guide);
+            }
+            shares.push((deviation / all).max(LEAST_PART / lamps.len() as f64));
+        }
+        let sum: f64 = shares.iter().sum();
+        for (lamp, share) in self.lamps.iter_mut().zip(shares) {
+            for aim in &mut lamp.aims {
+                aim.count = (aim.part * share / sum * f64::from(photons)).ceil() as u32;
+            }
+        }
+    }
+
+    /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
+    fn explore(&self, world: &World<'_>, chunk: &Chunk, wide: Option<usize>) -> Explored {
+        let Aim { ball, count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
+        let mut used = Vec::new();
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for index in 0..count {
+            let balance = self.follow(world, PILOT_PASS, chunk, index..index + 1).balance;
+            // What goes everywhere is of use everywhere: what little of it is found tells too little.
+            let is_of_use = if Some(ball) == wide { balance.sent > 0.0 } else { balance.caught > 0.0 };
+            if is_of_use {
+                let choices = Choices::new(self.sequence(world, PILOT_PASS, chunk), index);
+                used.push(choices.point(Purpose::Aim, 0));
+            }
+            sum += balance.caught;
+            squares += balance.caught * balance.caught;
+        }
+        let count = f64::from(count);
+        Explored { caught: part * sum / count, deviation: part * (squares / count).sqrt(), guide: Guide::around(&used) }
+    }
+}
