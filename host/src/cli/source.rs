@@ -6,7 +6,7 @@ use clap::Args;
 use std::path::Path;
 
 /// Help for the argument SCRIPT.
-pub const SCRIPT_HELP: &str = "A scene script (.rhai), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal, manifold, materials, textures, room, cornell, caustic, ring, spectrum, mirror, flowers, vases, corner, motion";
+pub const SCRIPT_HELP: &str = "A scene script (.rhai), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal, manifold, materials, textures, room, cornell, caustic, ring, spectrum, mirror, flowers, pool, afternoon, vases, corner, motion";
 
 /// Values for parameters of the script.
 #[derive(Args, Clone, Debug, Default)]

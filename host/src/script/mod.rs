@@ -64,7 +64,7 @@ pub struct Embedded {
 }
 
 /// The scenes that ship with the program; the first is the default.
-pub const EMBEDDED: [Embedded; 19] = [
+pub const EMBEDDED: [Embedded; 21] = [
     Embedded {
         name: "teapot",
         summary: "the Utah teapot on a table top, beside a mirroring sphere and a box",
@@ -144,6 +144,16 @@ pub const EMBEDDED: [Embedded; 19] = [
         name: "flowers",
         summary: "a vase of coloured glass in the evening sun",
         text: include_str!("../../scenes/flowers.rhai"),
+    },
+    Embedded {
+        name: "pool",
+        summary: "a swimming pool in the sun, with the net of light that its waves throw",
+        text: include_str!("../../scenes/pool.rhai"),
+    },
+    Embedded {
+        name: "afternoon",
+        summary: "a room that the low sun lights through the window, and a glass of water on the table",
+        text: include_str!("../../scenes/afternoon.rhai"),
     },
     Embedded {
         name: "vases",

@@ -126,7 +126,7 @@ impl<'a> Library<'a> {
     fn transparent(&self, Transparent { index, roughness, absorption }: &Transparent, optics: &mut Optics) {
         optics.interior = Some(Interior {
             index: self.wavelengths.quantity(|wavelength| index.at(wavelength)),
-            absorption: self.wavelengths.reflectance(absorption),
+            absorption: self.wavelengths.filter(absorption),
             disperses: matches!(index, Index::Dispersive(_)),
         });
         let lobe = if *roughness > 0.0 {

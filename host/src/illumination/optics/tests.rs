@@ -265,3 +265,19 @@ fn nothing_is_infinite_at_the_extremes() {
         }
     }
 }
+
+#[test]
+fn absorption_over_the_wavelength_has_its_colour_however_strong_it_is() {
+    let wavelengths = Wavelengths::spectral();
+    let white = wavelengths.light(&Color::grey(1.0));
+    let combs = wavelengths.combs();
+    for scale in [0.1, 1.0, 100.0] {
+        let bands = glam::DVec3::new(0.2, 9.0, 7.0) * scale;
+        let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::Bands(bands) };
+        let absorption = ready(&Body::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
+        let seen: DVec3 =
+            (0..combs).map(|comb| wavelengths.seen(comb, absorption.of(comb) * white.of(comb))).sum::<DVec3>()
+                / combs as f64;
+        assert!((seen - bands).length() < 2e-2 * bands.max_element(), "{seen} {bands}");
+    }
+}

@@ -1,6 +1,7 @@
 //! Facts about textures in pictures: means that are known, and pictures that two ways of filtering agree on.
 
-use super::tests::{from_above, object, scene, trace};
+use super::tests::{diffuse, from_above, mirror, object, red, scene, trace};
+use super::two_way_tests::{block, two_way};
 use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
@@ -9,6 +10,7 @@ use crate::illumination::{Light, Material, Paint};
 use crate::picture::difference;
 use crate::scene::{Camera, Scene, Shape};
 use glam::{DMat4, DVec3};
+use std::f64::consts::PI;
 
 fn painted(motif: Motif, laying: Laying) -> Classic {
     let paints =
@@ -139,4 +141,29 @@ fn an_image_in_a_file_that_is_none_is_refused() {
     assert!(Image::read(&path, Content::Color).is_err());
     std::fs::write(&path, b"\x89PNG\r\n\x1a\nbroken").expect("written");
     assert!(Image::read(&path, Content::Color).is_err());
+}
+
+#[test]
+fn light_from_lamps_follows_the_slope_of_a_relief() {
+    // A mirror that lies level, with a relief that rises evenly by 22.5 degrees, throws the sun from above level on a wall.
+    let image = Image::new("ramp".into(), 16, 16, |x, _| DVec3::splat(f64::from(x) / 15.0));
+    let rise = 2.0 * 15.0 / 16.0 * (PI / 8.0).tan();
+    let pattern = Pattern { motif: Motif::Image { image }, laying: Laying::default(), paints: Vec::new() };
+    let mut material = Material::from(mirror(0.8));
+    material.relief = Some(Relief::Bumps { pattern, height: rise });
+    let objects = vec![
+        object(Shape::Ground { size: 2.0 }, DMat4::IDENTITY, material),
+        block(DVec3::new(0.1, 8.0, 4.0), DVec3::new(-3.05, 4.0, 0.0), diffuse(0.5)),
+    ];
+    let sun = Light::Directional { direction: -DVec3::Y, irradiance: Color::grey(2.0) };
+    let mut scene = scene(objects, vec![sun], 8);
+    (scene.settings.samples, scene.settings.photons) = (4, 200_000);
+    let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
+    (camera.from, camera.at, camera.field_of_view) = (DVec3::Y * 3.0, DVec3::new(-3.0, 3.0, 0.0), 26.0);
+    let rendering = two_way(&scene, Some(View::Camera(camera)), 1);
+    let expected = 2.0 * 0.8 * 0.5 / PI;
+    for (x, y) in (0..64).map(|i| (i % 8, i / 8)) {
+        let found = red(&rendering, x, y);
+        assert!((found / expected - 1.0).abs() < 0.05, "{x} {y}: {found} {expected}");
+    }
 }

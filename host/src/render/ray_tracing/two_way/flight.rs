@@ -24,6 +24,9 @@ const FAINT: f64 = 1.0 / 64.0;
 const FAINT_AGAIN: f64 = 0.25;
 /// Parts in which light is spread, and one more.
 const MOST_PARTS: u32 = 17;
+/// How wide light is on its way, as a part of the diagonal of the scene: hardly more than a point, but a relief is tilted by
+/// heights side by side.
+const WIDTH: f64 = 1e-6;
 
 /// Light that was caught on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -233,6 +236,7 @@ impl Flight<'_> {
         self.balance.ways += 1;
         self.balance.sent += self.watts(flux);
         let first = flux.max();
+        let cone = Cone { width: WIDTH * self.world.appearance.prepared.bounds.diagonal(), growth: 0.0 };
         let media = Media::default();
         let leg = Leg {
             ray,
@@ -257,7 +261,7 @@ impl Flight<'_> {
             if leg.flux.max() <= 0.0 {
                 continue;
             }
-            let sight = Sight { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone: Cone::default() };
+            let sight = Sight { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone };
             match self.world.meet(&sight, comb, time) {
                 Met::Nothing => self.balance.escaped += self.watts(leg.flux),
                 Met::Glow(..) => self.balance.absorbed += self.watts(leg.flux),
