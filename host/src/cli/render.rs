@@ -316,9 +316,13 @@ impl Arguments {
             let message = "--light is of two-way ray tracing only";
             return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
         }
-        match given.iter().find(|(_, given)| *given && self.renderer != Kind::RayTracing) {
+        let word = match self.renderer {
+            Kind::RayTracing | Kind::TwoWay => return Ok(()),
+            Kind::ScanLine => "scan line",
+            Kind::Radiosity => "radiosity",
+        };
+        match given.iter().find(|(_, given)| *given) {
             Some((name, _)) => {
-                let word = if self.renderer == Kind::ScanLine { "scan line" } else { "radiosity" };
                 let message = format!("{word} has no {name}: it takes all samples at once");
                 Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
             }

@@ -21,7 +21,7 @@ struct Arguments {
     /// Knobs to sweep, listed below [default: all that change something in the scene]
     #[arg(short, long, value_name = "NAME,...", value_delimiter = ',', value_parser = PossibleValuesParser::new(RENDER_KNOBS.iter().map(|knob| knob.name)), hide_possible_values = true)]
     knob: Vec<String>,
-    /// Who makes the pictures [default: all]
+    /// Who makes the pictures [default: scan-line, and two-way if the scene asks for it, otherwise ray-tracing]
     #[arg(long, value_name = "RENDERER", value_delimiter = ',', value_parser = PossibleValuesParser::new(Technique::ALL.map(Technique::option)))]
     renderer: Vec<String>,
     /// Folder for the table (.csv) and the plots (.svg and .png); it is made if need be
@@ -63,9 +63,15 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let Arguments { width, samples, settings, threads, .. } = arguments;
     let options = Options { width, samples, settings, threads };
-    let is_chosen = |name: &str, chosen: &[String]| chosen.is_empty() || chosen.iter().any(|other| other == name);
-    let techniques = Technique::ALL.into_iter().filter(|t| is_chosen(t.option(), &arguments.renderer));
-    let names = RENDER_KNOBS.iter().map(|knob| knob.name).filter(|name| is_chosen(name, &arguments.knob));
+    let usual = Technique::usual(&scene.settings);
+    let techniques = Technique::ALL.into_iter().filter(|technique| match arguments.renderer.is_empty() {
+        true => usual.contains(technique),
+        false => arguments.renderer.iter().any(|name| name == technique.option()),
+    });
+    let names = RENDER_KNOBS
+        .iter()
+        .map(|knob| knob.name)
+        .filter(|name| arguments.knob.is_empty() || arguments.knob.iter().any(|knob| knob == name));
     let (techniques, names): (Vec<Technique>, Vec<&str>) = (techniques.collect(), names.collect());
     std::fs::create_dir_all(&arguments.output)?;
     let progress = Progress::new("studying", arguments.json);

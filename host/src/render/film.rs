@@ -11,6 +11,9 @@ pub const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 /// Below this luminance errors count as if it was this, so that black pixels do not take all the samples.
 const LEAST_LUMINANCE: f64 = 0.05;
 
+/// So many samples of a pixel, one after the other, see the same caught light; for those after them it is caught anew.
+pub(super) const SHARING: u32 = 8;
+
 /// Samples of a picture, added up pixel by pixel. More can be added at any time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
@@ -19,6 +22,8 @@ pub struct Film {
     tallies: Vec<Tally>,
     /// Sums of each class of light; none unless they are asked for.
     classes: Vec<ByClass>,
+    /// Whether the samples of a pixel come one by one, so that halves of them tell the error of all.
+    in_turn: bool,
 }
 
 /// Light by the ways on which it comes to the eye: each way is in one class.
@@ -72,6 +77,10 @@ pub struct Tally {
     pub normals: DVec3,
     /// How many samples saw an element first.
     pub elements: u32,
+    /// Sum of the standard errors of luminance by what samples share.
+    pub shared: f32,
+    /// Luminance of the samples up to the last power of two before their number, if they came one by one.
+    pub early: f64,
     /// Object and its material that the first of them saw.
     pub seen: [u32; 2],
 }
@@ -85,11 +94,17 @@ pub struct Sample {
     pub covered: bool,
     /// The first element that it saw: distance, normal, object and material.
     pub first: Option<(f64, DVec3, [u32; 2])>,
+    /// Standard error of its luminance by what it shares with the samples before and after it: light that was caught for
+    /// all of them.
+    pub shared: f64,
 }
 
 impl Tally {
     /// Adds a sample; one that is not a number is taken for black.
     pub fn add(&mut self, sample: &Sample) {
+        if self.count.is_power_of_two() {
+            self.early = self.sum.dot(LUMINANCE);
+        }
         self.add_alike(sample, 1);
     }
 
@@ -102,6 +117,9 @@ impl Tally {
         self.squares += radiance.dot(LUMINANCE).powi(2) * times;
         self.count += count;
         self.covered += if sample.covered { count } else { 0 };
+        if sample.shared.is_finite() {
+            self.shared += (sample.shared * times) as f32;
+        }
         if let Some((distance, normal, seen)) = sample.first {
             if self.elements == 0 {
                 self.seen = seen;
@@ -123,14 +141,35 @@ impl Tally {
         Pixel { radiance: self.mean().as_vec3().to_array(), coverage: coverage as f32 }
     }
 
-    /// Variance of the mean luminance, as if samples were independent: evenly spread ones are better.
+    /// Variance of the mean luminance, as if samples and ways of light were independent: evenly spread ones are better. What
+    /// some of them share is added: light that was caught once is wrong by the same for all of these.
     pub fn variance(&self) -> f64 {
         if self.count < 2 {
             return f64::INFINITY;
         }
         let count = f64::from(self.count);
         let mean = self.sum.dot(LUMINANCE) / count;
-        ((self.squares / count - mean * mean).max(0.0)) / (count - 1.0)
+        (self.squares / count - mean * mean).max(0.0) / (count - 1.0) + self.shared_variance()
+    }
+
+    /// Variance of the mean luminance by the difference of its halves, the first to the last power of two and the rest; none
+    /// without two samples that came one by one.
+    ///
+    /// That samples are evenly spread is in it, and what they share as far as halves do not share it. Of a single pixel it
+    /// tells little.
+    fn variance_of_halves(&self) -> Option<f64> {
+        let early = 1u32 << self.count.checked_sub(1)?.checked_ilog2()?;
+        let (early, count) = (f64::from(early), f64::from(self.count));
+        let late = count - early;
+        let difference = (self.sum.dot(LUMINANCE) - self.early) / late - self.early / early;
+        let shared = if self.count <= SHARING { self.shared_variance() } else { 0.0 };
+        Some(difference * difference * early * late / (count * count) + shared)
+    }
+
+    /// Variance of the mean luminance by what samples share.
+    fn shared_variance(&self) -> f64 {
+        let count = f64::from(self.count.max(1));
+        (f64::from(self.shared) / count).powi(2) * f64::from(SHARING.min(self.count)) / count
     }
 
     /// Standard error of the mean luminance over the luminance.
@@ -140,21 +179,22 @@ impl Tally {
 }
 
 impl Film {
-    /// A film without samples.
+    /// A film without samples, to which they are added one by one.
     ///
     /// # Errors
     /// [`PictureError::Size`].
     pub fn new(width: u32, height: u32) -> Result<Film, PictureError> {
         let mut film = Film::untouched(width, height)?;
         film.tallies.par_chunks_mut(1 << 14).for_each(|tallies| tallies.fill(Tally::default()));
+        film.in_turn = true;
         Ok(film)
     }
 
     /// A film without samples whose memory is not got yet, for one who writes all of it before reading any: to read first
-    /// makes the system give each page twice.
+    /// makes the system give each page twice. Samples may be added in any order.
     pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
         let tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
-        Ok(Film { width, height, tallies, classes: Vec::new() })
+        Ok(Film { width, height, tallies, classes: Vec::new(), in_turn: false })
     }
 
     /// The same that keeps the classes of light apart, from now on.
@@ -166,7 +206,7 @@ impl Film {
     /// A film of pixels that are known; none if there are not as many as that.
     pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>) -> Option<Film> {
         let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
-        possible.then_some(Film { width, height, tallies, classes: Vec::new() })
+        possible.then_some(Film { width, height, tallies, classes: Vec::new(), in_turn: true })
     }
 
     /// Columns.
@@ -224,7 +264,11 @@ impl Film {
 
     /// Root of the mean variance of all pixels: about the RMSE of the luminance, as far as chance goes.
     pub fn standard_error(&self) -> f64 {
-        let finite = self.tallies.iter().map(Tally::variance).filter(|variance| variance.is_finite());
+        let variance = |tally: &Tally| {
+            let halves = if self.in_turn { tally.variance_of_halves() } else { None };
+            halves.unwrap_or_else(|| tally.variance())
+        };
+        let finite = self.tallies.iter().map(variance).filter(|variance| variance.is_finite());
         let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), variance| (sum + variance, count + 1.0));
         if count > 0.0 { f64::sqrt(sum / count) } else { f64::INFINITY }
     }
@@ -240,7 +284,7 @@ mod tests {
     use super::*;
 
     fn sample(value: f64) -> Sample {
-        Sample { radiance: DVec3::splat(value), covered: true, first: None }
+        Sample { radiance: DVec3::splat(value), covered: true, ..Sample::default() }
     }
 
     #[test]
@@ -252,6 +296,30 @@ mod tests {
         tally.add(&Sample { radiance: DVec3::NAN, ..sample(0.0) });
         assert!(tally.mean().is_finite() && tally.count == 3);
         assert_eq!(Tally::default().variance(), f64::INFINITY);
+    }
+
+    #[test]
+    fn what_samples_share_is_in_the_error_of_their_mean() {
+        // Each group is wrong by 1: its samples agree, and only what they say of themselves, or another group, tells.
+        let (mut film, one) = (Film::new(1, 1).expect("small"), Sample { shared: 1.0, ..sample(1.0) });
+        (0..SHARING).for_each(|_| film.tallies_mut()[0].add(&one));
+        assert!((film.standard_error() - 1.0).abs() < 1e-12 && (film.tallies()[0].variance() - 1.0).abs() < 1e-12);
+        (0..SHARING).for_each(|_| film.tallies_mut()[0].add(&Sample { radiance: DVec3::splat(3.0), ..one }));
+        assert!((film.standard_error() - 1.0).abs() < 1e-12, "{}", film.standard_error());
+        let apart = 1.0 / f64::from(2 * SHARING - 1);
+        assert!((film.tallies()[0].variance() - apart - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn halves_tell_the_error_of_independent_samples_in_the_mean() {
+        // -1 or 1, in all orders: the variance of the mean of n is 1 / n.
+        for count in 2..12u32 {
+            let mut film = Film::new(1 << count, 1).expect("small");
+            for (order, tally) in film.tallies_mut().iter_mut().enumerate() {
+                (0..count).for_each(|bit| tally.add(&sample(2.0 * f64::from(order as u32 >> bit & 1) - 1.0)));
+            }
+            assert!((film.standard_error().powi(2) * f64::from(count) - 1.0).abs() < 1e-12);
+        }
     }
 
     #[test]

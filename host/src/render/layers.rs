@@ -97,7 +97,12 @@ mod tests {
     fn layers_hold_what_the_film_knows() {
         let mut film = Film::new(2, 1).expect("small");
         let first = Some((4.0, DVec3::Y, [0, 0]));
-        film.tallies_mut()[1].add(&Sample { radiance: DVec3::new(1.0, 2.0, 3.0), covered: true, first });
+        film.tallies_mut()[1].add(&Sample {
+            radiance: DVec3::new(1.0, 2.0, 3.0),
+            covered: true,
+            first,
+            ..Sample::default()
+        });
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");
         let prepared = Prepared::new(&Scene::default()).expect("nothing");

@@ -11,12 +11,12 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 /// What such a file begins with; the last byte is the version.
-const MAGIC: [u8; 8] = *b"PERISF\x00\x01";
+const MAGIC: [u8; 8] = *b"PERISF\x00\x02";
 const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
 /// Bytes beside those of the pixels, at most.
 const MOST_HEAD: u64 = 256;
 /// Bytes of a pixel.
-const PIXEL: u64 = 84;
+const PIXEL: u64 = 96;
 
 /// A scene and an order, as far as samples depend on them: where it is the same, samples can be added to others.
 ///

@@ -28,6 +28,8 @@ mod shelf_tests;
 #[cfg(test)]
 mod texture_tests;
 #[cfg(test)]
+mod two_way_error_tests;
+#[cfg(test)]
 mod two_way_extreme_tests;
 #[cfg(test)]
 mod two_way_tests;
@@ -36,10 +38,10 @@ mod tests;
 
 pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
-pub use two_way::{Balance, Shelf};
+pub use two_way::{Balance, Shelf, widest_disc};
 
 use super::eye::Eye;
-use super::film::{ByClass, Film, Sample, Tally};
+use super::film::{ByClass, Film, SHARING, Sample, Tally};
 use super::radiosity::{Exitance, Radiosity};
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::octree::Octree;
@@ -57,8 +59,6 @@ use world::World;
 
 /// Samples of the first pass, where errors or the clock decide about more.
 const FIRST_PASS: u32 = 8;
-/// Samples that see the same caught light; for those after them it is caught anew.
-const SAMPLES_OF_LIGHT: u32 = 8;
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
@@ -177,7 +177,7 @@ impl<'a> RayTracer<'a> {
             let is_needed = film.tallies().iter().any(|tally| tally.count < *samples);
             let caught = match &self.two_way {
                 Some(two_way) if is_needed => {
-                    let pass = (samples - 1) / SAMPLES_OF_LIGHT;
+                    let pass = (samples - 1) / SHARING;
                     let caught = pool.install(|| two_way.caught(&self.world, pass, watch));
                     if caught.is_none() {
                         complete = false;
@@ -250,7 +250,7 @@ impl<'a> RayTracer<'a> {
             passes.extend(doubled.take_while(|samples| *samples < order.samples));
         }
         if self.two_way.is_some() {
-            passes.extend((SAMPLES_OF_LIGHT..order.samples).step_by(SAMPLES_OF_LIGHT as usize));
+            passes.extend((SHARING..order.samples).step_by(SHARING as usize));
         }
         passes.sort_unstable();
         passes.dedup();
@@ -298,7 +298,7 @@ impl<'a> RayTracer<'a> {
             let background = self.world.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0);
             let radiance = if order.matte { DVec3::ZERO } else { wavelengths.seen(comb, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
-            return (Sample { radiance, covered: false, first: None }, classes, comb);
+            return (Sample { radiance, ..Sample::default() }, classes, comb);
         };
         let seen = tracer.radiance(&sight, comb, &draws, work, log);
         let first =
@@ -306,7 +306,8 @@ impl<'a> RayTracer<'a> {
         let left_out = order.matte && !seen.covered;
         let light = |class: usize| wavelengths.seen(comb, seen.radiance[class]) + seen.other[class];
         let classes = if left_out { ByClass::default() } else { [0, 1, 2, 3].map(light) };
-        (Sample { radiance: classes.into_iter().sum(), covered: seen.covered, first }, classes, comb)
+        let shared = if left_out { 0.0 } else { seen.shared.sqrt() };
+        (Sample { radiance: classes.into_iter().sum(), covered: seen.covered, first, shared }, classes, comb)
     }
 
     /// Tells how the samples of a pixel come to their radiance.
@@ -324,7 +325,7 @@ impl<'a> RayTracer<'a> {
     ) -> Result<Vec<Explanation>, RenderError> {
         let eye = self.eye(view, order)?;
         let told = |index: u32| {
-            let pass = index / SAMPLES_OF_LIGHT;
+            let pass = index / SHARING;
             let two_way = self.two_way.as_ref();
             let caught = two_way.and_then(|two_way| two_way.caught(&self.world, pass, &Watch::NOBODY));
             let tracer = self.tracer(caught.as_ref());

@@ -46,7 +46,7 @@ fn light_from_a_database_gives_the_same_picture_to_the_bit_and_is_not_followed_a
     (scene.settings.width, scene.settings.samples, scene.settings.photon_radius) = (9, 2, Some(0.1));
     assert_eq!(picture(&scene, Some(&path)).1.before, before);
     // Each pass has its own light.
-    scene.settings.samples = 2 * SAMPLES_OF_LIGHT;
+    scene.settings.samples = 2 * SHARING;
     let (plain, _) = picture(&scene, None);
     assert_eq!(picture(&scene, Some(&path)).0, plain);
     let store = Store::open(&path).expect("a database");

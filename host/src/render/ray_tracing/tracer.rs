@@ -11,7 +11,7 @@ use crate::illumination::light::Source;
 use crate::illumination::optics::{Among, Onward, Sighting};
 use crate::numeric::ray::Ray;
 use crate::render::eye::{Cone, Sight};
-use crate::render::{Class, RayCounts};
+use crate::render::{Class, LUMINANCE, RayCounts};
 use glam::DVec3;
 
 /// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.
@@ -104,6 +104,8 @@ pub(super) struct Seen {
     pub(super) covered: bool,
     /// What it met: distance from the eye, normal, object and material.
     pub(super) first: Option<First>,
+    /// Variance of its luminance by the chance in caught light that is seen, which other samples share.
+    pub(super) shared: f64,
 }
 
 impl Seen {
@@ -322,9 +324,16 @@ impl<'a> Tracer<'a> {
             }
         }
         if let Some(caught) = self.caught.filter(|_| optics.takes() && !leg.is_known) {
-            let light =
+            let (light, error) =
                 caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != Course::Seen);
             let first = leg.course.after(true).after(false).of_lamps();
+            if leg.course == Course::Seen {
+                let seen_as = |(radiance, other): (Channels, DVec3)| {
+                    self.world.appearance.wavelengths.seen(comb, radiance) + other
+                };
+                let luminance = light.map(seen_as).into_iter().sum::<DVec3>().dot(LUMINANCE);
+                seen.shared += (luminance * error).powi(2);
+            }
             for (class, (radiance, elsewhere)) in [first, Class::Indirect].into_iter().zip(light) {
                 seen.add(class, radiance);
                 seen.other[class as usize] += elsewhere;

@@ -146,7 +146,7 @@ impl<'a> Shader<'a> {
             let first = first.filter(|_| !glows);
             let covered = first.is_some() || glows;
             let radiance = if self.matte && !covered { DVec3::ZERO } else { samples[i].1 * scale };
-            let sample = Sample { radiance, covered, first };
+            let sample = Sample { radiance, covered, first, shared: 0.0 };
             match &mut last {
                 Some((before, count)) if *before == sample => *count += 1,
                 _ => {
@@ -178,7 +178,7 @@ impl<'a> Shader<'a> {
         }
         if triangle == NONE {
             let radiance = if self.matte { DVec3::ZERO } else { self.background? };
-            return Some(Sample { radiance, covered: false, first: None });
+            return Some(Sample { radiance, ..Sample::default() });
         }
         let near = strip.near[pixel.first];
         let sight = self.eye.ray(pixel.middle(), [0.5; 2])?;
@@ -196,7 +196,7 @@ impl<'a> Shader<'a> {
         }
         let [mean, depth] = nearness.map(|sum| sum * pixel.part);
         let distance = self.distance(found.distance, self.depth(mean), depth);
-        Some(Sample { radiance, covered: true, first: Some((distance, found.element.normal, found.seen)) })
+        Some(Sample { radiance, covered: true, first: Some((distance, found.element.normal, found.seen)), shared: 0.0 })
     }
 
     /// What all samples of a pixel get, if they see one surface by the light of the same lamps.
@@ -217,7 +217,7 @@ impl<'a> Shader<'a> {
         let found = &founds[seen.found?];
         let sum = self.sample((surfaces, founds, lit), &parts[..1], (strip, counts), (pixel, 0), 0);
         let radiance = self.appearance.wavelengths.seen(0, sum);
-        Some(Sample { radiance, covered: true, first: Some(self.first(seen, found)) })
+        Some(Sample { radiance, covered: true, first: Some(self.first(seen, found)), shared: 0.0 })
     }
 
     /// Whether two samples of a pixel surely get the same light.

@@ -3,6 +3,8 @@
 use super::setup::{Base, Setup, Technique};
 use crate::illumination::Light;
 use crate::plan::Stage;
+use crate::render::ray_tracing::widest_disc;
+use crate::scene::MAX_PHOTONS;
 
 /// The coarsest tolerance, as a part of the diagonal of the largest curved object, and how much finer the next one is.
 const COARSEST: f64 = 1.0 / 60.0;
@@ -21,8 +23,15 @@ const MORE_POINTS: f64 = 2.0;
 const COARSEST_PATCHES: f64 = 4.0;
 const BEST_PATCHES: f64 = 0.5;
 
-const BOTH: &[Technique] = &[Technique::RayTracing, Technique::ScanLine];
-const RAYS: &[Technique] = &[Technique::RayTracing];
+/// How much more light is followed from one setting to the next, and how much smaller its largest disc is.
+const PHOTON_STEP: f64 = 4.0;
+const RADIUS_STEP: f64 = 2.0;
+
+const ALL: &[Technique] = &Technique::ALL;
+const RAYS: &[Technique] = &[Technique::RayTracing, Technique::TwoWay];
+/// Rays from the eye alone.
+const EYE: &[Technique] = &[Technique::RayTracing];
+const LAMPS: &[Technique] = &[Technique::TwoWay];
 
 /// A quality setting of a renderer.
 pub struct RenderKnob {
@@ -53,11 +62,15 @@ pub struct RenderKnob {
 ///
 /// Two are missing that one might look for: rays always carry eight wavelengths of 512, or three bands, and the octree of
 /// the renderer has one leaf size and depth, which change no hit (`peris study octree`, `peris study depth`).
+///
+/// Nor have the passes of two-way ray tracing a knob of their own: samples are passes. For each eight of them light is
+/// followed anew and spread over smaller discs, so that both chance and bias fall to nothing with samples alone; more photons
+/// make discs smaller at once, and a smaller largest disc counts where little light is.
 pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "samples",
         sets: "samples in each pixel",
-        techniques: BOTH,
+        techniques: ALL,
         is_model: false,
         remodels: false,
         idle: |_| None,
@@ -96,7 +109,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "light_samples",
         sets: "points of each light that has a size, for each element",
-        techniques: BOTH,
+        techniques: ALL,
         is_model: false,
         remodels: false,
         idle: |base| (!has_spread_light(base)).then_some("no light of the scene has a size"),
@@ -105,7 +118,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
             let own = f64::from(base.settings().light_samples);
             match technique {
                 // Every sample of a pixel draws points of its own: their number makes no difference in the end.
-                Technique::RayTracing => own,
+                Technique::RayTracing | Technique::TwoWay => own,
                 Technique::ScanLine => doubled(base).take(6).fold(own, f64::max) * MORE_POINTS,
             }
         },
@@ -115,20 +128,20 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "texture_filter",
         sets: "over how much of what a sample stands for the mean of a texture is taken; 0 is a point",
-        techniques: BOTH,
+        techniques: ALL,
         is_model: false,
         remodels: false,
         idle: |base| base.lacks(Stage::Textures, "no material changes from place to place"),
         values: |base| halved(base, WIDEST_FILTER).take(base.options.settings as usize - 1).chain([0.0]).collect(),
         // Scan line finds light once for a pixel: there, a point instead of the mean is no better.
-        best: |_, technique| if technique == Technique::RayTracing { 0.0 } else { 1.0 },
+        best: |_, technique| if technique == Technique::ScanLine { 1.0 } else { 0.0 },
         get: |setup| setup.settings.texture_filter,
         set: |setup, value| setup.settings.texture_filter = value,
     },
     RenderKnob {
         name: "tolerance",
         sets: "distance between exact surface and triangles, scene units; 0 stands for a part of each object's size",
-        techniques: BOTH,
+        techniques: ALL,
         is_model: false,
         remodels: true,
         idle: curved,
@@ -140,7 +153,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "angle",
         sets: "largest turn of the normal from vertex to vertex of an exact surface, degrees",
-        techniques: BOTH,
+        techniques: ALL,
         is_model: false,
         remodels: true,
         idle: curved,
@@ -164,7 +177,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "spectral",
         sets: "whether rays carry eight wavelengths (1) or three bands (0)",
-        techniques: BOTH,
+        techniques: ALL,
         is_model: true,
         remodels: false,
         idle: |base| base.lacks(Stage::Spectra, "no material and no light has a spectrum"),
@@ -188,7 +201,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "caustics",
         sets: "whether light counts that a mirror or glass throws from a lamp (1) or not (0)",
-        techniques: RAYS,
+        techniques: EYE,
         is_model: true,
         remodels: false,
         idle: |base| base.lacks(Stage::Reflection, "nothing in the scene reflects, refracts or carries light on"),
@@ -196,6 +209,30 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         best: |_, _| 1.0,
         get: |setup| f64::from(u8::from(setup.settings.caustics)),
         set: |setup, value| setup.settings.caustics = value > 0.0,
+    },
+    RenderKnob {
+        name: "photons",
+        sets: "ways of light that are followed from lamps for eight samples of each pixel",
+        techniques: LAMPS,
+        is_model: false,
+        remodels: false,
+        idle: |_| None,
+        values: |base| around(base, f64::from(base.settings().photons), PHOTON_STEP).map(f64::round).collect(),
+        best: |base, _| (f64::from(base.settings().photons) * PHOTON_STEP).min(f64::from(MAX_PHOTONS)),
+        get: |setup| f64::from(setup.settings.photons),
+        set: |setup, value| setup.settings.photons = (value as u32).clamp(1, MAX_PHOTONS),
+    },
+    RenderKnob {
+        name: "radius",
+        sets: "radius of the largest disc over which caught light is spread, scene units; where there is much, discs are smaller",
+        techniques: LAMPS,
+        is_model: false,
+        remodels: false,
+        idle: |_| None,
+        values: |base| around(base, own_radius(base), 1.0 / RADIUS_STEP).collect(),
+        best: |base, _| own_radius(base) / RADIUS_STEP,
+        get: |setup| setup.settings.photon_radius.unwrap_or(0.0),
+        set: |setup, value| setup.settings.photon_radius = Some(value),
     },
     RenderKnob {
         name: "radiosity_error",
@@ -255,6 +292,17 @@ fn doubled(base: &Base) -> impl Iterator<Item = f64> + use<> {
 /// A value, its half, ..., as many as are to be tried.
 fn halved(base: &Base, from: f64) -> impl Iterator<Item = f64> + use<> {
     (0..base.options.settings as i32).map(move |i| from / 2f64.powi(i))
+}
+
+/// What the scene has, coarser ones before it and one finer one, as many as are to be tried.
+fn around(base: &Base, own: f64, step: f64) -> impl Iterator<Item = f64> + use<> {
+    let count = base.options.settings as i32;
+    (0..count).map(move |i| own * step.powi(i + 2 - count))
+}
+
+/// The radius of the largest disc that the scene has.
+fn own_radius(base: &Base) -> f64 {
+    base.settings().photon_radius.unwrap_or_else(|| widest_disc(&base.prepared))
 }
 
 /// Tolerances for the largest curved object.

@@ -114,8 +114,8 @@ pub fn renderers(
         .flat_map(|technique| technique.knobs().map(|knob| (*technique, knob)))
         .filter(|(_, knob)| names.contains(&knob.name))
         .collect();
-    let settings = |(_, knob): &(Technique, &RenderKnob)| {
-        if (knob.idle)(&base).is_some() { 0 } else { (knob.values)(&base).len() as u64 }
+    let settings = |(technique, knob): &(Technique, &RenderKnob)| {
+        if base.idle(*technique, knob).is_some() { 0 } else { (knob.values)(&base).len() as u64 }
     };
     let steps = chosen.iter().map(settings).sum::<u64>();
     let mut bench = Bench { base: &base, watch, references: Vec::new(), done: 0, steps };
@@ -168,14 +168,17 @@ impl Bench<'_> {
     }
 
     fn sweep(&mut self, technique: Technique, knob: &RenderKnob, found: &mut KnobStudy) -> Result<(), StudyError> {
-        if let Some(why) = (knob.idle)(self.base) {
+        if let Some(why) = self.base.idle(technique, knob) {
             found.verdict = format!("changes nothing: {why}");
             return Ok(());
         }
         let left_out = self.base.left_out()?;
         // Where scan line leaves nothing out, ray tracing is its reference, too.
-        let is_whole = technique == Technique::RayTracing || left_out.is_empty();
-        let by = if is_whole { Technique::RayTracing } else { technique };
+        let is_whole = technique != Technique::ScanLine || left_out.is_empty();
+        let by = match technique {
+            Technique::ScanLine if is_whole => Technique::RayTracing,
+            _ => technique,
+        };
         let best = self.base.best(by, knob);
         let reference = self.reference(&best)?;
         let made = &self.references[reference].1;
@@ -249,7 +252,8 @@ impl Bench<'_> {
         let (before, _) = self.row(but, &own, 0.0, reference)?;
         let before = before.measures;
         let mut causes = Vec::new();
-        for knob in technique.knobs().filter(|knob| knob.name != but.name && (knob.idle)(self.base).is_none()) {
+        for knob in technique.knobs().filter(|knob| knob.name != but.name && self.base.idle(technique, knob).is_none())
+        {
             let mut setup = own;
             (knob.set)(&mut setup, (knob.best)(self.base, technique));
             // Models are the same in the reference, and more samples lower chance only.

@@ -42,7 +42,7 @@ pub(super) fn verdict(study: &KnobStudy, changes: bool, apart: Option<(f64, Vec<
             let causes = match (causes.is_empty(), study.technique) {
                 (false, _) => causes.join(", "),
                 (true, Technique::ScanLine) => "none of its other knobs: the renderer itself".to_owned(),
-                (true, Technique::RayTracing) => "no other knob alone".to_owned(),
+                (true, Technique::RayTracing | Technique::TwoWay) => "no other knob alone".to_owned(),
             };
             let bias = study.rows[*from].measures.bias();
             format!("from {} on the error is bias, {}: of {causes}", at(*from), short(bias))

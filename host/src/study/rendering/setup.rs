@@ -3,7 +3,7 @@
 use super::knob::{RENDER_KNOBS, RenderKnob};
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
-use crate::render::ray_tracing::RayTracer;
+use crate::render::ray_tracing::{RayTracer, widest_disc};
 use crate::render::scan_line::ScanLine;
 use crate::render::{Order, Renderer, Watch};
 use crate::scene::{Prepared, Scene, Settings};
@@ -19,20 +19,23 @@ const REFERENCE_SEED: u64 = 0x5EED;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Technique {
-    /// [`RayTracer`].
+    /// [`RayTracer`], with rays from the eye alone.
     RayTracing,
+    /// [`RayTracer`], with light that is followed from lamps first.
+    TwoWay,
     /// [`ScanLine`].
     ScanLine,
 }
 
 impl Technique {
     /// All of them.
-    pub const ALL: [Technique; 2] = [Technique::RayTracing, Technique::ScanLine];
+    pub const ALL: [Technique; 3] = [Technique::RayTracing, Technique::TwoWay, Technique::ScanLine];
 
     /// Its name in tables.
     pub fn word(self) -> &'static str {
         match self {
             Technique::RayTracing => "ray tracing",
+            Technique::TwoWay => "two-way",
             Technique::ScanLine => "scan line",
         }
     }
@@ -41,8 +44,14 @@ impl Technique {
     pub fn option(self) -> &'static str {
         match self {
             Technique::RayTracing => "ray-tracing",
+            Technique::TwoWay => "two-way",
             Technique::ScanLine => "scan-line",
         }
+    }
+
+    /// Those that a scene is studied by unless others are asked for: scan line, and ray tracing as the scene has it.
+    pub fn usual(settings: &Settings) -> [Technique; 2] {
+        [if settings.two_way { Technique::TwoWay } else { Technique::RayTracing }, Technique::ScanLine]
     }
 
     /// The knobs that it has.
@@ -97,6 +106,7 @@ impl Base {
         let mut free = prepared.clone();
         free.settings.reflection_depth = free.settings.reflection_depth.max(1);
         free.settings.spectral = free.settings.spectral.filter(|spectral| *spectral);
+        free.settings.two_way = true;
         let plan = Plan::new(&free, &free.view());
         Ok(Base { scene, prepared, options, plan, largest_curved })
     }
@@ -110,18 +120,29 @@ impl Base {
         (!self.plan.needs(stage)).then_some(why)
     }
 
+    /// Why a knob changes nothing, or nothing that it does not change by another renderer, where that is so.
+    pub(super) fn idle(&self, technique: Technique, knob: &RenderKnob) -> Option<&'static str> {
+        let not_followed = match technique {
+            Technique::TwoWay => self.lacks(Stage::CaughtLight, "no light is followed from lamps: this is ray tracing"),
+            Technique::RayTracing | Technique::ScanLine => None,
+        };
+        not_followed.or_else(|| (knob.idle)(self))
+    }
+
     /// All knobs as the scene has them.
     pub(super) fn own(&self, technique: Technique) -> Setup {
         let mut settings = self.scene.settings;
         // In words, so that setups that are the same are equal.
         settings.spectral = Some(settings.spectral.unwrap_or(self.plan.needs(Stage::Spectra)));
+        settings.two_way = technique == Technique::TwoWay;
+        settings.photon_radius = Some(settings.photon_radius.unwrap_or_else(|| widest_disc(&self.prepared)));
         Setup { technique, settings, target: None, own_tolerances: true }
     }
 
     /// Every knob at its best, but those that say which light counts: of these only the one that is studied.
     pub(super) fn best(&self, technique: Technique, studied: &RenderKnob) -> Setup {
         let mut setup = self.own(technique);
-        for knob in technique.knobs().filter(|knob| (knob.idle)(self).is_none()) {
+        for knob in technique.knobs().filter(|knob| self.idle(technique, knob).is_none()) {
             if !knob.is_model || knob.name == studied.name {
                 (knob.set)(&mut setup, (knob.best)(self, technique));
             }
@@ -175,14 +196,8 @@ impl Base {
         watch: &Watch<'_>,
     ) -> Result<Vec<Shot>, StudyError> {
         let start = Instant::now();
-        let prepared = self.prepared_for(setup)?;
-        let view = prepared.view();
-        let plan = Plan::new(&prepared, &view);
-        let renderer: Box<dyn Renderer + '_> = match setup.technique {
-            Technique::RayTracing => Box::new(RayTracer::new(&prepared, &plan)?),
-            Technique::ScanLine => Box::new(ScanLine::new(&prepared, &plan)?),
-        };
-        let build = start.elapsed().as_secs_f64();
+        let mut prepared = self.prepared_for(setup)?;
+        let modelling = start.elapsed().as_secs_f64();
         // With a target, as many samples as a half of the reference has, at the most.
         let samples = match setup.target {
             Some(_) => setup.settings.samples.max(self.options.samples / 2),
@@ -190,16 +205,37 @@ impl Base {
         };
         let order =
             Order { samples, target: setup.target, threads: self.options.threads, ..Order::of(&setup.settings) };
-        let quiet = Watch { cancelled: watch.cancelled, progress: &|_, _| {} };
-        let mut shots = Vec::new();
-        while !is_enough(&shots) {
+        let varied = |shots: &[Shot]| {
             let mut order = order;
             vary(shots.len() as u64, &mut order);
-            let rendering = renderer.render(&view, &order, &quiet)?;
-            if !rendering.complete || watch.cancelled.load(Ordering::Relaxed) {
-                return Err(StudyError::Interrupted);
+            order
+        };
+        let quiet = Watch { cancelled: watch.cancelled, progress: &|_, _| {} };
+        let is_followed = setup.technique == Technique::TwoWay;
+        let mut shots = Vec::new();
+        while !is_enough(&shots) {
+            if is_followed {
+                // Light is followed from lamps by the seed of the scene, and kept for all further pictures.
+                prepared.settings.seed = varied(&shots).seed;
             }
-            shots.push(Shot { picture: rendering.picture, build, render: rendering.seconds });
+            let start = Instant::now();
+            let view = prepared.view();
+            let plan = Plan::new(&prepared, &view);
+            let renderer: Box<dyn Renderer + '_> = match setup.technique {
+                Technique::RayTracing | Technique::TwoWay => Box::new(RayTracer::new(&prepared, &plan)?),
+                Technique::ScanLine => Box::new(ScanLine::new(&prepared, &plan)?),
+            };
+            let build = modelling + start.elapsed().as_secs_f64();
+            while !is_enough(&shots) {
+                let rendering = renderer.render(&view, &varied(&shots), &quiet)?;
+                if !rendering.complete || watch.cancelled.load(Ordering::Relaxed) {
+                    return Err(StudyError::Interrupted);
+                }
+                shots.push(Shot { picture: rendering.picture, build, render: rendering.seconds });
+                if is_followed {
+                    break;
+                }
+            }
         }
         Ok(shots)
     }

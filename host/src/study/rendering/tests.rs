@@ -70,7 +70,7 @@ fn all_knobs() -> Scene {
     let radiance = Color::light_of(&steep, 12.0).expect("a light");
     let eye = camera(DVec3::new(0.8, 1.4, 4.0), DVec3::new(0.0, 0.5, 0.0), DVec3::Y, 34.0);
     let mut scene = scene(objects, vec![Light::Area { patch, radiance }], eye);
-    scene.settings.interreflection = true;
+    (scene.settings.interreflection, scene.settings.photons) = (true, 1000);
     scene
 }
 

@@ -141,6 +141,17 @@ impl Sums {
     }
 }
 
+/// A disc over which light is gathered.
+#[derive(Clone, Copy, Debug)]
+struct Disc {
+    /// The square of its radius, in sides of the cube.
+    square: f64,
+    /// How much of it is on the surface and in sight.
+    part: f64,
+    /// Standard error of the irradiance over the irradiance.
+    error: f64,
+}
+
 impl Captured {
     /// Sorts what was caught.
     pub(super) fn new(caught: &[Caught], lanes: usize) -> Captured {
@@ -170,7 +181,10 @@ impl Captured {
     }
 
     /// Visits the light that arrives around a place, as if it arrived at it.
-    pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) {
+    ///
+    /// - Returns the standard error of the irradiance by all of it, over the irradiance: what chance does as ways of light
+    ///   arrive or not; 0 without light.
+    pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) -> f64 {
         let most = match surroundings.detail {
             Detail::Fine => self.most,
             Detail::Coarse => COARSE,
@@ -178,7 +192,7 @@ impl Captured {
         };
         let around = self.points.around(place.position, surroundings.reach, most);
         if around.count == 0 {
-            return;
+            return 0.0;
         }
         let side = self.points.side();
         let reach = (around.reach / side) as f32;
@@ -202,12 +216,14 @@ impl Captured {
             }
         }
         if near.is_empty() {
-            return;
+            return 0.0;
         }
         let (x, y) = place.outside.any_orthonormal_pair();
         let flat = (around.reach, [x, y]);
         let walls = self.keep_seen(&mut near, place, flat, surroundings);
-        let Some((square, part)) = self.disc(&near, &walls, place, flat, surroundings) else { return };
+        let Some(Disc { square, part, error }) = self.disc(&near, &walls, place, flat, surroundings) else {
+            return 0.0;
+        };
         // In scene units from here on.
         let area = square * side * side;
         let factor = FRAC_2_PI / (area * part);
@@ -224,6 +240,7 @@ impl Captured {
                 is_again: self.combs[number] & AGAIN != 0,
             });
         }
+        error
     }
 
     /// Leaves out light that arrived behind something that stands on the surface, as seen from the place; tells what stands
@@ -271,7 +288,7 @@ impl Captured {
         walls
     }
 
-    /// The disc that tells most, by the square of its radius in sides of the cube, and how much of it is on the surface.
+    /// The disc that tells most.
     ///
     /// # Source
     /// Goldenshluger and Nemirovski 1997, intersection of confidence intervals; the weight is that of Epanechnikov 1969.
@@ -282,7 +299,7 @@ impl Captured {
         place: &Place,
         (reach, axes): (f64, [DVec3; 2]),
         of: &Surroundings<'_>,
-    ) -> Option<(f64, f64)> {
+    ) -> Option<Disc> {
         let side = self.points.side();
         let whole = (reach / side) * (reach / side);
         let mut rings = [Sums::default(); RINGS];
@@ -307,18 +324,19 @@ impl Captured {
             }
             let part = part(square);
             let (value, error) = sums.irradiance(square);
+            let relative = if value > 0.0 { error / value } else { 0.0 };
             let (value, error) = (value / part, SAME * error / part);
             (low, high) = (low.max(value - error), high.min(value + error));
             if low > high {
                 break;
             }
-            best = Some((square, part));
+            best = Some(Disc { square, part, error: relative });
         }
-        let (square, whole_part) = best?;
+        let best = best?;
         if of.shrink == 1.0 {
-            return Some((square, whole_part));
+            return Some(best);
         }
-        let square = square * of.shrink;
-        Some((square, part(square)))
+        let square = best.square * of.shrink;
+        Some(Disc { square, part: part(square), error: best.error / of.shrink.sqrt() })
     }
 }

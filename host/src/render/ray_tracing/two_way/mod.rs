@@ -35,6 +35,7 @@ use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
 use crate::render::Watch;
 use crate::render::radiosity::diffuse;
+use crate::scene::Prepared;
 use aim::{Aimed, Ball};
 use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
 use gather::{Captured, Detail, Place, Surroundings};
@@ -143,7 +144,7 @@ impl<'s> TwoWay<'s> {
             opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(opaque),
             lamps: Vec::new(),
             turns: settings.reflection_depth.max(LEAST_TURNS),
-            reach: settings.photon_radius.unwrap_or(REACH * prepared.bounds.diagonal()),
+            reach: settings.photon_radius.unwrap_or_else(|| widest_disc(prepared)),
             seed: settings.seed,
             kept: Mutex::new(Vec::new()),
             shelf,
@@ -311,6 +312,11 @@ impl<'s> TwoWay<'s> {
     }
 }
 
+/// The radius of the largest disc over which caught light is spread, unless the scene has one, scene units.
+pub fn widest_disc(prepared: &Prepared) -> f64 {
+    REACH * prepared.bounds.diagonal()
+}
+
 /// Whether light does not come through a triangle.
 fn stands(world: &World<'_>, triangle: u32) -> bool {
     let prepared = world.appearance.prepared;
@@ -376,14 +382,15 @@ impl CaughtLight<'_> {
     /// - `passed`: how much of the radiance comes to the eye. `is_parted`: whether a single wavelength is left of it.
     /// - `coarse`: whether the element is one of many that send light to what is seen.
     /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB: of light
-    ///   that took narrow turns only, and of light that took broad ones among them.
+    ///   that took narrow turns only, and of light that took broad ones among them. And the standard error of all of it,
+    ///   over it.
     pub(super) fn seen(
         &self,
         found: &Found<'_>,
         sighting: &Sighting<'_>,
         (passed, is_parted): (Channels, bool),
         coarse: bool,
-    ) -> [(Channels, DVec3); 2] {
+    ) -> ([(Channels, DVec3); 2], f64) {
         let two_way = self.two_way;
         let element = &found.element;
         let surface = two_way.surfaces.of(found.triangle);
@@ -401,7 +408,7 @@ impl CaughtLight<'_> {
         let wavelengths = &appearance.wavelengths;
         let even = found.optics.even_value(sighting);
         let mut found_light = [(Channels::ZERO, DVec3::ZERO); 2];
-        self.capture.light.each(&place, &surroundings, |arriving| {
+        let error = self.capture.light.each(&place, &surroundings, |arriving| {
             let light = frame.local(arriving.towards);
             let (sum, elsewhere) = &mut found_light[usize::from(arriving.is_again)];
             if !wavelengths.is_spectral() || is_parted {
@@ -415,7 +422,7 @@ impl CaughtLight<'_> {
                 *elsewhere += wavelengths.seen(arriving.comb, radiance);
             }
         });
-        found_light.map(|(sum, elsewhere)| (passed * sum, elsewhere))
+        (found_light.map(|(sum, elsewhere)| (passed * sum, elsewhere)), error)
     }
 }
 
