@@ -145,7 +145,7 @@ fn an_image_in_a_file_that_is_none_is_refused() {
 
 #[test]
 fn light_from_lamps_follows_the_slope_of_a_relief() {
-    // A mirror that lies level, with a relief that rises evenly by 22.5 degrees, throws the sun from above level on a wall.
+    // A level mirror, with a relief that rises evenly by 22.5 degrees, throws the sun from above on a wall.
     let image = Image::new("ramp".into(), 16, 16, |x, _| DVec3::splat(f64::from(x) / 15.0));
     let rise = 2.0 * 15.0 / 16.0 * (PI / 8.0).tan();
     let pattern = Pattern { motif: Motif::Image { image }, laying: Laying::default(), paints: Vec::new() };
