@@ -263,6 +263,9 @@ impl Film {
     }
 
     /// Root of the mean variance of all pixels: about the RMSE of the luminance, as far as chance goes.
+    ///
+    /// Of pixels that saw caught light of one pass only, its chance counts as if its ways were independent; they are evenly
+    /// spread, so that it is less by a factor of up to 3. Light that no sample found is in no error.
     pub fn standard_error(&self) -> f64 {
         let variance = |tally: &Tally| {
             let halves = if self.in_turn { tally.variance_of_halves() } else { None };

@@ -174,7 +174,9 @@ impl<'a> RayTracer<'a> {
         let mut complete = true;
         for samples in &passes {
             let wanted = order.target.map(|target| film.uncertain(target));
-            let is_needed = film.tallies().iter().any(|tally| tally.count < *samples);
+            let is_wanted = |pixel: usize| wanted.as_ref().is_none_or(|wanted| wanted[pixel]);
+            let mut counts = film.tallies().iter().map(|tally| tally.count).enumerate();
+            let is_needed = counts.any(|(pixel, count)| count < *samples && is_wanted(pixel));
             let caught = match &self.two_way {
                 Some(two_way) if is_needed => {
                     let pass = (samples - 1) / SHARING;
@@ -197,9 +199,11 @@ impl<'a> RayTracer<'a> {
                     }
                     let mut work = Work::default();
                     for (x, tally) in row.iter_mut().enumerate() {
-                        if wanted.as_ref().is_none_or(|wanted| wanted[y * width + x]) {
+                        if is_wanted(y * width + x) {
                             let classes = classes.as_mut().map(|row| &mut row[x]);
-                            let pixel = ([x as u32, y as u32], *samples);
+                            // Where errors seemed small for a while, no more samples see this light than elsewhere.
+                            let most = if caught.is_some() { tally.count.saturating_add(SHARING) } else { *samples };
+                            let pixel = ([x as u32, y as u32], most.min(*samples));
                             self.add_samples((&tracer, &eye, order), pixel, (tally, classes), &mut work);
                         }
                     }

@@ -204,7 +204,11 @@ fn every_knob_changes_the_picture_or_says_why_not() {
         let least = measured.iter().fold(f64::INFINITY, |least, m| least.min(m.rmse));
         match is_model {
             true => assert!(last.bias_squared <= first.bias_squared + doubt, "{}", study.table()),
-            false => assert!(idle || least < first.rmse, "{}", study.table()),
+            // By two-way, chance in what was caught may be more than all that a knob does; then the study says so.
+            false => {
+                let is_chance = study.technique == Technique::TwoWay && study.bend == Some(Bend::Chance { from: 0 });
+                assert!(idle || is_chance || least < first.rmse, "{}", study.table())
+            }
         }
         assert!(study.rows.iter().all(|row| row.seconds > 0.0 && row.measures.rmse.is_finite()));
     }
