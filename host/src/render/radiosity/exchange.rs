@@ -17,9 +17,9 @@ const MOST_FACTOR: f64 = 4.0;
 /// A row of which light is lost is not made more than so many times what it is, and not less than one over it.
 const MOST_CHANGE: f64 = 2.0;
 
-/// A goal that a row can be brought to.
-fn within(goal: f64, row: f64) -> f64 {
-    goal.clamp(row / MOST_CHANGE, row * MOST_CHANGE)
+/// A goal that a row can be brought to; no more than all comes from elsewhere, however much too great the row of a sliver is.
+fn within(goal: f64, row: f64, area: f64) -> f64 {
+    goal.clamp(row / MOST_CHANGE, row * MOST_CHANGE).min(area)
 }
 
 /// As many rays tell how much light is lost in a neighbourhood.
@@ -154,7 +154,7 @@ impl<'a> Exchange<'a> {
                 let rows = sums(self);
                 let goals = self.goals(looks).into_iter().zip(&areas).zip(rows);
                 goals
-                    .map(|((goal, area), row)| if goal < 1.0 { within(goal * area, row) } else { goal * area })
+                    .map(|((goal, area), row)| if goal < 1.0 { within(goal * area, row, *area) } else { goal * area })
                     .collect()
             }
             None => sums(self).iter().zip(&areas).map(|(sum, area)| sum.min(*area)).collect(),

@@ -202,7 +202,8 @@ fn every_knob_changes_the_picture_or_says_why_not() {
         let (first, last) = (measured[0], measured[measured.len() - 1]);
         let doubt = 4.0 * last.bias_squared_error.hypot(first.bias_squared_error);
         let least = measured.iter().fold(f64::INFINITY, |least, m| least.min(m.rmse));
-        match is_model {
+        // A smaller disc has less bias and more chance.
+        match is_model || study.name == "radius" {
             true => assert!(last.bias_squared <= first.bias_squared + doubt, "{}", study.table()),
             // By two-way, chance in what was caught may be more than all that a knob does; then the study says so.
             false => {
