@@ -254,7 +254,7 @@ impl Division<'_> {
 }
 
 /// Lowest corner of a cell and half its side, local coordinates.
-fn place(cell: LocationalCode) -> ([f64; 3], f64) {
+pub fn place(cell: LocationalCode) -> ([f64; 3], f64) {
     const VOXEL: f64 = 1.0 / (1_u32 << MAX_DEPTH) as f64;
     (cell.corner().map(|c| f64::from(c) * VOXEL), f64::from(cell.side()) * VOXEL * 0.5)
 }

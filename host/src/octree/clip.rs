@@ -63,6 +63,14 @@ pub fn round_up(x: f64) -> f32 {
 /// # Source
 /// Sutherland and Hodgman 1974.
 pub fn clipped_bounds(corners: [DVec3; 3], low: [f64; 3], high: [f64; 3]) -> Option<Bounds> {
+    let (polygon, count) = clipped(corners, low, high);
+    (count > 0).then(|| Bounds::of(&polygon[..count]))
+}
+
+/// The part of a triangle that lies in a cell with [`FAT`] around it: a convex polygon, and its number of corners.
+///
+/// - `corners`, `low`, `high`: as for [`clipped_bounds`].
+pub fn clipped(corners: [DVec3; 3], low: [f64; 3], high: [f64; 3]) -> ([[f64; 3]; MOST_CORNERS], usize) {
     let mut polygon = [[0.0; 3]; MOST_CORNERS];
     for (to, from) in polygon.iter_mut().zip(corners) {
         *to = from.to_array();
@@ -72,7 +80,7 @@ pub fn clipped_bounds(corners: [DVec3; 3], low: [f64; 3], high: [f64; 3]) -> Opt
         count = cut(&mut polygon, count, axis, 1.0, low[axis] - FAT);
         count = cut(&mut polygon, count, axis, -1.0, high[axis] + FAT);
     }
-    (count > 0).then(|| Bounds::of(&polygon[..count]))
+    (polygon, count)
 }
 
 /// Keeps what has `sign (x - plane) >= 0` of a polygon; returns its number of corners.

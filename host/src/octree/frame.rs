@@ -149,7 +149,13 @@ impl Frame {
     /// A bound for the parameter s of a hit at `t`, rounded up.
     #[inline]
     pub fn limit(&self, t: f64) -> f32 {
-        self.limit_of((t * self.rate - self.offset).min(self.length))
+        self.limit_of(self.along(t).min(self.length))
+    }
+
+    /// The parameter s at `t`.
+    #[inline]
+    pub fn along(&self, t: f64) -> f64 {
+        t * self.rate - self.offset
     }
 
     /// Lengths in single precision that certainly stand for `t_min < t < t_max` from the first to the second.

@@ -27,6 +27,7 @@ mod points;
 mod shaft;
 mod sorted;
 mod statistics;
+mod surface_points;
 mod walk;
 
 #[cfg(test)]
@@ -51,6 +52,7 @@ pub use points::{Around, Points};
 pub use shaft::{Between, Shaft};
 pub use sorted::Sorted;
 pub use statistics::Statistics;
+pub use surface_points::{MAX_POINT_DEPTH, SurfacePoints};
 use walk::Search;
 
 /// Most triangles that one octree takes.

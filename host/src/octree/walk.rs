@@ -48,13 +48,25 @@ impl<'a> Search<'a> {
         }
         // A ray from so far away that its points are less certain than a cell is fat may be in the cell beside the one
         // that it is taken for.
-        if 4.0 * self.frame.double_tolerance <= FAT { self.step_from_cell_to_cell() } else { self.look_from_above() }
+        if 4.0 * self.frame.double_tolerance <= FAT {
+            self.step_from_cell_to_cell(|search, leaf, _| search.any_of_leaf(leaf));
+        } else {
+            self.look_from_above();
+        }
+    }
+
+    /// Looks into the cells on the way, in terminal nodes as it is told.
+    ///
+    /// - `visit`: the terminal node, and from where to where the ray is in it, sides of the modelling cube along the longest
+    ///   axis; returns whether the search is over.
+    pub(super) fn walk_with(&mut self, visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
+        if 4.0 * self.frame.double_tolerance <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
     }
 }
 
 impl Search<'_> {
     /// Tests the triangles of a terminal node; returns whether the search is over.
-    fn any_of_leaf(&mut self, leaf: usize) -> bool {
+    pub(super) fn any_of_leaf(&mut self, leaf: usize) -> bool {
         let triangles = self.octree.leaves().of(leaf);
         self.count.triangles += triangles.len() as u64;
         triangles.iter().any(|&triangle| self.decide(triangle) && self.any)
@@ -75,15 +87,21 @@ impl Search<'_> {
         let octree = self.octree;
         let corners = octree.triangles[triangle as usize].map(|i| octree.vertices[i as usize]);
         let Some(crossing) = self.shear.crossing(corners) else { return false };
-        let t = crossing.t;
+        self.offer(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
+    }
+
+    /// Takes a hit if it is nearer than any before; returns whether it is.
+    #[inline(always)]
+    pub(super) fn offer(&mut self, hit: Hit) -> bool {
+        let t = hit.t;
         let nearer = match self.best {
-            Some(best) => t < best.t || (t == best.t && triangle < best.triangle),
+            Some(best) => t < best.t || (t == best.t && hit.triangle < best.triangle),
             None => t < self.t_max,
         };
         if !(nearer && t > self.t_min) {
             return false;
         }
-        self.best = Some(Hit { t, triangle, u: crossing.u, v: crossing.v });
+        self.best = Some(hit);
         self.limit = self.frame.limit(t);
         true
     }
@@ -95,7 +113,7 @@ impl Search<'_> {
     ///
     /// Positions are computed from the entry point, never from the last cell, so no error builds up. Each step
     /// changes the voxel along the axis that it crosses and moves the others at most forward: it ends.
-    fn step_from_cell_to_cell(&mut self) {
+    fn step_from_cell_to_cell(&mut self, mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
         let octree = self.octree;
         let leaves = octree.leaves();
         let frame = self.frame.clone();
@@ -105,6 +123,7 @@ impl Search<'_> {
         let leading = frame.axes[2];
         let others = [frame.axes[0], frame.axes[1]];
         let mut voxel = entry.map(|x| (x.floor() as i64).clamp(0, VOXELS - 1));
+        let mut enter = 0.0;
         loop {
             self.count.cells += 1;
             let code = LocationalCode::containing(voxel.map(|x| x as u32), MAX_DEPTH);
@@ -113,9 +132,6 @@ impl Search<'_> {
                 Err(Location::Empty { code, .. }) => (code, None),
                 Err(_) => return,
             };
-            if leaf.is_some_and(|leaf| self.any_of_leaf(leaf)) {
-                return;
-            }
             let low = cell.corner().map(i64::from);
             let side = i64::from(cell.side());
             // The plane through which each axis would leave the cell.
@@ -142,9 +158,11 @@ impl Search<'_> {
                 }
                 point[leading] = at(leading, s);
             }
-            if s / voxels > f64::from(self.limit) {
+            let exit = s / voxels;
+            if leaf.is_some_and(|leaf| visit(self, leaf, [enter, exit])) || exit > f64::from(self.limit) {
                 return;
             }
+            enter = exit;
             for axis in 0..3 {
                 let (first, last) = (low[axis], low[axis] + side - 1);
                 voxel[axis] = if axis != crossed {

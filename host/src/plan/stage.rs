@@ -32,6 +32,8 @@ pub enum Stage {
     LightBuffer,
     /// Light that is followed from lamps through mirrors and glass, and caught.
     CaughtLight,
+    /// Points of surfaces, one for each voxel, that rays meet instead of surfaces.
+    SurfacePoints,
     /// Rays from mirrors, through glass, and from rough surfaces.
     Reflection,
     /// Light that diffuse surfaces send each other, found before for all views.
@@ -142,7 +144,7 @@ fn counted(n: usize, noun: &str) -> String {
 
 impl Stage {
     /// Every stage, in the order of the enumeration.
-    pub const ALL: [Stage; 15] = [
+    pub const ALL: [Stage; 16] = [
         Stage::Octree,
         Stage::Normals,
         Stage::ExactSurfaces,
@@ -154,6 +156,7 @@ impl Stage {
         Stage::Shadows,
         Stage::LightBuffer,
         Stage::CaughtLight,
+        Stage::SurfacePoints,
         Stage::Reflection,
         Stage::Radiosity,
         Stage::Motion,
@@ -174,6 +177,7 @@ impl Stage {
             Stage::Shadows => "shadows",
             Stage::LightBuffer => "light buffer",
             Stage::CaughtLight => "caught light",
+            Stage::SurfacePoints => "points for surfaces",
             Stage::Reflection => "reflected and refracted rays",
             Stage::Radiosity => "radiosity",
             Stage::Motion => "motion",
@@ -183,7 +187,7 @@ impl Stage {
 
     /// Whether running it without need changes nothing.
     pub(super) fn is_forcible(self) -> bool {
-        !matches!(self, Stage::Spectra | Stage::CaughtLight | Stage::Radiosity)
+        !matches!(self, Stage::Spectra | Stage::CaughtLight | Stage::SurfacePoints | Stage::Radiosity)
     }
 
     pub(super) fn decide(self, facts: &Facts<'_>) -> Decision {
@@ -199,6 +203,7 @@ impl Stage {
             Stage::Shadows => facts.shadows(),
             Stage::LightBuffer => light_buffer(facts),
             Stage::CaughtLight => caught_light(facts),
+            Stage::SurfacePoints => surface_points(facts),
             Stage::Reflection => facts.reflection(),
             Stage::Radiosity => radiosity(facts),
             Stage::Motion => motion(facts),
@@ -247,6 +252,15 @@ fn caught_light(facts: &Facts<'_>) -> Decision {
     } else {
         let from = format!("{} through {}", counted(lamps, "lamp"), counted(throwers, "object"));
         Decision::new(true, format!("light of {from} to {}", counted(takers, "receiver")))
+    }
+}
+
+/// An approximation, which is never forced.
+fn surface_points(facts: &Facts<'_>) -> Decision {
+    match facts.prepared.settings.point_depth {
+        None => Decision::new(false, "rays meet surfaces themselves, as the scene does not ask for points"),
+        Some(_) if !caught_light(facts).needed => Decision::new(false, "no light is followed from lamps"),
+        Some(depth) => Decision::new(true, format!("the scene asks for {} voxels a side", 1_u64 << depth)),
     }
 }
 

@@ -110,7 +110,7 @@ fn a_forced_plan_leaves_nothing_out_and_says_so() {
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::everything(&prepared, &prepared.view());
     // Spectra, caustics and radiosity are another picture: they are not forced.
-    let others = [Stage::Spectra, Stage::CaughtLight, Stage::Radiosity];
+    let others = [Stage::Spectra, Stage::CaughtLight, Stage::SurfacePoints, Stage::Radiosity];
     let all = plan.entries.iter().filter(|e| others.iter().all(|stage| e.name != stage.word()));
     assert!(all.clone().count() + others.len() == plan.entries.len() && all.clone().all(|e| e.needed));
     assert!(Stage::ALL.into_iter().all(|s| plan.needs(s) != others.contains(&s)));

@@ -28,6 +28,7 @@ pub use shape::{Made, Rounded, Shape, ShapeError};
 pub use view::{Camera, Lens, Parallel, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};
+use crate::octree::MAX_POINT_DEPTH;
 use glam::DMat4;
 use serde::{Deserialize, Serialize};
 
@@ -118,6 +119,9 @@ pub struct Settings {
     pub photons: u32,
     /// The largest radius over which caught light is spread, scene units; without one, a twentieth of the scene's diagonal.
     pub photon_radius: Option<f64>,
+    /// Where light is followed from lamps: 2 to this power voxels are along the scene, a point in each stands for the
+    /// surface there, and rays meet these points; without a word, they meet the surfaces.
+    pub point_depth: Option<u32>,
     /// Whether ray tracing keeps what stands between voxels and lights; the picture is the same without.
     pub light_buffer: bool,
     /// Whether rays carry spectra; without a word, where a material or a light has one.
@@ -155,6 +159,7 @@ impl Default for Settings {
             two_way: false,
             photons: 200_000,
             photon_radius: None,
+            point_depth: None,
             light_buffer: true,
             spectral: None,
             exact_surfaces: true,
@@ -315,6 +320,9 @@ impl Settings {
         }
         if self.photon_radius.is_some_and(|radius| !(radius > 0.0 && radius.is_finite())) {
             return Err(SceneError::Setting("the radius of caught light is not a length above 0".into()));
+        }
+        if self.point_depth.is_some_and(|depth| !(1..=MAX_POINT_DEPTH).contains(&depth)) {
+            return Err(SceneError::Setting(format!("a resolution of voxels is not within 1 to {MAX_POINT_DEPTH}")));
         }
         if self.reflection_depth > MAX_REFLECTION_DEPTH {
             return Err(SceneError::Limit { what: "reflections in a chain", limit: u64::from(MAX_REFLECTION_DEPTH) });

@@ -4,6 +4,7 @@ use super::argument::Bound;
 use super::builder::{Builder, value};
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
+use crate::octree::MAX_POINT_DEPTH;
 use crate::picture::MAX_PIXELS;
 use crate::scene::{Camera, Lens, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel, Shape};
 use glam::{DMat3, DMat4, DVec2, DVec3};
@@ -335,6 +336,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 Is("a twentieth of the scene's diagonal"),
                 "the largest over which caught light is spread, scene units",
             ),
+            parameter(
+                "voxels",
+                Kind::Integer(0, MAX_POINT_DEPTH as i64),
+                Is("0: none"),
+                "as the paper has it, 2 to this power voxels are along the scene, and rays meet a point in each that stands for its surface: an approximation to about a voxel",
+            ),
             parameter("on", Kind::Flag, Is("true"), "whether it does; without it, --renderer two-way still may"),
         ],
         example: "two_way(#{ photons: 500000 });",
@@ -343,6 +350,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
             settings.two_way = bound.flag("on").unwrap_or(true);
             settings.photons = bound.integer("photons").and_then(|i| u32::try_from(i).ok()).unwrap_or(settings.photons);
             settings.photon_radius = bound.number("radius").filter(|radius| *radius > 0.0);
+            settings.point_depth =
+                bound.integer("voxels").and_then(|i| u32::try_from(i).ok()).filter(|depth| *depth > 0);
             Ok(Dynamic::UNIT)
         },
     },

@@ -6,6 +6,7 @@ mod files;
 mod hits;
 mod instructions;
 mod neighbours;
+mod points;
 mod sides;
 mod structure;
 mod tightness;

@@ -221,14 +221,34 @@ fn a_closed_dark_room_stays_dark_whatever_shines_outside() {
     let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
     (camera.from, camera.at, camera.up) = (DVec3::new(0.0, 1.5, 0.0), DVec3::ZERO, DVec3::Z);
     camera.field_of_view = 120.0;
-    for (from, at) in [(1.9, 0.0), (0.3, 1.99)] {
-        (camera.from.y, camera.at.y) = (from, at);
+    // Also where points stand for walls.
+    for (from, at, point_depth) in [(1.9, 0.0, None), (0.3, 1.99, None), (1.9, 0.0, Some(7))] {
+        (camera.from.y, camera.at.y, scene.settings.point_depth) = (from, at, point_depth);
         let rendering = two_way(&scene, Some(View::Camera(camera)), 2);
         assert!(rendering.picture.pixels().iter().all(|pixel| pixel.radiance == [0.0; 3]), "from {from}");
     }
     // From outside it is light enough.
+    scene.settings.point_depth = None;
     let outside = two_way(&scene, Some(from_above(5.0)), 2);
     assert!(outside.picture.pixels().iter().any(|pixel| pixel.radiance[0] > 1.0));
+}
+
+#[test]
+fn points_that_stand_for_surfaces_come_near_them_as_voxels_get_small() {
+    let mut scene = ball_and_mirror();
+    (scene.settings.samples, scene.settings.photons) = (16, 50_000);
+    let exact = two_way(&scene, None, 2);
+    let caught = |rendering: &Rendering| rendering.balance.map_or(0.0, |balance| balance.caught / balance.sent);
+    let off = [(6, 0.1), (8, 0.03)].map(|(depth, most)| {
+        scene.settings.point_depth = Some(depth);
+        let rendering = two_way(&scene, None, 2);
+        let off = caught(&rendering) / caught(&exact) - 1.0;
+        assert!(off.abs() < most, "{off} at {depth}");
+        difference(&rendering.picture, &exact.picture).expect("of one size").rmse
+    });
+    assert!(off[1] < 0.7 * off[0], "{off:?}");
+    let again = two_way(&scene, None, 1);
+    assert!(again.picture == two_way(&scene, None, 2).picture);
 }
 
 #[test]

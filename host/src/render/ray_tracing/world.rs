@@ -8,7 +8,7 @@ use crate::illumination::light::{Glow, Source};
 use crate::illumination::optics::{Among, Optics, Painting, Sighting};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
-use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft};
+use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
 use crate::render::element::Element;
@@ -29,6 +29,8 @@ pub(in crate::render) struct World<'a> {
     /// What moves while the shutter is open, each motion with an octree of its own.
     moving: Vec<Moving>,
     light_buffer: Option<LightBuffer>,
+    /// Points that stand for what stands still, if rays are to meet these.
+    points: Option<SurfacePoints>,
     /// Light that diffuse surfaces send each other, if it is known already.
     pub(super) indirect: Option<Radiosity>,
 }
@@ -124,7 +126,17 @@ impl<'a> World<'a> {
             let opaque = appearance.passing.then(|| triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
-        Ok(World { appearance, octree, triangle_of, moving, light_buffer, indirect: None })
+        let points = octree.as_ref().filter(|_| plan.needs(Stage::SurfacePoints)).map(|octree| {
+            let settings = &prepared.settings;
+            let surface = |triangle: u32| {
+                let triangle = triangle_of.get(triangle as usize).copied().unwrap_or(triangle);
+                let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
+                // Rays go on straight through panes, and would meet them again.
+                (!appearance.optics(object, material).is_passable()).then_some((object, material))
+            };
+            SurfacePoints::new(octree, settings.point_depth.unwrap_or(0), surface, settings.seed)
+        });
+        Ok(World { appearance, octree, triangle_of, moving, light_buffer, points, indirect: None })
     }
 
     /// Radiance of an element by light of other diffuse ones, as far as it is known already.
@@ -148,7 +160,10 @@ impl<'a> World<'a> {
 
     /// The first triangle in sight at a time, and where what it belongs to has moved to.
     fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Moved>)> {
-        let hit = self.octree.as_ref().and_then(|octree| octree.closest(ray, t_min, t_max));
+        let hit = match &self.points {
+            Some(points) => points.closest(ray, t_min, t_max),
+            None => self.octree.as_ref().and_then(|octree| octree.closest(ray, t_min, t_max)),
+        };
         let of =
             |triangle_of: &[u32], hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
         let mut first = hit.map(|hit| (hit, of(&self.triangle_of, &hit), None));
@@ -177,7 +192,11 @@ impl<'a> World<'a> {
         let Some((hit, triangle, moved)) = first else { return Met::Nothing };
         let prepared = self.appearance.prepared;
         // What moves is looked at as if it stood still, up to the element.
-        let ray = moved.map_or(sight.ray, |moved| moved.still(&sight.ray));
+        let ray = match (moved, &self.points) {
+            (Some(moved), _) => moved.still(&sight.ray),
+            (None, Some(_)) => through(&sight.ray, &hit, prepared.corners(triangle)),
+            (None, None) => sight.ray,
+        };
         let Some(mut element) = Element::new(prepared, triangle, &ray, &hit, self.appearance.curved) else {
             return Met::Nothing;
         };
@@ -209,6 +228,11 @@ impl<'a> World<'a> {
             along = along.map(|along| moved.vector(along));
         }
         Met::Element(Found { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
+    }
+
+    /// Where a ray met an element: where a point stands for the surface, not all rays come to one place.
+    pub(super) fn place(&self, found: &Found<'_>, ray: &Ray) -> DVec3 {
+        self.points.as_ref().map_or(found.element.position, |_| ray.at(found.t))
     }
 
     /// The light that an element emits, and how much of it counts.
@@ -336,6 +360,12 @@ impl<'a> World<'a> {
 /// How much of each corner is in a hit.
 fn weights(hit: &Hit) -> [f64; 3] {
     [1.0 - hit.u - hit.v, hit.u, hit.v]
+}
+
+/// A ray, moved aside so that it goes through the point of a hit.
+fn through(ray: &Ray, hit: &Hit, corners: [DVec3; 3]) -> Ray {
+    let [a, b, c] = weights(hit);
+    Ray { origin: corners[0] * a + corners[1] * b + corners[2] * c - ray.direction * hit.t, ..*ray }
 }
 
 /// The octree over the objects that a plan keeps and that stand still, and which triangles of the scene it holds, if not

@@ -2,6 +2,7 @@
 
 use super::setup::{Base, Setup, Technique};
 use crate::illumination::Light;
+use crate::octree::MAX_POINT_DEPTH;
 use crate::plan::Stage;
 use crate::render::ray_tracing::widest_disc;
 use crate::scene::MAX_PHOTONS;
@@ -26,6 +27,8 @@ const BEST_PATCHES: f64 = 0.5;
 /// How much more light is followed from one setting to the next, and how much smaller its largest disc is.
 const PHOTON_STEP: f64 = 4.0;
 const RADIUS_STEP: f64 = 2.0;
+/// The least resolution of voxels with points that is tried.
+const COARSEST_VOXELS: i32 = 6;
 
 const ALL: &[Technique] = &Technique::ALL;
 const RAYS: &[Technique] = &[Technique::RayTracing, Technique::TwoWay];
@@ -233,6 +236,24 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         best: |base, _| own_radius(base) / RADIUS_STEP,
         get: |setup| setup.settings.photon_radius.unwrap_or(0.0),
         set: |setup, value| setup.settings.photon_radius = Some(value),
+    },
+    RenderKnob {
+        name: "voxels",
+        sets: "2 to this power voxels are along the scene, a point in each stands for its surface, and rays meet these; 0 for none: rays meet surfaces",
+        techniques: LAMPS,
+        is_model: false,
+        remodels: false,
+        idle: |_| None,
+        values: |base| {
+            (0..base.options.settings as i32)
+                .map(|i| f64::from(i + COARSEST_VOXELS))
+                .take_while(|depth| *depth <= f64::from(MAX_POINT_DEPTH))
+                .chain([0.0])
+                .collect()
+        },
+        best: |_, _| 0.0,
+        get: |setup| setup.settings.point_depth.map_or(0.0, f64::from),
+        set: |setup, value| setup.settings.point_depth = Some(value as u32).filter(|depth| *depth > 0),
     },
     RenderKnob {
         name: "radiosity_error",

@@ -300,7 +300,7 @@ impl Flight<'_> {
         let towards = -leg.ray.direction.normalize();
         if leg.is_beam && optics.takes() {
             self.caught.push(Caught {
-                position: found.element.position,
+                position: self.world.place(found, &leg.ray),
                 towards,
                 flux: leg.flux,
                 side: side_of(self.surfaces.of(found.triangle), found.element.outside),
