@@ -13,17 +13,17 @@ use host::scene::{Prepared, Scene, View};
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-/// Photons for eight samples, samples of each pixel, and whether diffuse light is carried on.
-const SETTINGS: [(u32, u32, bool); 9] = [
-    (50_000, 1, false),
-    (100_000, 2, false),
-    (200_000, 4, false),
-    (50_000, 4, true),
-    (100_000, 4, true),
-    (100_000, 16, true),
-    (100_000, 64, true),
-    (100_000, 256, true),
-    (400_000, 256, true),
+/// Photons for eight samples, samples of each pixel, points of the lamp for each, and whether diffuse light is carried on.
+const SETTINGS: [(u32, u32, u32, bool); 9] = [
+    (50_000, 1, 1, false),
+    (200_000, 4, 1, false),
+    (50_000, 1, 8, true),
+    (80_000, 1, 8, true),
+    (100_000, 4, 4, true),
+    (100_000, 16, 1, true),
+    (100_000, 64, 1, true),
+    (100_000, 256, 1, true),
+    (400_000, 256, 1, true),
 ];
 /// Views, and degrees from one to the next round the ball.
 const VIEWS: u32 = 10;
@@ -35,32 +35,33 @@ fn main() {
     let mut scene = host::script::load("caustic", &[]).expect("a scene that ships").scene;
     let (side, most) = if is_bench { (256, 2048) } else { (24, 64) };
     (scene.settings.width, scene.settings.height) = (side, side);
-    let with = |photons: u32, samples: u32, carried: bool, seed: u64| {
+    let with = |(photons, samples, points, carried): (u32, u32, u32, bool), seed: u64| {
         let mut scene = scene.clone();
         let settings = &mut scene.settings;
-        (settings.photons, settings.samples, settings.interreflection) = (photons, samples, carried);
-        settings.seed = seed;
+        (settings.photons, settings.samples, settings.light_samples) = (photons, samples, points);
+        (settings.interreflection, settings.seed) = (carried, seed);
         scene
     };
-    let reference = [11, 12].map(|seed| timed(&with(200_000, most / 2, true, seed), 2).0);
+    let reference = [11, 12].map(|seed| timed(&with((200_000, most / 2, 1, true), seed), 2).0);
     let errors: Vec<(f64, f64)> = SETTINGS
         .iter()
-        .filter(|(_, samples, _)| is_bench || *samples <= 4)
-        .map(|(photons, samples, carried)| {
-            let (rendering, seconds) = timed(&with(*photons, *samples, *carried, 1), 1);
+        .filter(|(_, samples, ..)| is_bench || *samples <= 4)
+        .map(|setting| {
+            let (rendering, seconds) = timed(&with(*setting, 1), 1);
             (error(&rendering, &reference), seconds)
         })
         .collect();
     let own = 0.25 * error(&reference[0], &[reference[1].clone(), reference[1].clone()]);
     assert!(errors[3].0 < errors[0].0, "more samples do not help: {errors:?}");
-    views(&with(if is_bench { 2_000_000 } else { 5_000 }, 2, false, 1), is_bench);
+    views(&with((if is_bench { 2_000_000 } else { 5_000 }, 2, 1, false), 1), is_bench);
     println!("proved: flux is found again, the error falls, and views do not depend on each other");
     if !is_bench {
         return;
     }
-    println!("\n{:>9} {:>8} {:>8} {:>10} {:>14}", "photons", "samples", "carried", "seconds", "relative MSE");
-    for ((photons, samples, carried), (error, seconds)) in SETTINGS.iter().zip(&errors) {
-        println!("{photons:>9} {samples:>8} {carried:>8} {seconds:>10.2} {error:>14.2e}");
+    let columns = ["photons", "samples", "points", "carried"].map(|name| format!("{name:>8}")).join(" ");
+    println!("\n{columns} {:>10} {:>14}", "seconds", "relative MSE");
+    for ((photons, samples, points, carried), (error, seconds)) in SETTINGS.iter().zip(&errors) {
+        println!("{photons:>8} {samples:>8} {points:>8} {carried:>8} {seconds:>10.2} {error:>14.2e}");
     }
     println!("the reference itself: {own:.1e}");
 }

@@ -28,8 +28,8 @@ SIDE = 256
 FROM, AT, FIELD = np.array([1.5, 5, 6]), np.array([-0.4, 0.5, 0]), 38
 CENTER, RADIUS = np.array([0, 1.2, 0]), 1.0
 POWER, LAMP = 400, 0.2
-# Ways of light and samples of each pixel.
-SETTINGS = [(50_000, 4), (200_000, 4), (200_000, 16), (800_000, 16), (200_000, 64)]
+# Ways of light, samples of each pixel, and points of the lamp that each of them looks at.
+SETTINGS = [(50_000, 1, 8), (80_000, 1, 8), (200_000, 4, 4), (200_000, 16, 1), (800_000, 16, 1), (200_000, 64, 1)]
 # Of Mitsuba, for each pixel.
 PARTICLES = [4, 16, 64]
 
@@ -91,12 +91,12 @@ def beside_the_ball():
     return on_plane & (distance > 1.03 * RADIUS)
 
 
-def peris(program, photons, samples, everything):
+def peris(program, photons, samples, points, everything):
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "a.exr")
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run([program, "render", SCENE, "-o", path, "--renderer", "two-way", "--samples", str(samples),
-                        "--width", str(SIDE), "--height", str(SIDE), "-D", f"photons={photons}",
+                        "--width", str(SIDE), "--height", str(SIDE), "-D", f"photons={photons}", "-D", f"points={points}",
                         "-D", f"interreflection={'true' if everything else 'false'}"],
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -126,9 +126,9 @@ def main():
         errors.append((error, ratio))
 
     for everything in (True, False):
-        for photons, samples in SETTINGS:
-            name = f"{photons} ways, {samples} samples" + ("" if everything else ", one bounce")
-            tell(name, peris(arguments.peris, photons, samples, everything))
+        for photons, samples, points in SETTINGS:
+            name = f"{photons} ways, {samples} x {points} samples" + ("" if everything else ", one bounce")
+            tell(name, peris(arguments.peris, photons, samples, points, everything))
     best = len(SETTINGS) - 1
     for count in PARTICLES:
         tell(f"Mitsuba, {count} particles a pixel", particles(loaded, count, 7_000_003 * count))

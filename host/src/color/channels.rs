@@ -72,8 +72,11 @@ macro_rules! lane_by_lane {
             type Output = Channels;
 
             #[inline]
-            fn $method(self, other: Channels) -> Channels {
-                Channels(std::array::from_fn(|i| self.0[i] $operator other.0[i]))
+            fn $method(mut self, other: Channels) -> Channels {
+                for (lane, other) in self.0.iter_mut().zip(other.0) {
+                    *lane = *lane $operator other;
+                }
+                self
             }
         }
     };

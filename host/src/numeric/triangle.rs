@@ -103,9 +103,9 @@ impl Shear {
     ///
     /// Corners and edges belong to the triangle. A triangle that the ray sees exactly edge-on, and one without
     /// area, is not met: in a closed surface its neighbours are.
-    #[inline]
-    pub fn crossing(&self, corners: [DVec3; 3]) -> Option<Crossing> {
-        let [a, b, c] = corners.map(|p| self.place(p));
+    #[inline(always)]
+    pub fn crossing(&self, [a, b, c]: [DVec3; 3]) -> Option<Crossing> {
+        let (a, b, c) = (self.place(a), self.place(b), self.place(c));
         let first = cross_sign([c[0], c[1]], [b[0], b[1]]);
         let second = cross_sign([a[0], a[1]], [c[0], c[1]]);
         if (first < 0.0 && second > 0.0) || (first > 0.0 && second < 0.0) {

@@ -319,6 +319,12 @@ impl Octree {
         }
     }
 
+    #[inline(always)]
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let [a, b, c] = self.triangles[triangle as usize];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
+    }
+
     fn walked(&self, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> (Option<Hit>, WalkCount) {
         let search = Search::new(self, ray, t_min, t_max, any).map(|mut search| {
             search.walk();

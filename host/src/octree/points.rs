@@ -38,7 +38,7 @@ pub struct Around {
 
 impl Points {
     /// Points that are looked at together.
-    pub const BLOCK: usize = 8;
+    const BLOCK: usize = 8;
 
     /// Sorts points; the number of each among those given comes beside, in the new order.
     ///
@@ -121,19 +121,74 @@ impl Points {
         }
     }
 
+    /// Gives the points around a place that are within a flat disc there: the number of each, and the square of its
+    /// distance along the disc, sides of the cube.
+    ///
+    /// - `normal`: of the disc, unit length. `squares`: of its radius, and of how far above and below a point may be, sides
+    ///   of the cube.
+    pub fn within(&self, around: &Around, place: DVec3, normal: DVec3, squares: [f32; 2], give: impl FnMut(u32, f32)) {
+        let (local, normal) = (self.local(place), normal.as_vec3().to_array());
+        #[cfg(target_arch = "x86_64")]
+        {
+            // Products are not rounded together with sums: the result is the same on every processor.
+            #[target_feature(enable = "avx2")]
+            fn within_wide(
+                points: &Points,
+                around: &Around,
+                places: [[f32; 3]; 2],
+                squares: [f32; 2],
+                give: impl FnMut(u32, f32),
+            ) {
+                points.within_by_blocks(around, places, squares, give);
+            }
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: the processor has what the function is compiled for.
+                return unsafe { within_wide(self, around, [local, normal], squares, give) };
+            }
+        }
+        self.within_by_blocks(around, [local, normal], squares, give);
+    }
+
+    #[inline(always)]
+    fn within_by_blocks(
+        &self,
+        around: &Around,
+        [local, normal]: [[f32; 3]; 2],
+        [flat, high]: [f32; 2],
+        mut give: impl FnMut(u32, f32),
+    ) {
+        for run in &around.runs {
+            for first in run.clone().step_by(Points::BLOCK) {
+                let (mut squares, mut heights) = ([0.0_f32; Points::BLOCK], [0.0_f32; Points::BLOCK]);
+                for axis in 0..3 {
+                    let along = &self.positions[axis][first as usize..first as usize + Points::BLOCK];
+                    for k in 0..Points::BLOCK {
+                        let offset = along[k] - local[axis];
+                        squares[k] += offset * offset;
+                        heights[k] += offset * normal[axis];
+                    }
+                }
+                let mut near = 0_u32;
+                for k in 0..Points::BLOCK {
+                    heights[k] *= heights[k];
+                    squares[k] -= heights[k];
+                    near |= u32::from((squares[k] < flat) & (heights[k] <= high)) << k;
+                }
+                // What lies beyond the run is of another.
+                near &= u32::MAX >> (32 - (run.end - first).min(Points::BLOCK as u32));
+                while near != 0 {
+                    let k = near.trailing_zeros();
+                    give(first + k, squares[k as usize]);
+                    near &= near - 1;
+                }
+            }
+        }
+    }
+
     /// The offset of a point from a place, in sides of the cube; the place in local coordinates.
     #[inline]
     pub fn local_offset(&self, local: [f32; 3], place: usize) -> [f32; 3] {
         [0, 1, 2].map(|axis| self.positions[axis][place] - local[axis])
-    }
-
-    /// The same of a block of points, for each axis; beyond the last point there are none.
-    #[inline]
-    pub fn local_offsets(&self, local: [f32; 3], first: usize) -> [[f32; Points::BLOCK]; 3] {
-        [0, 1, 2].map(|axis| {
-            let along = &self.positions[axis][first..first + Points::BLOCK];
-            std::array::from_fn(|k| along[k] - local[axis])
-        })
     }
 
     /// Local coordinates of a place.
@@ -157,6 +212,9 @@ impl Points {
         let mark = code & code.wrapping_neg();
         let (first, last) = (code - mark, (code - mark) | (mark - 1) | mark);
         let [from, to] = [first, last].map(|code| (code >> BEHIND) as usize);
+        if level <= TABLE_LEVEL {
+            return self.table[from]..self.table[to + 1];
+        }
         let found = |near: usize, is_before: &dyn Fn(u64) -> bool| {
             let (start, end) = (self.table[near] as usize, self.table[near + 1] as usize);
             (start + self.codes[start..end].partition_point(|code| is_before(*code))) as u32
@@ -190,11 +248,14 @@ mod tests {
                 let reach = around.reach * 0.9999;
                 let near = |place: usize| {
                     let offset = points.local_offset(local, place).map(f64::from);
-                    let block = points.local_offsets(local, place).map(|along| f64::from(along[0]));
-                    assert_eq!(offset, block);
                     DVec3::from_array(offset).length() * points.side() < reach
                 };
                 let found = runs.filter(|place| near(*place as usize)).count();
+                // All of them are in a plane.
+                let mut within = 0;
+                let square = (reach / points.side()).powi(2) as f32;
+                points.within(&around, *centre, DVec3::Z, [square, square], |_, _| within += 1);
+                assert!(within >= found && within < found + 3, "{within}, not {found}");
                 let expected = (0..points.len()).filter(|place| near(*place)).count();
                 assert_eq!(found, expected, "{radius} {most}");
             }

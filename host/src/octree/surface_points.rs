@@ -94,7 +94,7 @@ impl SurfacePoints {
         let mut search = Search::new(&self.octree, ray, t_min, t_max, false)?;
         search.walk_with(|search, leaf, [enter, exit]| match self.points[leaf] {
             Some(kept) if enter > CLEAR * self.side => {
-                let [a, b, c] = self.octree.triangles[kept.triangle as usize].map(|i| self.octree.vertices[i as usize]);
+                let [a, b, c] = self.octree.corners(kept.triangle);
                 let normal = (b - a).cross(c - a);
                 let t = (a - ray.origin).dot(normal) / ray.direction.dot(normal);
                 let along = search.frame.along(t);

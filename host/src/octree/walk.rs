@@ -75,18 +75,17 @@ impl Search<'_> {
     /// The hit of a triangle, decided in double precision.
     #[inline(always)]
     pub(super) fn crossed(&self, triangle: u32) -> Option<Hit> {
-        let corners = self.octree.triangles[triangle as usize].map(|i| self.octree.vertices[i as usize]);
-        let crossing =
-            self.shear.crossing(corners).filter(|crossing| crossing.t > self.t_min && crossing.t < self.t_max)?;
+        let crossing = self
+            .shear
+            .crossing(self.octree.corners(triangle))
+            .filter(|crossing| crossing.t > self.t_min && crossing.t < self.t_max)?;
         Some(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
     }
 
     /// Decides in double precision whether a triangle is hit nearer than any before.
     #[inline(always)]
     pub(super) fn decide(&mut self, triangle: u32) -> bool {
-        let octree = self.octree;
-        let corners = octree.triangles[triangle as usize].map(|i| octree.vertices[i as usize]);
-        let Some(crossing) = self.shear.crossing(corners) else { return false };
+        let Some(crossing) = self.shear.crossing(self.octree.corners(triangle)) else { return false };
         self.offer(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
     }
 

@@ -40,15 +40,24 @@ fn interface(sighting: &Sighting, lane: usize) -> Option<Dielectric> {
     Dielectric::new(sighting.side.before.0[lane], sighting.side.behind.0[lane]).ok()
 }
 
+/// A value for each lane, found once where all have the same indices.
+fn by_lane(sighting: &Sighting, value: impl Fn(usize) -> f64) -> Channels {
+    let [before, behind] = [sighting.side.before.0, sighting.side.behind.0];
+    match before == [before[0]; LANES] && behind == [behind[0]; LANES] {
+        true => Channels::splat(value(0)),
+        false => Channels(std::array::from_fn(value)),
+    }
+}
+
 /// What the lanes reflect at a facet.
 fn reflected(sighting: &Sighting, cosine: f64) -> Channels {
-    Channels(std::array::from_fn(|lane| interface(sighting, lane).map_or(0.0, |s| s.reflectance(cosine).mean())))
+    by_lane(sighting, |lane| interface(sighting, lane).map_or(0.0, |s| s.reflectance(cosine).mean()))
 }
 
 /// By how much radiance falls as it leaves what is behind: it grows by the square of the index on its way in.
 fn thinned(sighting: &Sighting) -> Channels {
     let side = &sighting.side;
-    Channels(std::array::from_fn(|lane| (side.before.0[lane] / side.behind.0[lane]).powi(2)))
+    by_lane(sighting, |lane| (side.before.0[lane] / side.behind.0[lane]).powi(2))
 }
 
 impl Smooth {
@@ -57,9 +66,9 @@ impl Smooth {
         let view = sighting.view;
         let fraction = reflected(sighting, view.z);
         let reflection = Onward::single(DVec3::new(-view.x, -view.y, view.z), fraction);
-        let through = Channels(std::array::from_fn(|lane| {
+        let through = by_lane(sighting, |lane| {
             interface(sighting, lane).map_or(0.0, |surface| surface.transmittance(view.z).mean())
-        }));
+        });
         let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction =
             refracted.filter(|light| light.z < 0.0).map(|light| Onward::single(light, through * thinned(sighting)));
@@ -178,7 +187,7 @@ impl Rough {
             };
             if value.is_finite() { value } else { 0.0 }
         };
-        Channels(std::array::from_fn::<f64, LANES, _>(of_lane))
+        by_lane(sighting, of_lane)
     }
 }
 

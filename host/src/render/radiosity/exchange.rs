@@ -207,3 +207,16 @@ impl<'a> Exchange<'a> {
         (0..self.leaves.len()).map(goal).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_brought_near_their_goals_but_to_no_more_than_all_light() {
+        assert_eq!(within(0.9, 1.0, 1.0), 0.9);
+        assert_eq!((within(0.1, 1.0, 1.0), within(0.9, 0.1, 1.0)), (0.5, 0.2));
+        // The row of a sliver may be many times too great.
+        assert_eq!(within(0.9, 8.0, 1.0), 1.0);
+    }
+}

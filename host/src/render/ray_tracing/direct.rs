@@ -61,8 +61,7 @@ impl<'a> Direct<'a> {
             }
             let mut part = [Channels::ZERO; 2];
             for sample in 0..samples {
-                let purpose = (*number as u32).wrapping_mul(self.samples).wrapping_add(sample);
-                let uniform = draws.leg(*leg, Purpose::Lights, purpose);
+                let uniform = draws.of_several(*leg, Purpose::Lights, *number as u32, [sample, samples]);
                 if let Some(beam) =
                     source.beam(found.element.position, Some(found.element.normal), uniform, sighting.comb)
                 {

@@ -20,7 +20,7 @@ pub(super) enum Purpose {
     Direction,
     /// Points of lights: one purpose for each from here on.
     Lights,
-    /// When the sample is taken; beyond all that points of lights may have.
+    /// When the sample is taken; beyond all lights.
     Time = 1 << 31,
 }
 
@@ -60,6 +60,32 @@ impl Draws {
     ///
     /// - `leg`: its number, above 0, unlike that of all other legs. `more`: which of several for the same purpose.
     pub(super) fn leg(&self, leg: u32, purpose: Purpose, more: u32) -> [f64; 2] {
-        self.sequence.point(self.index, u64::from(leg) << 32 | (purpose as u64 + u64::from(more)))
+        self.of_several(leg, purpose, more, [0, 1])
+    }
+
+    /// One of several points for the same: they are as far from each other, and from those of other samples, as those of
+    /// as many samples are.
+    pub(super) fn of_several(&self, leg: u32, purpose: Purpose, more: u32, [which, of]: [u32; 2]) -> [f64; 2] {
+        let index = self.index.wrapping_mul(of).wrapping_add(which);
+        self.sequence.point(index, u64::from(leg) << 32 | (purpose as u64 + u64::from(more)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn several_points_of_a_sample_are_one_in_each_cell() {
+        for (index, of) in [(0, 16), (3, 16), (0, 1)] {
+            // Of one sample, and of sixteen that have one each.
+            let points = (0..16).map(|k| match of {
+                16 => Draws::new(5, 7, index, 4).of_several(2, Purpose::Lights, 1, [k, of]),
+                _ => Draws::new(5, 7, k, 16).leg(2, Purpose::Lights, 1),
+            });
+            let mut cells: Vec<u32> = points.map(|[x, y]| (x * 4.0) as u32 * 4 + (y * 4.0) as u32).collect();
+            cells.sort_unstable();
+            assert_eq!(cells, (0..16).collect::<Vec<u32>>(), "{index} {of}");
+        }
     }
 }

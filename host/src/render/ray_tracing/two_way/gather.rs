@@ -141,6 +141,18 @@ impl Sums {
     }
 }
 
+/// Light around a place that counts there.
+struct Gathered {
+    /// Its numbers, and the squares of its distances, sides of the cube.
+    near: Vec<(u32, f32)>,
+    /// The square of the radius of the disc in which it is, sides of the cube.
+    square: f64,
+    /// What makes an irradiance of a flux, times 1 − d²/r².
+    factor: f64,
+    /// Standard error of the irradiance over the irradiance.
+    error: f64,
+}
+
 /// A disc over which light is gathered.
 #[derive(Clone, Copy, Debug)]
 struct Disc {
@@ -185,54 +197,12 @@ impl Captured {
     /// - Returns the standard error of the irradiance by all of it, over the irradiance: what chance does as ways of light
     ///   arrive or not; 0 without light.
     pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) -> f64 {
-        let most = match surroundings.detail {
-            Detail::Fine => self.most,
-            Detail::Coarse => COARSE,
-            Detail::Smooth => SMOOTH * self.most,
-        };
-        let around = self.points.around(place.position, surroundings.reach, most);
-        if around.count == 0 {
-            return 0.0;
-        }
-        let side = self.points.side();
-        let reach = (around.reach / side) as f32;
-        let local = self.points.local(place.position);
-        let normal = place.outside.as_vec3().to_array();
-        let most = [reach * reach, (HEIGHT as f32 * reach).powi(2)];
-        let mut near: Vec<(u32, f32)> = Vec::with_capacity(around.count);
-        for run in &around.runs {
-            for first in run.clone().step_by(Points::BLOCK) {
-                let [x, y, z] = self.points.local_offsets(local, first as usize);
-                let heights: [f32; Points::BLOCK] =
-                    std::array::from_fn(|k| (x[k] * normal[0] + y[k] * normal[1] + z[k] * normal[2]).powi(2));
-                let squares: [f32; Points::BLOCK] =
-                    std::array::from_fn(|k| x[k] * x[k] + y[k] * y[k] + z[k] * z[k] - heights[k]);
-                let count = (run.end - first).min(Points::BLOCK as u32) as usize;
-                for (k, side) in self.sides[first as usize..first as usize + count].iter().enumerate() {
-                    if squares[k] < most[0] && heights[k] <= most[1] && *side == place.side {
-                        near.push((first + k as u32, squares[k]));
-                    }
-                }
-            }
-        }
-        if near.is_empty() {
-            return 0.0;
-        }
-        let (x, y) = place.outside.any_orthonormal_pair();
-        let flat = (around.reach, [x, y]);
-        let walls = self.keep_seen(&mut near, place, flat, surroundings);
-        let Some(Disc { square, part, error }) = self.disc(&near, &walls, place, flat, surroundings) else {
-            return 0.0;
-        };
-        // In scene units from here on.
-        let area = square * side * side;
-        let factor = FRAC_2_PI / (area * part);
-        for (number, distance) in near.iter().filter(|(_, distance)| f64::from(*distance) < square) {
-            let number = *number as usize;
-            let weight = factor * (1.0 - f64::from(*distance) / square);
-            let flux = &self.flux[number * self.lanes..(number + 1) * self.lanes];
+        let Some(Gathered { near, square, factor, error }) = self.gathered(place, surroundings) else { return 0.0 };
+        for (number, distance) in near {
+            let number = number as usize;
+            let weight = factor * (1.0 - f64::from(distance) / square);
             let mut irradiance = [0.0; LANES];
-            irradiance.iter_mut().zip(flux).for_each(|(lane, flux)| *lane = f64::from(*flux));
+            irradiance.iter_mut().zip(self.flux_of(number)).for_each(|(lane, flux)| *lane = f64::from(*flux));
             visit(&Arriving {
                 towards: DVec3::from_array(self.towards[number].map(f64::from)),
                 irradiance: Channels(irradiance) * weight,
@@ -241,6 +211,61 @@ impl Captured {
             });
         }
         error
+    }
+
+    /// The irradiance around a place, W/m²: by light that took narrow turns only, and by light that took broad ones among
+    /// them; and the standard error, as [`Captured::each`] has it. Wherever it comes from and whatever its comb is.
+    pub(super) fn irradiance(&self, place: &Place, surroundings: &Surroundings<'_>) -> ([Channels; 2], f64) {
+        let mut sums = [[0.0; LANES]; 2];
+        let Some(Gathered { near, square, factor, error }) = self.gathered(place, surroundings) else {
+            return (sums.map(Channels), 0.0);
+        };
+        for (number, distance) in near {
+            let number = number as usize;
+            let weight = 1.0 - f64::from(distance) / square;
+            let sum = &mut sums[usize::from(self.combs[number] & AGAIN != 0)];
+            sum.iter_mut().zip(self.flux_of(number)).for_each(|(lane, flux)| *lane += weight * f64::from(*flux));
+        }
+        (sums.map(|sum| Channels(sum) * factor), error)
+    }
+
+    /// Flux of each lane.
+    #[inline]
+    fn flux_of(&self, number: usize) -> &[f32] {
+        &self.flux[number * self.lanes..(number + 1) * self.lanes]
+    }
+
+    /// What counts around a place.
+    fn gathered(&self, place: &Place, surroundings: &Surroundings<'_>) -> Option<Gathered> {
+        let most = match surroundings.detail {
+            Detail::Fine => self.most,
+            Detail::Coarse => COARSE,
+            Detail::Smooth => SMOOTH * self.most,
+        };
+        let around = self.points.around(place.position, surroundings.reach, most);
+        if around.count == 0 {
+            return None;
+        }
+        let side = self.points.side();
+        let reach = (around.reach / side) as f32;
+        let squares = [reach * reach, (HEIGHT as f32 * reach).powi(2)];
+        let mut near: Vec<(u32, f32)> = Vec::with_capacity(around.count);
+        self.points.within(&around, place.position, place.outside, squares, |number, square| {
+            if self.sides[number as usize] == place.side {
+                near.push((number, square));
+            }
+        });
+        if near.is_empty() {
+            return None;
+        }
+        let (x, y) = place.outside.any_orthonormal_pair();
+        let flat = (around.reach, [x, y]);
+        let walls = self.keep_seen(&mut near, place, flat, surroundings);
+        let Disc { square, part, error } = self.disc(&near, &walls, place, flat, surroundings)?;
+        near.retain(|(_, distance)| f64::from(*distance) < square);
+        // In scene units.
+        let area = square * side * side;
+        Some(Gathered { near, square, factor: FRAC_2_PI / (area * part), error })
     }
 
     /// Leaves out light that arrived behind something that stands on the surface, as seen from the place; tells what stands

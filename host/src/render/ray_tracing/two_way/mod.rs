@@ -350,8 +350,8 @@ impl CaughtLight<'_> {
             surface,
             side: flight::side_of(surface, outside),
         };
-        let mut irradiance = Channels::ZERO;
-        self.capture.light.each(&place, &self.surroundings(Detail::Smooth), |light| irradiance += light.irradiance);
+        let ([narrow, broad], _) = self.capture.light.irradiance(&place, &self.surroundings(Detail::Smooth));
+        let irradiance = narrow + broad;
         if irradiance == Channels::ZERO {
             return irradiance;
         }
@@ -406,14 +406,17 @@ impl CaughtLight<'_> {
         let surroundings = self.surroundings(if coarse { Detail::Coarse } else { Detail::Fine });
         let frame = found.frame();
         let wavelengths = &appearance.wavelengths;
-        let even = found.optics.even_value(sighting);
+        let is_one_color = !wavelengths.is_spectral() || is_parted;
+        if let Some(value) = found.optics.even_value(sighting).filter(|_| is_one_color) {
+            let (irradiance, error) = self.capture.light.irradiance(&place, &surroundings);
+            return (irradiance.map(|irradiance| (passed * value * irradiance, DVec3::ZERO)), error);
+        }
         let mut found_light = [(Channels::ZERO, DVec3::ZERO); 2];
         let error = self.capture.light.each(&place, &surroundings, |arriving| {
             let light = frame.local(arriving.towards);
             let (sum, elsewhere) = &mut found_light[usize::from(arriving.is_again)];
-            if !wavelengths.is_spectral() || is_parted {
-                let value = even.unwrap_or_else(|| found.optics.spread_value(sighting, light));
-                *sum += value * arriving.irradiance;
+            if is_one_color {
+                *sum += found.optics.spread_value(sighting, light) * arriving.irradiance;
             } else {
                 // The light has other wavelengths than the ray.
                 let at = Sighting { comb: arriving.comb, ..*sighting };
