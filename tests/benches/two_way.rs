@@ -53,7 +53,7 @@ fn main() {
         .collect();
     let own = 0.25 * error(&reference[0], &[reference[1].clone(), reference[1].clone()]);
     assert!(errors[3].0 < errors[0].0, "more samples do not help: {errors:?}");
-    views(&with((if is_bench { 2_000_000 } else { 5_000 }, 2, 1, false), 1), is_bench);
+    views(&with((if is_bench { 4_000_000 } else { 5_000 }, 2, 1, false), 1), is_bench);
     println!("proved: flux is found again, the error falls, and views do not depend on each other");
     if !is_bench {
         return;
