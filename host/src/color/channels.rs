@@ -74,7 +74,7 @@ macro_rules! lane_by_lane {
             #[inline]
             fn $method(mut self, other: Channels) -> Channels {
                 for (lane, other) in self.0.iter_mut().zip(other.0) {
-                    *lane = *lane $operator other;
+                    *lane $operator other;
                 }
                 self
             }
@@ -82,9 +82,9 @@ macro_rules! lane_by_lane {
     };
 }
 
-lane_by_lane!(Add add +);
-lane_by_lane!(Sub sub -);
-lane_by_lane!(Mul mul *);
+lane_by_lane!(Add add +=);
+lane_by_lane!(Sub sub -=);
+lane_by_lane!(Mul mul *=);
 
 impl Mul<f64> for Channels {
     type Output = Channels;

@@ -7,7 +7,7 @@
 use super::super::world::World;
 use super::flight::Caught;
 use super::surfaces::Surfaces;
-use super::walls::{Flat, Wall, part_in_sight};
+use super::walls::{Flat, InSight, Wall};
 use crate::color::{Channels, LANES};
 use crate::numeric::ray::Ray;
 use crate::octree::{Points, Sorted};
@@ -333,10 +333,8 @@ impl Captured {
             rings[ring.min(RINGS - 1)].add(f64::from(self.strength[*number as usize]), f64::from(*square));
         }
         let borders = of.surfaces.around(place.surface, place.position, axes, reach);
-        let part = |square: f64| match borders.is_empty() && walls.is_empty() {
-            true => 1.0,
-            false => part_in_sight(walls, &borders, (square / whole).sqrt()),
-        };
+        let in_sight = (!(borders.is_empty() && walls.is_empty())).then(|| InSight::new(walls, &borders));
+        let part = |square: f64| in_sight.as_ref().map_or(1.0, |seen| seen.part((square / whole).sqrt()));
         let (mut sums, mut next) = (Sums::default(), 0);
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut best = None;

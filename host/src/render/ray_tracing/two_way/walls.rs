@@ -82,48 +82,80 @@ impl Wall {
     }
 }
 
-/// How much of a weighted disc is on the surface and in sight of its middle.
-///
-/// - `borders`: of the surface, which is on their left. `radius`: of the disc, where that within which walls are known has 1.
-///
-/// # Source
-/// Ours: as [`part_of_disc`], from angle to angle between the ends of all segments. Behind the first wall nothing counts,
-/// and a border gives or takes only what is before the wall.
-pub(super) fn part_in_sight(walls: &[Wall], borders: &[[DVec2; 2]], radius: f64) -> f64 {
-    if walls.is_empty() {
-        return part_of_disc(borders, radius);
-    }
-    let walls: Vec<[DVec2; 2]> = walls.iter().map(|wall| wall.ends.map(|end| end.as_dvec2())).collect();
-    let mut angles: Vec<f64> = walls.iter().chain(borders).flatten().map(|end| end.to_angle()).collect();
-    // Which one is nearer changes where two of them cross.
-    for (number, wall) in walls.iter().enumerate() {
-        let others = walls[number + 1..].iter().chain(borders);
-        angles.extend(others.filter_map(|other| crossing(*wall, *other)).map(DVec2::to_angle));
-    }
-    angles.sort_by(f64::total_cmp);
-    let first = angles[0] + TAU;
-    angles.push(first);
-    let mut missing = 0.0;
-    for pair in angles.windows(2).filter(|pair| pair[0] < pair[1]) {
-        let [from, to] = [pair[0], pair[1]].map(DVec2::from_angle);
-        let middle = DVec2::from_angle(0.5 * (pair[0] + pair[1]));
-        let distance = |segment: &[DVec2; 2]| along(*segment, middle);
-        let beyond = |segment: &[DVec2; 2]| {
-            let ends = [from, to].map(|way| way * along_line(*segment, way).clamp(0.0, FAR));
-            beyond(ends, radius).abs()
-        };
-        let seen = walls.iter().filter_map(|wall| Some((distance(wall)?, wall)));
-        let nearest = seen.min_by(|a, b| a.0.total_cmp(&b.0));
-        let (end, hidden) = nearest.map_or((f64::INFINITY, 0.0), |(end, wall)| (end, beyond(wall)));
-        missing += hidden;
-        for border in borders {
-            if distance(border).is_some_and(|distance| distance < end) {
-                let part = (beyond(border) - hidden).max(0.0);
-                missing += if border[0].perp_dot(border[1]) >= 0.0 { part } else { -part };
-            }
+/// What of discs around a place is on its surface and in sight of it, disc by disc.
+pub(super) struct InSight {
+    parts: Vec<Part>,
+    /// Of each part what is of borders before its wall; without walls all of them.
+    borders: Vec<[DVec2; 2]>,
+}
+
+/// What is seen of a disc between two angles where no end and no crossing is.
+struct Part {
+    /// The nearest wall.
+    wall: Option<[DVec2; 2]>,
+    /// Where the borders of the next part begin.
+    end: usize,
+}
+
+impl InSight {
+    /// - `borders`: of the surface, which is on their left; the unit is that of walls.
+    ///
+    /// # Source
+    /// Ours: as [`part_of_disc`], from angle to angle between the ends of all segments. Behind the first wall nothing
+    /// counts, and a border gives or takes only what is before the wall.
+    pub(super) fn new(walls: &[Wall], borders: &[[DVec2; 2]]) -> InSight {
+        if walls.is_empty() {
+            return InSight { parts: Vec::new(), borders: borders.to_vec() };
         }
+        let walls: Vec<[DVec2; 2]> = walls.iter().map(|wall| wall.ends.map(|end| end.as_dvec2())).collect();
+        let mut angles: Vec<f64> = walls.iter().chain(borders).flatten().map(|end| end.to_angle()).collect();
+        // Which one is nearer changes where two of them cross.
+        for (number, wall) in walls.iter().enumerate() {
+            let others = walls[number + 1..].iter().chain(borders);
+            angles.extend(others.filter_map(|other| crossing(*wall, *other)).map(DVec2::to_angle));
+        }
+        angles.sort_by(f64::total_cmp);
+        let first = angles[0] + TAU;
+        angles.push(first);
+        let mut seen = InSight { parts: Vec::with_capacity(angles.len()), borders: Vec::new() };
+        for pair in angles.windows(2).filter(|pair| pair[0] < pair[1]) {
+            let [from, to] = [pair[0], pair[1]].map(DVec2::from_angle);
+            let middle = DVec2::from_angle(0.5 * (pair[0] + pair[1]));
+            let distance = |segment: &[DVec2; 2]| along(*segment, middle);
+            let between = |[a, b]: [DVec2; 2]| {
+                let ends = if a.perp_dot(b) >= 0.0 { [from, to] } else { [to, from] };
+                ends.map(|way| way * along_line([a, b], way).clamp(0.0, FAR))
+            };
+            let nearest = walls.iter().filter_map(|wall| Some((distance(wall)?, wall)));
+            let nearest = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
+            let end = nearest.map_or(f64::INFINITY, |(end, _)| end);
+            let before = borders.iter().filter(|border| distance(border).is_some_and(|distance| distance < end));
+            seen.borders.extend(before.map(|border| between(*border)));
+            seen.parts.push(Part { wall: nearest.map(|(_, wall)| between(*wall)), end: seen.borders.len() });
+        }
+        seen
     }
-    (1.0 - missing / TAU).clamp(LEAST_PART, 1.0)
+
+    /// How much of a weighted disc is on the surface and in sight of its middle.
+    ///
+    /// - `radius`: where the disc within which walls are known has 1.
+    pub(super) fn part(&self, radius: f64) -> f64 {
+        if self.parts.is_empty() {
+            return part_of_disc(&self.borders, radius);
+        }
+        let mut missing = 0.0;
+        let mut first = 0;
+        for Part { wall, end } in &self.parts {
+            let hidden = wall.map_or(0.0, |wall| beyond(wall, radius).abs());
+            missing += hidden;
+            for border in &self.borders[first..*end] {
+                let beyond = beyond(*border, radius);
+                missing += (beyond.abs() - hidden).max(0.0).copysign(beyond);
+            }
+            first = *end;
+        }
+        (1.0 - missing / TAU).clamp(LEAST_PART, 1.0)
+    }
 }
 
 /// Where two segments cross, if they do.
@@ -210,7 +242,7 @@ mod tests {
                             part += if is_seen && is_on(p, has_line, has_hole) { weight } else { 0.0 };
                         }
                     }
-                    let found = part_in_sight(walls, &borders, radius);
+                    let found = InSight::new(walls, &borders).part(radius);
                     assert!(
                         (found - part / all).abs() < 4e-3,
                         "{radius} {has_line} {has_hole}: {found} {}",
