@@ -123,6 +123,41 @@ fn a_rod_guides_light_through_a_hundred_reflections() {
 }
 
 #[test]
+fn a_cut_diamond_gives_back_all_light_that_falls_on_its_table() {
+    // A brilliant in a dark room: table, and eight facets of crown, girdle and pavilion each.
+    let half = |normal: DVec3, at: DVec3| object(Shape::HalfSpace { normal, at }, DMat4::IDENTITY, glass(2.42));
+    let around = |tilt: f64, turn: f64, at: f64| {
+        let (sin, cos) = tilt.to_radians().sin_cos();
+        let facet = move |k: u32| {
+            let (z, x) = ((f64::from(k) + turn) * PI / 4.0).sin_cos();
+            half(DVec3::new(x * sin, cos, z * sin), DVec3::new(x * at, 0.0, z * at))
+        };
+        (0..8).map(facet)
+    };
+    let facets = around(34.5, 0.0, 1.0).chain(around(90.0, 0.5, 0.95)).chain(around(180.0 - 40.75, 0.0, 0.98));
+    let operands = std::iter::once(half(DVec3::Y, DVec3::Y * 0.3)).chain(facets).collect();
+    let stone = Composite { operation: Operation::Intersection, operands, nesting: 1 };
+    let stone = Object { material: None, ..object(Shape::Composite(Box::new(stone)), DMat4::IDENTITY, glass(2.42)) };
+    let mut objects = vec![stone];
+    for axis in DVec3::AXES {
+        let size = DVec3::splat(8.2) - axis * 8.1;
+        objects.extend([-1.0, 1.0].map(|sign| block(size, axis * sign * 4.05, diffuse(0.5))));
+    }
+    let light = Light::Spot {
+        at: DVec3::new(0.3, 3.0, 0.2),
+        direction: DVec3::new(-0.3, -2.7, -0.2),
+        intensity: Color::grey(1.0),
+        inner: 3.0,
+        outer: 4.0,
+    };
+    let mut scene = scene(objects, vec![light], 8);
+    scene.settings.samples = 1;
+    let (_, balance) = followed(scene, Some(from_above(3.9)), 20_000);
+    assert!(balance.straight == 0.0 && balance.escaped == 0.0, "{balance}");
+    assert!(balance.caught > 0.999 * balance.sent && balance.stopped < 1e-3 * balance.sent, "{balance}");
+}
+
+#[test]
 fn a_box_of_perfect_mirrors_keeps_all_light_for_the_ball_in_it() {
     let mut objects = vec![ball(0.3, DVec3::new(0.2, -0.3, 0.1), diffuse(0.7))];
     for axis in DVec3::AXES {
