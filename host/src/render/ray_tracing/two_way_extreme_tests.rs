@@ -135,7 +135,8 @@ fn a_cut_diamond_gives_back_all_light_that_falls_on_its_table() {
         (0..8).map(facet)
     };
     let facets = around(34.5, 0.0, 1.0).chain(around(90.0, 0.5, 0.95)).chain(around(180.0 - 40.75, 0.0, 0.98));
-    let operands = std::iter::once(half(DVec3::Y, DVec3::Y * 0.3)).chain(facets).collect();
+    let rough = block(DVec3::splat(3.0), DVec3::ZERO, glass(2.42));
+    let operands = [rough, half(DVec3::Y, DVec3::Y * 0.3)].into_iter().chain(facets).collect();
     let stone = Composite { operation: Operation::Intersection, operands, nesting: 1 };
     let stone = Object { material: None, ..object(Shape::Composite(Box::new(stone)), DMat4::IDENTITY, glass(2.42)) };
     let mut objects = vec![stone];
