@@ -72,6 +72,14 @@ impl Eye {
         Some(Eye { corner: [x_min, y_max], step, kind, part: 0.0 })
     }
 
+    /// Where a camera is; none for views along parallel lines and by matrices.
+    pub(super) fn place(&self) -> Option<DVec3> {
+        match self.kind {
+            Kind::Camera { from, .. } => Some(from),
+            Kind::Matrix { .. } => None,
+        }
+    }
+
     /// Gives rays cones that are a part of a pixel wide.
     pub(super) fn with_cones(self, part: f64) -> Eye {
         Eye { part, ..self }

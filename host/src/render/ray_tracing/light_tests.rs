@@ -95,6 +95,29 @@ fn glass_of_the_index_of_air_cannot_be_seen_and_absorbs_by_its_thickness() {
 }
 
 #[test]
+fn an_eye_in_water_sees_through_water_from_the_beginning() {
+    let block = |size: f64, at: DVec3, material: Material| {
+        let shape = Shape::Solid(Primitive::Box { size: DVec3::splat(size) });
+        object(shape, DMat4::from_translation(at), material)
+    };
+    let water = block(20.0, DVec3::ZERO, glass(1.33, 0.0, 0.3));
+    // Light that is the same everywhere on something that reflects all of it: radiance 1.
+    let white = block(2.0, DVec3::NEG_Z * 4.0, diffuse(1.0).into());
+    let ball = Shape::Solid(Primitive::Sphere { radius: 0.5 });
+    let clear = object(ball, DMat4::from_translation(DVec3::NEG_Z), glass(1.33, 0.0, 0.0));
+    let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
+    (camera.from, camera.at, camera.field_of_view) = (DVec3::ZERO, DVec3::NEG_Z, 0.1);
+    for (objects, way) in [(vec![water.clone(), white.clone()], 3.0), (vec![water, white, clear], 2.0)] {
+        let mut scene = scene(objects, vec![], 1);
+        scene.ambient = Bands::ONE;
+        (scene.settings.samples, scene.settings.reflection_depth) = (16, 4);
+        let found = red(&trace(&scene, Some(View::Camera(camera)), false, 1), 0, 0);
+        let expected = f64::exp(-0.3 * way);
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    }
+}
+
+#[test]
 fn rays_that_carry_spectra_show_the_colors_of_those_that_carry_bands() {
     // As many samples as there are combs of wavelengths: each has its turn once, and nothing else differs within a pixel.
     let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::Bands(Bands::new(3.0, 2.0, 1.0)) };

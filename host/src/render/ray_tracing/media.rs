@@ -1,8 +1,11 @@
 //! What a ray goes through: transparent bodies, one within another.
 
-use super::world::{Found, World};
+use super::world::{Found, Met, World};
 use crate::color::Channels;
 use crate::illumination::optics::Side;
+use crate::numeric::ray::Ray;
+use crate::render::eye::{Cone, Sight};
+use glam::DVec3;
 
 /// Most bodies within one another that a ray keeps in mind.
 const MOST: usize = 6;
@@ -15,6 +18,48 @@ pub(super) struct Media {
 }
 
 impl Media {
+    /// The bodies around a point in the middle of the time in which the shutter is open.
+    ///
+    /// What two rays from there that go opposite ways leave without having come into it: one would also leave an open surface.
+    pub(super) fn around(world: &World<'_>, point: DVec3) -> Media {
+        // Not along anything that a scene is likely to have.
+        let direction = DVec3::new(0.3517, 0.8731, 0.3379);
+        let [one, other] =
+            [direction, -direction].map(|direction| Media::left(world, Ray { origin: point, direction }));
+        let mut around = Media::default();
+        for body in one.bodies[..one.count].iter().filter(|(object, _)| other.holds(*object)) {
+            around.bodies[around.count] = *body;
+            around.count += 1;
+        }
+        around
+    }
+
+    /// The bodies that a ray leaves without having come into them.
+    fn left(world: &World<'_>, ray: Ray) -> Media {
+        let mut sight = Sight { ray, t_min: 0.0, t_max: f64::INFINITY, cone: Cone::default() };
+        let (mut left, mut entered) = (Media::default(), Media::default());
+        loop {
+            let met = world.meet(&sight, 0, 0.0);
+            let (t, found) = match met {
+                Met::Nothing => return left,
+                Met::Glow(_, glow) => (glow.t, None),
+                Met::Element(found) => (found.t, Some(found)),
+            };
+            sight.t_min = t.next_up();
+            if let Some(found) = found {
+                if found.element.outside || entered.holds(found.object) {
+                    entered.cross(&found);
+                } else {
+                    left.notice(&found);
+                }
+            }
+        }
+    }
+
+    fn holds(&self, object: u32) -> bool {
+        self.bodies[..self.count].iter().any(|(other, _)| *other == object)
+    }
+
     fn innermost(&self) -> Option<(u32, u32)> {
         self.count.checked_sub(1).map(|last| self.bodies[last])
     }
@@ -67,8 +112,8 @@ impl Media {
 
     /// Takes note of the body of an element that is met from inside, if light began there.
     pub(super) fn notice(&mut self, found: &Found<'_>) {
-        let is_known = || self.bodies[..self.count].iter().any(|(object, _)| *object == found.object);
-        if found.optics.interior.is_some() && !found.element.outside && self.count < MOST && !is_known() {
+        let is_inner = found.optics.interior.is_some() && !found.element.outside;
+        if is_inner && self.count < MOST && !self.holds(found.object) {
             // Around those that it is in.
             self.bodies.copy_within(0..self.count, 1);
             self.bodies[0] = (found.object, found.material);

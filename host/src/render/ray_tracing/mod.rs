@@ -50,6 +50,7 @@ use crate::scene::{Prepared, View};
 use draws::{Draws, Purpose};
 use explain::Log;
 use glam::DVec3;
+use media::Media;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -131,10 +132,11 @@ impl<'a> RayTracer<'a> {
         self.world.octree.as_ref()
     }
 
-    fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>) -> Tracer<'b> {
+    fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>, eye: &Eye) -> Tracer<'b> {
         let depth = self.world.appearance.prepared.settings.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
-        Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows), self.two_way.is_some(), caught)
+        let around = eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default();
+        Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows), (self.two_way.is_some(), caught), around)
     }
 
     fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
@@ -190,7 +192,7 @@ impl<'a> RayTracer<'a> {
                 _ => None,
             };
             balance = balance.or(caught.as_ref().map(CaughtLight::balance));
-            let tracer = self.tracer(caught.as_ref());
+            let tracer = self.tracer(caught.as_ref(), &eye);
             let counted: Vec<Option<RayCounts>> = pool.install(|| {
                 let rows = film.rows_mut().into_par_iter().enumerate();
                 rows.map(|(y, (row, mut classes))| {
@@ -332,7 +334,7 @@ impl<'a> RayTracer<'a> {
             let pass = index / SHARING;
             let two_way = self.two_way.as_ref();
             let caught = two_way.and_then(|two_way| two_way.caught(&self.world, pass, &Watch::NOBODY));
-            let tracer = self.tracer(caught.as_ref());
+            let tracer = self.tracer(caught.as_ref(), &eye);
             let (mut notes, mut work) = (Vec::new(), Work::default());
             let (sample, _, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;

@@ -150,6 +150,8 @@ pub(super) struct Tracer<'a> {
     caught: Option<&'a CaughtLight<'a>>,
     /// Whether there is light that is not followed from where it comes from.
     has_others: bool,
+    /// What the eye is in.
+    around: Media,
 }
 
 /// What becomes of light of a lamp that narrow lobes throw on a broad one.
@@ -165,13 +167,13 @@ enum Caustics {
 
 impl<'a> Tracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
-    /// - `catches`: whether light of lamps was followed; `caught` is what was caught.
+    /// - `catches`: whether light of lamps was followed; `caught` is what was caught. `around`: what the eye is in.
     pub(super) fn new(
         world: &'a World<'a>,
         depth: u32,
         shadows: bool,
-        catches: bool,
-        caught: Option<&'a CaughtLight<'a>>,
+        (catches, caught): (bool, Option<&'a CaughtLight<'a>>),
+        around: Media,
     ) -> Tracer<'a> {
         let settings = &world.appearance.prepared.settings;
         let caustics = match (catches, settings.caustics) {
@@ -183,7 +185,7 @@ impl<'a> Tracer<'a> {
         let has_others =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.is_caught());
         let direct = Direct::new(world, shadows, settings.light_samples.max(1));
-        Tracer { world, direct, depth, caustics, caught, has_others }
+        Tracer { world, direct, depth, caustics, caught, has_others, around }
     }
 
     /// The radiance that arrives along a line of sight.
@@ -205,7 +207,7 @@ impl<'a> Tracer<'a> {
             number: 1,
             density: None,
             normal: None,
-            media: Media::default(),
+            media: self.around,
             lane: None,
             for_lights: false,
             course: Course::Seen,
