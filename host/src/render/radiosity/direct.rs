@@ -29,47 +29,52 @@ pub(super) struct Lit {
     pub(super) extra: Channels,
 }
 
-/// The same at the three corners of an element, and in the middles of the edges from each to the next.
-pub(super) type Around = [Lit; 6];
+/// The same at the three corners of an element; of one that may be divided also in the middles of the edges from each to the
+/// next. Nothing for clusters.
+pub(super) type Around = Box<[Lit]>;
 
 /// Which of them are the corners of each quarter.
 const OF_QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]];
 
 /// What is known at the corners of quarters.
-pub(super) fn of_quarters(around: &Around) -> [[Lit; 3]; 4] {
-    OF_QUARTERS.map(|places| places.map(|place| around[place]))
+pub(super) fn of_quarters(around: &Around) -> Option<[[Lit; 3]; 4]> {
+    (around.len() == 6).then(|| OF_QUARTERS.map(|places| places.map(|place| around[place])))
 }
 
-/// The mean over an element, exact for what is quadratic.
-pub(super) fn mean(around: &Around) -> Lit {
-    let mean = |of: &dyn Fn(&Lit) -> Channels| (of(&around[3]) + of(&around[4]) + of(&around[5])) * (1.0 / 3.0);
-    Lit { direct: mean(&|lit| lit.direct), extra: mean(&|lit| lit.extra) }
+/// A sum of what is known at some places, times a weight.
+fn sum(of: &[Lit], weight: f64) -> Lit {
+    let sum = |part: fn(&Lit) -> Channels| of.iter().fold(Channels::ZERO, |sum, lit| sum + part(lit)) * weight;
+    Lit { direct: sum(|lit| lit.direct), extra: sum(|lit| lit.extra) }
 }
 
 /// By how much it is off in the middle of an edge if it is taken for linear, W/m² at the most.
 pub(super) fn bend(around: &Around) -> f64 {
-    let off = |i: usize| {
-        let of = |part: &dyn Fn(&Lit) -> Channels| {
-            let linear = (part(&around[i]) + part(&around[(i + 1) % 3])) * 0.5;
-            (part(&around[3 + i]) - linear).map(f64::abs).max()
+    let Some((corners, middles)) = around.split_at_checked(3) else { return 0.0 };
+    let off = |(i, middle): (usize, &Lit)| {
+        let of = |part: fn(&Lit) -> Channels| {
+            let linear = (part(&corners[i]) + part(&corners[(i + 1) % 3])) * 0.5;
+            (part(middle) - linear).map(f64::abs).max()
         };
-        of(&|lit| lit.direct).max(of(&|lit| lit.extra))
+        of(|lit| lit.direct).max(of(|lit| lit.extra))
     };
-    (0..3).map(off).fold(0.0, f64::max)
+    middles.iter().enumerate().map(off).fold(0.0, f64::max)
 }
 
 impl Sight<'_> {
-    /// What comes to the corners of an element and to the middles of its edges.
+    /// What comes to an element, and its mean, which is exact for what is quadratic over an element that may be divided or is
+    /// a part of one. A small patch is asked in its middle only.
     ///
-    /// - `corners`: what is known already.
+    /// - `corners`: what is known already. `may_be_divided`: whether it is longer than the finest.
     pub(super) fn lit(
         &self,
         (patch, node): (&Patch, &Node),
         corners: Option<[Lit; 3]>,
         (exitance, shadows): (Option<Exitance<'_>>, bool),
-    ) -> Around {
+        may_be_divided: bool,
+    ) -> (Around, Lit) {
         if node.is_dark {
-            return Around::default();
+            let places = if may_be_divided { 6 } else { 3 };
+            return (vec![Lit::default(); places].into(), Lit::default());
         }
         let lanes = self.world.appearance.wavelengths.lanes();
         let at = |point: DVec3| {
@@ -78,10 +83,18 @@ impl Sight<'_> {
             let extra = Channels(std::array::from_fn(|lane| if lane < lanes { extra.0[lane] } else { 0.0 }));
             Lit { direct: self.light_at(point, node.normal, shadows), extra }
         };
-        let [a, b, c] = corners.unwrap_or_else(|| node.corners.map(at));
-        let [p, q, r] = node.corners;
-        let [ab, bc, ca] = [0.5 * (p + q), 0.5 * (q + r), 0.5 * (r + p)].map(at);
-        [a, b, c, ab, bc, ca]
+        if may_be_divided {
+            let [a, b, c] = corners.unwrap_or_else(|| node.corners.map(at));
+            let [p, q, r] = node.corners;
+            let middles = [0.5 * (p + q), 0.5 * (q + r), 0.5 * (r + p)].map(at);
+            let [ab, bc, ca] = middles;
+            return (Box::new([a, b, c, ab, bc, ca]), sum(&middles, 1.0 / 3.0));
+        }
+        let middle = at(node.middle);
+        match corners {
+            Some(corners) => (Box::new(corners), sum(&[sum(&corners, 1.0 / 12.0), sum(&[middle], 0.75)], 1.0)),
+            None => (Box::new([middle; 3]), middle),
+        }
     }
 
     /// The irradiance at a point of an element.

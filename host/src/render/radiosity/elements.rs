@@ -1,6 +1,6 @@
 //! Elements with what they reflect, and the light that comes to them.
 
-use super::direct::{Around, Lit, bend, mean, of_quarters};
+use super::direct::{Around, Lit, bend, of_quarters};
 use super::hierarchy::{Hierarchy, Node, Patch};
 use super::sight::Sight;
 use crate::color::Channels;
@@ -28,8 +28,10 @@ pub(super) struct Elements<'a> {
     /// Radiosity from elsewhere, and all that a node sends, W/m².
     pub(super) extra: Vec<Channels>,
     pub(super) sent: Vec<Channels>,
-    /// Both at the corners of each node and in the middles of its edges.
+    /// Light of lights and radiosity from elsewhere at places of each node.
     pub(super) around: Vec<Around>,
+    /// Elements are divided that are twice as long or longer.
+    finest: f64,
     exitance: Option<Exitance<'a>>,
     shadows: bool,
 }
@@ -43,11 +45,13 @@ struct Known {
 
 impl<'a> Elements<'a> {
     /// Finds the light of all patches.
+    ///
+    /// - `finest`: a length; elements are divided that are twice as long or longer.
     pub(super) fn new(
         hierarchy: Hierarchy,
         sight: &Sight<'_>,
-        exitance: Option<Exitance<'a>>,
-        shadows: bool,
+        (exitance, shadows): (Option<Exitance<'a>>, bool),
+        finest: f64,
     ) -> Elements<'a> {
         let mut elements = Elements {
             hierarchy,
@@ -57,6 +61,7 @@ impl<'a> Elements<'a> {
             extra: Vec::new(),
             sent: Vec::new(),
             around: Vec::new(),
+            finest,
             exitance,
             shadows,
         };
@@ -68,11 +73,14 @@ impl<'a> Elements<'a> {
     /// Divides leaves, each once, and finds the light of what comes of them.
     pub(super) fn divide(&mut self, sight: &Sight<'_>, nodes: impl IntoIterator<Item = u32>) {
         let first = self.hierarchy.nodes.len();
-        let mut known = Vec::new();
+        let mut known: Vec<Option<[Lit; 3]>> = Vec::new();
         for node in nodes {
             if self.hierarchy.nodes[node as usize].is_leaf() {
                 self.hierarchy.divide(node);
-                known.extend(of_quarters(&self.around[node as usize]));
+                match of_quarters(&self.around[node as usize]) {
+                    Some(corners) => known.extend(corners.map(Some)),
+                    None => known.extend([None; 4]),
+                }
                 let indirect = self.indirect[node as usize];
                 self.indirect.extend([indirect; 4]);
             }
@@ -80,16 +88,20 @@ impl<'a> Elements<'a> {
         self.learn(sight, first, &known);
     }
 
+    /// Whether an element is long enough to be divided.
+    pub(super) fn may_divide(&self, node: &Node) -> bool {
+        node.longest_edge() >= 2.0 * self.finest
+    }
+
     /// Divides leaves over which light from elsewhere is farther from linear than a bound, and those that are larger than a
     /// length.
-    pub(super) fn divide_where_light_varies(&mut self, sight: &Sight<'_>, bound: f64, [finest, coarsest]: [f64; 2]) {
+    pub(super) fn divide_where_light_varies(&mut self, sight: &Sight<'_>, bound: f64, coarsest: f64) {
         let mut from = 0;
         loop {
             let nodes = &self.hierarchy.nodes;
             let varies = |node: &usize| {
-                let length = nodes[*node].longest_edge();
-                let is_divisible = nodes[*node].is_leaf() && !nodes[*node].is_dark && length >= 2.0 * finest;
-                is_divisible && (length > coarsest || bend(&self.around[*node]) > bound)
+                let is_divisible = nodes[*node].is_leaf() && !nodes[*node].is_dark && self.may_divide(&nodes[*node]);
+                is_divisible && (nodes[*node].longest_edge() > coarsest || bend(&self.around[*node]) > bound)
             };
             let divided: Vec<u32> = (from..nodes.len()).filter(varies).map(|node| node as u32).collect();
             from = nodes.len();
@@ -104,9 +116,9 @@ impl<'a> Elements<'a> {
     /// Finds what is not known of the nodes from one on.
     ///
     /// - `corners`: what is known at their corners; of none at first.
-    fn learn(&mut self, sight: &Sight<'_>, first: usize, corners: &[[Lit; 3]]) {
+    fn learn(&mut self, sight: &Sight<'_>, first: usize, corners: &[Option<[Lit; 3]>]) {
         let nodes = &self.hierarchy.nodes[first..];
-        let of = |(i, node): (usize, &Node)| self.known(sight, node, corners.get(i).copied());
+        let of = |(i, node): (usize, &Node)| self.known(sight, node, corners.get(i).copied().flatten());
         let known: Vec<Known> = nodes.par_iter().enumerate().map(of).collect();
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
         for (Known { reflectance, mean: Lit { direct, extra }, around }, place) in known.into_iter().zip(first..) {
@@ -123,8 +135,9 @@ impl<'a> Elements<'a> {
             return Known { reflectance: Channels::ZERO, mean: Lit::default(), around: Around::default() };
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
-        let around = sight.lit((patch, node), corners, (self.exitance, self.shadows));
-        Known { reflectance: reflectance(sight, patch, node), mean: mean(&around), around }
+        let divisible = self.may_divide(node);
+        let (around, mean) = sight.lit((patch, node), corners, (self.exitance, self.shadows), divisible);
+        Known { reflectance: reflectance(sight, patch, node), mean, around }
     }
 
     /// Brings what is known of leaves up to the root.

@@ -133,9 +133,9 @@ impl Radiosity {
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: Report::default() });
         }
-        let mut elements = Elements::new(hierarchy, &sight, exitance, shadows);
+        let mut elements = Elements::new(hierarchy, &sight, (exitance, shadows), finest);
         let mean = elements.mean_irradiance();
-        elements.divide_where_light_varies(&sight, BENT * settings.error * mean, lengths);
+        elements.divide_where_light_varies(&sight, BENT * settings.error * mean, lengths[1]);
         let mut links: Vec<Judged> = Vec::new();
         let mut report = Report { patches: elements.hierarchy.patches.len(), ..Report::default() };
         let mut leaves = Vec::new();

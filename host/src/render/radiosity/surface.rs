@@ -75,7 +75,7 @@ impl SurfaceLight {
         for ((leaf, numbers), _) in leaves.iter().zip(&shared.of).zip(is_dark).filter(|(_, is_dark)| !**is_dark) {
             let node = &hierarchy.nodes[*leaf as usize];
             corners[*leaf as usize] = *numbers;
-            for ((number, corner), lit) in numbers.iter().zip(node.corners).zip(&around[*leaf as usize]) {
+            for ((number, corner), lit) in numbers.iter().zip(node.corners).zip(around[*leaf as usize].iter()) {
                 // The nearer the middle of an element, the more it tells.
                 let weight = corner.distance(node.middle).recip();
                 let (sum, all) = &mut sums[*number as usize];

@@ -182,8 +182,8 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let world = World::new(&room, &plan).expect("a world");
     let sight = Sight::new(&world);
     let inside: Vec<Patch> = patches(&room, &plan, &sight).into_iter().filter(|patch| !patch.outside).collect();
-    let mut elements = Elements::new(Hierarchy::new(inside), &sight, None, true);
-    elements.divide_where_light_varies(&sight, f64::INFINITY, [0.1, 0.6]);
+    let mut elements = Elements::new(Hierarchy::new(inside), &sight, (None, true), 0.1);
+    elements.divide_where_light_varies(&sight, f64::INFINITY, 0.6);
     let mut links = Vec::new();
     let mut found = Vec::new();
     for error in [0.05, 0.002] {

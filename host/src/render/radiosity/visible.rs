@@ -12,6 +12,8 @@ use rayon::prelude::*;
 /// Directions in which a patch looks around for each of its parts, and at the most.
 const LOOKS: u32 = 16;
 const MOST_LOOKS: u32 = 1024;
+/// So many are asked at once whether they are lit.
+const ASKED: usize = 1024;
 
 /// Sets of what is joined.
 struct Joined(Vec<u32>);
@@ -37,10 +39,22 @@ impl Joined {
     }
 
     /// Whether each is joined to one that is lit.
-    fn alight(&mut self, is_lit: &[bool]) -> Vec<bool> {
+    ///
+    /// - `are_lit`: tells of some whether they are lit. It is asked no more than needs be.
+    fn alight(&mut self, are_lit: impl Fn(&[u32]) -> Vec<bool>) -> Vec<bool> {
         let mut root_lit = vec![false; self.0.len()];
-        for (at, _) in (0..).zip(is_lit).filter(|(_, is_lit)| **is_lit) {
-            root_lit[self.root(at) as usize] = true;
+        let mut next = 0;
+        while next < self.0.len() {
+            let mut asked = Vec::with_capacity(ASKED);
+            while next < self.0.len() && asked.len() < ASKED {
+                if !root_lit[self.root(next as u32) as usize] {
+                    asked.push(next as u32);
+                }
+                next += 1;
+            }
+            for (at, _) in asked.iter().zip(are_lit(&asked)).filter(|(_, is_lit)| *is_lit) {
+                root_lit[self.root(*at) as usize] = true;
+            }
         }
         (0..self.0.len() as u32).map(|at| root_lit[self.root(at) as usize]).collect()
     }
@@ -96,7 +110,6 @@ fn dark(
         };
         node.is_leaf() && is_any_lit(node.corners, coarsest, &at)
     };
-    let is_lit: Vec<bool> = nodes.par_iter().map(is_lit).collect();
     let patch_of = numbers(sight, &hierarchy.patches);
     let looked = |(number, node): (usize, &Node)| {
         if !node.is_leaf() {
@@ -116,7 +129,11 @@ fn dark(
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().for_each(|other| joined.join(number, *other));
     }
-    joined.alight(&is_lit).into_iter().map(|alight| !alight).collect()
+    joined
+        .alight(|some| some.par_iter().map(|node| is_lit(&nodes[*node as usize])).collect())
+        .iter()
+        .map(|alight| !alight)
+        .collect()
 }
 
 fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
@@ -178,8 +195,8 @@ pub(super) fn seen(
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
     }
-    let sends = |leaf: &u32| (elements.direct[*leaf as usize] + elements.extra[*leaf as usize]).max() > 0.0;
-    let alight = joined.alight(&leaves.iter().map(sends).collect::<Vec<bool>>());
+    let sends = |leaf: u32| (elements.direct[leaf as usize] + elements.extra[leaf as usize]).max() > 0.0;
+    let alight = joined.alight(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
     let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
     let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
     Looks { directions, part, row, is_dark }
