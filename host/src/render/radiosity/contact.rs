@@ -26,10 +26,19 @@ pub(super) struct Contacts {
 impl Contacts {
     /// The lines on some triangles.
     ///
-    /// - `takes_part`: whether a triangle is asked for.
-    pub(super) fn new(sight: &Sight<'_>, diagonal: f64, takes_part: impl Fn(u32) -> bool + Sync) -> Contacts {
+    /// Rods that are thinner than elements neither have nor make any: nothing larger than an element is in them or behind.
+    ///
+    /// - `finest`: a length. `takes_part`: whether a triangle is asked for.
+    pub(super) fn new(
+        sight: &Sight<'_>,
+        (diagonal, finest): (f64, f64),
+        takes_part: impl Fn(u32) -> bool + Sync,
+    ) -> Contacts {
         let prepared = sight.world.appearance.prepared;
         let tolerance = TOUCHING * diagonal;
+        let is_rod: Vec<bool> = prepared.objects.iter().map(|object| is_rod(&object.bounds, finest)).collect();
+        let is_of_rod = |triangle: u32| is_rod[prepared.object_of[triangle as usize] as usize];
+        let takes_part = |triangle: u32| takes_part(triangle) && !is_of_rod(triangle);
         let near = DVec3::splat(tolerance);
         let lines = |triangle: u32| {
             let (mut lines, mut creases) = (Vec::new(), Vec::new());
@@ -37,7 +46,7 @@ impl Contacts {
                 let own = prepared.corners(triangle);
                 let Bounds { min, max } = Bounds::of(own);
                 sight.world.each_near(Bounds { min: min - near, max: max + near }, |other| {
-                    if other != triangle {
+                    if other != triangle && !is_of_rod(other) {
                         let other = prepared.corners(other);
                         meeting(own, other, tolerance, |line| lines.push(line));
                         creases.extend(crease(own, other, tolerance));
@@ -92,6 +101,13 @@ impl Contacts {
         }
         cells.iter().flat_map(|cell| fan(cell)).collect()
     }
+}
+
+/// Whether what is in a box is thinner than a length in all directions but one.
+fn is_rod(bounds: &Bounds, finest: f64) -> bool {
+    let mut size = (bounds.max - bounds.min).to_array();
+    size.sort_by(f64::total_cmp);
+    size[1] < finest
 }
 
 /// Gives the lines in which a triangle meets another; all of its edges, if it lies in the plane.
@@ -258,6 +274,14 @@ mod tests {
             [at(3.0, 3.0, 0.0), at(3.5, 3.0, 0.0), at(3.0, 3.0, 3.0)],
         ];
         nothing.into_iter().for_each(|other| assert!(lines(other).is_empty(), "{other:?}"));
+    }
+
+    #[test]
+    fn rods_are_thin_in_all_directions_but_one() {
+        let size = |x: f64, y: f64, z: f64| Bounds { min: DVec3::ZERO, max: DVec3::new(x, y, z) };
+        assert!(is_rod(&size(6.0, 0.01, 0.02), 0.1) && is_rod(&size(0.01, 0.01, 0.01), 0.1));
+        // A sheet is none.
+        assert!(!is_rod(&size(6.0, 0.01, 6.0), 0.1));
     }
 
     #[test]

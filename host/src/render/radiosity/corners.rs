@@ -55,7 +55,8 @@ pub(super) struct Corners {
     like: Vec<f64>,
 }
 
-fn key(point: DVec3) -> [u64; 3] {
+/// The same for points that are the same.
+pub(super) fn key(point: DVec3) -> [u64; 3] {
     // Adding 0 turns -0 into 0.
     point.to_array().map(|x| (x + 0.0).to_bits())
 }
@@ -65,6 +66,10 @@ impl Corners {
         let mut corners = Corners::default();
         for leaf in leaves {
             let node = &hierarchy.nodes[*leaf as usize];
+            if node.is_face_cluster() {
+                corners.put_faces(hierarchy, *leaf);
+                continue;
+            }
             let triangle = hierarchy.patches[node.patch as usize].triangle;
             let like = if prepared.corner_normals(triangle).is_some() { CURVED } else { FLAT };
             let mut numbers = [NONE; 3];
@@ -81,7 +86,16 @@ impl Corners {
         corners
     }
 
-    fn find(&self, point: DVec3, normal: DVec3, like: f64) -> Option<u32> {
+    /// Where a face cluster looks out.
+    fn put_faces(&mut self, hierarchy: &Hierarchy, leaf: u32) {
+        let [at, normal] = hierarchy.central(leaf);
+        self.of.push([self.all.len() as u32; 3]);
+        self.like.push(f64::INFINITY);
+        self.all.push(Corner { leaf, middles: at, normals: normal, count: 1.0, at });
+    }
+
+    /// A corner at a place, with a normal that is like another.
+    pub(super) fn find(&self, point: DVec3, normal: DVec3, like: f64) -> Option<u32> {
         let there = self.at.get(&key(point))?;
         there.iter().find(|(other, _)| other.dot(normal) > like).map(|(_, number)| *number)
     }
@@ -101,7 +115,7 @@ impl Corners {
         let mut edges: Vec<(f64, [u32; 3])> = Vec::new();
         for ((leaf, numbers), like) in leaves.iter().zip(&self.of).zip(&self.like) {
             let node = &hierarchy.nodes[*leaf as usize];
-            for i in 0..3 {
+            for i in if node.is_cluster() { 0..0 } else { 0..3 } {
                 let j = (i + 1) % 3;
                 let ends = [(node.corners[i], numbers[i]), (node.corners[j], numbers[j])];
                 self.hang(ends, (node.normal, *like), &mut edges);

@@ -13,6 +13,9 @@ const SHORT: f64 = 1.0 - 1e-7;
 /// Points of a light with a size, and directions to a sky, that are asked for at the least.
 const LEAST_SAMPLES: u32 = 16;
 const LEAST_OF_SKY: u32 = 64;
+/// The same where a point is one of some that stand for an element together.
+const FEW_SAMPLES: u32 = 4;
+const FEW_OF_SKY: u32 = 16;
 
 /// More of them where some are hidden and some are not.
 const MORE: u32 = 4;
@@ -36,9 +39,18 @@ pub(super) type Around = Box<[Lit]>;
 /// Which of them are the corners of each quarter.
 const OF_QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]];
 
-/// What is known at the corners of quarters.
-pub(super) fn of_quarters(around: &Around) -> Option<[[Lit; 3]; 4]> {
-    (around.len() == 6).then(|| OF_QUARTERS.map(|places| places.map(|place| around[place])))
+/// What is known at the corners of the parts into which a node is divided.
+///
+/// - `sliver`: as [`Node::sliver`] has it.
+pub(super) fn of_parts(around: &Around, sliver: Option<usize>) -> Vec<Option<[Lit; 3]>> {
+    let of = |places: [usize; 3]| (around.len() == 6).then(|| places.map(|place| around[place]));
+    match sliver {
+        Some(edge) => {
+            let [a, b, c] = [0, 1, 2].map(|i| (edge + i) % 3);
+            vec![of([a, 3 + edge, c]), of([3 + edge, b, c])]
+        }
+        None => OF_QUARTERS.map(of).to_vec(),
+    }
 }
 
 /// A sum of what is known at some places, times a weight.
@@ -61,8 +73,8 @@ pub(super) fn bend(around: &Around) -> f64 {
 }
 
 impl Sight<'_> {
-    /// What comes to an element, and its mean, which is exact for what is quadratic over an element that may be divided or is
-    /// a part of one. A small patch is asked in its middle only.
+    /// What comes to an element, and its mean, which is exact for what is quadratic over an element that may be divided, and
+    /// for what is linear over a part of one. A small patch is asked in its middle only.
     ///
     /// - `corners`: what is known already. `may_be_divided`: whether it is longer than the finest.
     pub(super) fn lit(
@@ -76,12 +88,14 @@ impl Sight<'_> {
             let places = if may_be_divided { 6 } else { 3 };
             return (vec![Lit::default(); places].into(), Lit::default());
         }
-        let lanes = self.world.appearance.wavelengths.lanes();
         let at = |point: DVec3| {
             let point = point + (node.middle - point) * INWARDS;
-            let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
-            let extra = Channels(std::array::from_fn(|lane| if lane < lanes { extra.0[lane] } else { 0.0 }));
-            Lit { direct: self.light_at(point, node.normal, shadows), extra }
+            let extra = self.exitance((patch, point), exitance);
+            let direct = match may_be_divided {
+                true => self.light_at([point, node.normal], shadows),
+                false => self.light_roughly([point, node.normal], shadows, 0),
+            };
+            Lit { direct, extra }
         };
         if may_be_divided {
             let [a, b, c] = corners.unwrap_or_else(|| node.corners.map(at));
@@ -92,13 +106,39 @@ impl Sight<'_> {
         }
         let middle = at(node.middle);
         match corners {
-            Some(corners) => (Box::new(corners), sum(&[sum(&corners, 1.0 / 12.0), sum(&[middle], 0.75)], 1.0)),
+            Some(corners) => {
+                let [a, b, c] = corners;
+                (Box::new(corners), sum(&[a, b, c, middle], 0.25))
+            }
             None => (Box::new([middle; 3]), middle),
         }
     }
 
+    /// Exitance from elsewhere at a point of a patch, in the lanes that there are.
+    pub(super) fn exitance(&self, (patch, point): (&Patch, DVec3), exitance: Option<Exitance<'_>>) -> Channels {
+        let lanes = self.world.appearance.wavelengths.lanes();
+        let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
+        Channels(std::array::from_fn(|lane| if lane < lanes { extra.0[lane] } else { 0.0 }))
+    }
+
     /// The irradiance at a point of an element.
-    pub(super) fn light_at(&self, point: DVec3, normal: DVec3, shadows: bool) -> Channels {
+    pub(super) fn light_at(&self, place: [DVec3; 2], shadows: bool) -> Channels {
+        self.light_by(place, shadows, ([LEAST_SAMPLES, LEAST_OF_SKY], 0))
+    }
+
+    /// The same by few points of lights.
+    ///
+    /// - `turn`: which points, beside those of other turns.
+    pub(super) fn light_roughly(&self, place: [DVec3; 2], shadows: bool, turn: u32) -> Channels {
+        self.light_by(place, shadows, ([FEW_SAMPLES, FEW_OF_SKY], turn))
+    }
+
+    fn light_by(
+        &self,
+        [point, normal]: [DVec3; 2],
+        shadows: bool,
+        ([of_light, of_sky], turn): ([u32; 2], u32),
+    ) -> Channels {
         let appearance = &self.world.appearance;
         let combs = appearance.wavelengths.combs();
         let least = appearance.prepared.settings.light_samples;
@@ -106,8 +146,8 @@ impl Sight<'_> {
         for (index, (number, source)) in appearance.sources.iter().enumerate() {
             let mut samples = match source.is_sharp() {
                 true => 1,
-                false if source.is_sky() => least.max(LEAST_OF_SKY),
-                false => least.max(LEAST_SAMPLES),
+                false if source.is_sky() => least.max(of_sky),
+                false => least.max(of_light),
             };
             let most = if source.is_sharp() || source.is_sky() { samples } else { MORE * samples };
             let (mut asked, mut seen) = (0, 0);
@@ -115,8 +155,9 @@ impl Sight<'_> {
             let sequence = Sequence::new(0, *number as u64);
             let mut part = Channels::ZERO;
             let mut sample = 0;
+            let first = turn * most;
             while sample < samples {
-                let uniform = sequence.point(sample, 0);
+                let uniform = sequence.point(first + sample, 0);
                 sample += 1;
                 if sample == samples && seen > 0 && seen < asked {
                     samples = most;

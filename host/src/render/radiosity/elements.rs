@@ -1,7 +1,7 @@
 //! Elements with what they reflect, and the light that comes to them.
 
-use super::direct::{Around, Lit, bend, of_quarters};
-use super::hierarchy::{Hierarchy, Node, Patch};
+use super::direct::{Around, Lit, bend, of_parts};
+use super::hierarchy::{Hierarchy, Node, Patch, normal_and_area};
 use super::sight::Sight;
 use crate::color::Channels;
 use crate::illumination::optics::{Optics, Side, Sighting};
@@ -77,12 +77,10 @@ impl<'a> Elements<'a> {
         for node in nodes {
             if self.hierarchy.nodes[node as usize].is_leaf() {
                 self.hierarchy.divide(node);
-                match of_quarters(&self.around[node as usize]) {
-                    Some(corners) => known.extend(corners.map(Some)),
-                    None => known.extend([None; 4]),
-                }
+                let sliver = self.hierarchy.nodes[node as usize].sliver();
+                known.extend(of_parts(&self.around[node as usize], sliver));
                 let indirect = self.indirect[node as usize];
-                self.indirect.extend([indirect; 4]);
+                self.indirect.resize(self.hierarchy.nodes.len(), indirect);
             }
         }
         self.learn(sight, first, &known);
@@ -118,7 +116,10 @@ impl<'a> Elements<'a> {
     /// - `corners`: what is known at their corners; of none at first.
     fn learn(&mut self, sight: &Sight<'_>, first: usize, corners: &[Option<[Lit; 3]>]) {
         let nodes = &self.hierarchy.nodes[first..];
-        let of = |(i, node): (usize, &Node)| self.known(sight, node, corners.get(i).copied().flatten());
+        let of = |(i, node): (usize, &Node)| match node.is_face_cluster() {
+            true => self.known_of_faces(sight, (first + i) as u32),
+            false => self.known(sight, node, corners.get(i).copied().flatten()),
+        };
         let known: Vec<Known> = nodes.par_iter().enumerate().map(of).collect();
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
         for (Known { reflectance, mean: Lit { direct, extra }, around }, place) in known.into_iter().zip(first..) {
@@ -131,13 +132,35 @@ impl<'a> Elements<'a> {
     }
 
     fn known(&self, sight: &Sight<'_>, node: &Node, corners: Option<[Lit; 3]>) -> Known {
-        if node.is_cluster() {
+        if !node.is_leaf() || node.is_cluster() {
             return Known { reflectance: Channels::ZERO, mean: Lit::default(), around: Around::default() };
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
         let divisible = self.may_divide(node);
         let (around, mean) = sight.lit((patch, node), corners, (self.exitance, self.shadows), divisible);
-        Known { reflectance: reflectance(sight, patch, node), mean, around }
+        Known { reflectance: reflectance(sight, patch, (node.corners, node.middle)), mean, around }
+    }
+
+    /// What is known of a face cluster: light of lights at its points, all else by its triangles.
+    fn known_of_faces(&self, sight: &Sight<'_>, cluster: u32) -> Known {
+        let hierarchy = &self.hierarchy;
+        if hierarchy.nodes[cluster as usize].is_dark {
+            return Known { reflectance: Channels::ZERO, mean: Lit::default(), around: Around::default() };
+        }
+        let at = |(turn, place): (u32, [DVec3; 2])| sight.light_roughly(place, self.shadows, turn);
+        let points = hierarchy.points(cluster);
+        let direct = (0..).zip(points).map(at).fold(Channels::ZERO, |a, b| a + b) * (points.len() as f64).recip();
+        let (mut reflected, mut extra, mut all) = (Channels::ZERO, Channels::ZERO, 0.0);
+        for member in hierarchy.members(cluster) {
+            let patch = &hierarchy.patches[*member as usize];
+            let area = normal_and_area(patch.corners).1;
+            let middle = patch.corners.iter().sum::<DVec3>() / 3.0;
+            reflected += reflectance(sight, patch, (patch.corners, middle)) * area;
+            extra += sight.exitance((patch, middle), self.exitance) * area;
+            all += area;
+        }
+        let mean = Lit { direct, extra: extra * f64::recip(all) };
+        Known { reflectance: reflected * f64::recip(all), mean, around: Around::default() }
     }
 
     /// Brings what is known of leaves up to the root.
@@ -153,13 +176,12 @@ impl<'a> Elements<'a> {
 }
 
 /// The part of light that an element reflects diffusely, in the mean.
-fn reflectance(sight: &Sight<'_>, patch: &Patch, node: &Node) -> Channels {
+fn reflectance(sight: &Sight<'_>, patch: &Patch, ([a, b, c], middle): ([DVec3; 3], DVec3)) -> Channels {
     let appearance = &sight.world.appearance;
     let prepared = appearance.prepared;
     let triangle = patch.triangle;
     let optics = appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
-    let [a, b, c] = node.corners;
-    let weights = crate::numeric::triangle::weights(prepared.corners(triangle), node.middle);
+    let weights = crate::numeric::triangle::weights(prepared.corners(triangle), middle);
     // About the parallelogram of the area of the element.
     let sides = [(b - a) * 0.5f64.sqrt(), (c - a) * 0.5f64.sqrt()];
     let place = optics.is_textured().then(|| prepared.place(triangle, weights, sides));

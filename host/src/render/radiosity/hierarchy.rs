@@ -1,17 +1,27 @@
 //! The hierarchy that exchanges light: clusters of patches, patches, and elements into which patches are divided.
 //!
 //! A patch is one side of a triangle. Clusters hold patches that are near each other and face the same way, so that light
-//! that a cluster receives may be spread over all of it.
+//! that a cluster receives may be spread over all of it. A smooth piece of a surface of many small triangles is one
+//! element: a cluster that is not divided, a face cluster.
 
 use super::contact::Contacts;
+use super::corners::key;
 use super::form_factor::Convex;
+use super::pieces::Pieces;
 use crate::color::Channels;
 use crate::numeric::triangle;
 use glam::DVec3;
+use rustc_hash::FxHashMap as HashMap;
 use std::ops::{Add, Mul, Range};
 
 /// How much a difference of unit normals counts in clusters, in diagonals of the scene.
 const NORMALS: f64 = 0.35;
+/// A triangle is a sliver if its longest edge is so many times as long as the height on it.
+const SLIVER: f64 = 6.0;
+/// Patches of a face cluster at the least: light over fewer is smoother if each is an element.
+const FEWEST: usize = 4;
+/// The greatest angle of a normal of a face cluster to the mean one, radians.
+const FACING: f64 = 0.35;
 /// Points that stand for a node where visibility is asked for.
 pub(super) const POINTS: usize = 4;
 /// As many lines are cut along while an element may still be divided into four, and at the most.
@@ -59,7 +69,7 @@ pub(super) struct Node {
     pub(super) children: u32,
     /// Of which patch it is; [`NONE`] for a cluster.
     pub(super) patch: u32,
-    /// Whether its children are what lines made of it, and not its quarters.
+    /// Whether its children are halves, or what lines made of it, and not its quarters.
     pub(super) is_cut: bool,
     /// Whether no light can come to it.
     pub(super) is_dark: bool,
@@ -93,6 +103,11 @@ impl Node {
         self.children == 0
     }
 
+    /// Whether it is an element of many triangles.
+    pub(super) fn is_face_cluster(&self) -> bool {
+        self.is_cluster() && self.is_leaf()
+    }
+
     pub(super) fn children(&self) -> Range<usize> {
         self.child as usize..(self.child + self.children) as usize
     }
@@ -104,6 +119,23 @@ impl Node {
     pub(super) fn longest_edge(&self) -> f64 {
         let [a, b, c] = self.corners;
         a.distance(b).max(b.distance(c)).max(c.distance(a))
+    }
+
+    /// The longest edge, by the corner where it begins, if it is much longer than the triangle is wide: quarters would be
+    /// many and no less thin.
+    pub(super) fn sliver(&self) -> Option<usize> {
+        let length = |i: usize| self.corners[i].distance(self.corners[(i + 1) % 3]);
+        let longest = (1..3).fold(0, |best, i| if length(i) > length(best) { i } else { best });
+        (length(longest) * length(longest) > SLIVER * 2.0 * self.area).then_some(longest)
+    }
+
+    /// Both triangles that the middle of an edge makes.
+    ///
+    /// - `edge`: the corner where it begins.
+    fn halves(&self, edge: usize) -> [[DVec3; 3]; 2] {
+        let [a, b, c] = [0, 1, 2].map(|i| self.corners[(edge + i) % 3]);
+        let middle = 0.5 * (a + b);
+        [[a, middle, c], [middle, b, c]]
     }
 
     /// The four triangles that the middles of its edges make: at the corners, and the one in the middle.
@@ -130,13 +162,18 @@ pub(super) struct Hierarchy {
     /// Points and unit normals that stand for each cluster.
     cluster_points: Vec<[[DVec3; 2]; POINTS]>,
     pub(super) patches: Vec<Patch>,
-    /// The node of each patch.
+    /// The node of each patch: its own, or that of the face cluster of which it is.
     pub(super) node_of: Vec<u32>,
+    /// The patches, those of a cluster side by side, and for each node that is not a part of a patch which of them it has.
+    order: Vec<u32>,
+    ranges: Vec<Range<usize>>,
 }
 
 impl Hierarchy {
     /// Clusters over patches, each of which has an area.
-    pub(super) fn new(patches: Vec<Patch>) -> Hierarchy {
+    ///
+    /// - `finest`: the radius of face clusters, at the most.
+    pub(super) fn new(patches: Vec<Patch>, finest: f64) -> Hierarchy {
         let mut hierarchy = Hierarchy { node_of: vec![NONE; patches.len()], patches, ..Hierarchy::default() };
         if hierarchy.patches.is_empty() {
             return hierarchy;
@@ -159,22 +196,71 @@ impl Hierarchy {
                 ranges.push(range);
                 continue;
             }
+            let all = cluster(part, &own);
+            if part.len() >= FEWEST && all.radius <= finest && all.spread <= FACING && is_one_piece(part, &own) {
+                part.iter().for_each(|patch| hierarchy.node_of[*patch as usize] = place as u32);
+                hierarchy.nodes[place] = all;
+                ranges.push(range);
+                continue;
+            }
             halve(part, &own, scale);
             let child = hierarchy.nodes.len() as u32;
-            hierarchy.nodes[place] = Node { child, children: 2, ..cluster(part, &own) };
+            hierarchy.nodes[place] = Node { child, children: 2, ..all };
             hierarchy.nodes.extend([own[0]; 2]);
             let middle = range.start + range.len() / 2;
             waiting.extend([(child as usize, range.start..middle), (child as usize + 1, middle..range.end)]);
             ranges.push(range);
         }
-        hierarchy.cluster_points = ranges.into_iter().map(|range| representatives(&order[range], &own)).collect();
+        let points = |range: &Range<usize>| representatives(&order[range.clone()], &own);
+        hierarchy.cluster_points = ranges.iter().map(points).collect();
+        (hierarchy.order, hierarchy.ranges) = (order, ranges);
         hierarchy
     }
 
-    /// Divides a leaf into four.
+    /// That of the points of a cluster which is the nearest to its middle.
+    pub(super) fn central(&self, cluster: u32) -> [DVec3; 2] {
+        let middle = self.nodes[cluster as usize].middle;
+        let [first, others @ ..] = self.points(cluster);
+        let nearer = |best: [DVec3; 2], point: [DVec3; 2]| {
+            if point[0].distance_squared(middle) < best[0].distance_squared(middle) { point } else { best }
+        };
+        others.into_iter().fold(first, nearer)
+    }
+
+    /// The patches of a cluster.
+    pub(super) fn members(&self, cluster: u32) -> &[u32] {
+        &self.order[self.ranges[cluster as usize].clone()]
+    }
+
+    /// A point of a leaf with its unit normal.
+    ///
+    /// - `index`, `uniform`: which one, the second in the unit square.
+    pub(super) fn place(&self, leaf: u32, index: u32, uniform: [f64; 2]) -> [DVec3; 2] {
+        let node = &self.nodes[leaf as usize];
+        if node.is_cluster() {
+            return self.cluster_points[leaf as usize][index as usize % POINTS];
+        }
+        let [a, b, c] = node.corners;
+        let [u, v] = crate::numeric::sampling::triangle(uniform);
+        // Points that are on an edge may lie in another surface.
+        let [u, v] = [u, v].map(|weight| weight * 0.998 + 0.001 / 1.5);
+        [a + (b - a) * u + (c - a) * v, node.normal]
+    }
+
+    /// Divides a leaf into four, or a sliver into two.
     pub(super) fn divide(&mut self, node: u32) {
-        let quarters = self.nodes[node as usize].quarters();
-        self.divide_into(node, &quarters);
+        let of = &self.nodes[node as usize];
+        match of.sliver() {
+            Some(edge) => {
+                let halves = of.halves(edge);
+                self.divide_into(node, &halves);
+                self.nodes[node as usize].is_cut = true;
+            }
+            None => {
+                let quarters = of.quarters();
+                self.divide_into(node, &quarters);
+            }
+        }
     }
 
     fn divide_into(&mut self, node: u32, parts: &[[DVec3; 3]]) {
@@ -191,7 +277,9 @@ impl Hierarchy {
     /// - `finest`: a length.
     pub(super) fn cut(&mut self, contacts: &Contacts, finest: f64) {
         let on = |patch: &u32| contacts.on(self.patches[*patch as usize].triangle).to_vec();
-        let lined = (0..self.patches.len() as u32).map(|patch| (self.node_of[patch as usize], on(&patch)));
+        let is_alone = |patch: &u32| self.nodes[self.node_of[*patch as usize] as usize].patch == *patch;
+        let alone = (0..self.patches.len() as u32).filter(is_alone);
+        let lined = alone.map(|patch| (self.node_of[patch as usize], on(&patch)));
         let mut waiting: Vec<(u32, Vec<[DVec3; 2]>)> = lined.collect();
         while let Some((place, mut lines)) = waiting.pop() {
             let node = self.nodes[place as usize];
@@ -252,7 +340,8 @@ impl Hierarchy {
         (0..self.nodes.len() as u32).filter(|node| is_leaf(&self.nodes[*node as usize])).collect()
     }
 
-    /// The leaf of a patch at a place of it, and the weights of the corners of the leaf there.
+    /// The leaf of a patch at a place of it, and the weights of the corners of the leaf there, or of those of the patch if
+    /// that is part of a face cluster.
     pub(super) fn leaf_at(&self, patch: u32, mut weights: [f64; 3]) -> (u32, [f64; 3]) {
         let mut at = self.node_of[patch as usize];
         while !self.nodes[at as usize].is_leaf() {
@@ -313,6 +402,19 @@ fn halve(part: &mut [u32], own: &[Node], scale: f64) {
     part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
 }
 
+/// Whether triangles hang together by their corners.
+fn is_one_piece(part: &[u32], own: &[Node]) -> bool {
+    let mut pieces = Pieces::new(part.len());
+    let mut first: HashMap<[u64; 3], u32> = HashMap::default();
+    for (place, member) in (0..).zip(part) {
+        for corner in own[*member as usize].corners {
+            let other = *first.entry(key(corner)).or_insert(place);
+            pieces.join(place, other);
+        }
+    }
+    (0..part.len() as u32).all(|place| pieces.root(place) == 0)
+}
+
 fn cluster(part: &[u32], own: &[Node]) -> Node {
     let members = || part.iter().map(|member| &own[*member as usize]);
     let area: f64 = members().map(|node| node.area).sum();
@@ -341,4 +443,65 @@ fn representatives(part: &[u32], own: &[Node]) -> [[DVec3; 2]; POINTS] {
     let last = &own[part[part.len() - 1] as usize];
     found[next..].fill([last.middle, last.normal]);
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::direct::{Lit, of_parts};
+    use super::*;
+    use crate::color::Channels;
+
+    fn patch(corners: [DVec3; 3]) -> Patch {
+        Patch { corners, triangle: 0, outside: true }
+    }
+
+    #[test]
+    fn slivers_are_divided_into_two_and_what_is_known_at_corners_goes_with_them() {
+        let at = DVec3::new;
+        let slim = [at(0.0, 0.0, 0.0), at(0.0, 0.1, 0.0), at(-8.0, 0.0, 0.0)];
+        let broad = [at(0.0, 0.0, 0.0), at(3.0, 0.0, 0.0), at(0.0, 3.0, 0.0)];
+        for (corners, parts) in [(slim, 2), (broad, 4)] {
+            let mut hierarchy = Hierarchy::new(vec![patch(corners)], 0.0);
+            let sliver = hierarchy.nodes[0].sliver();
+            hierarchy.divide(0);
+            let children: Vec<Node> = hierarchy.nodes[1..].to_vec();
+            assert_eq!((children.len(), hierarchy.nodes[0].is_cut), (parts, parts == 2));
+            let area: f64 = children.iter().map(|child| child.area).sum();
+            assert!((area - hierarchy.nodes[0].area).abs() < 1e-12 && children.iter().all(|c| c.normal.z > 0.99));
+            // Light that tells where it is.
+            let lit = |at: DVec3| Lit { direct: Channels::splat(at.x - 10.0 * at.y), extra: Channels::ZERO };
+            let [a, b, c] = corners;
+            let around = [a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)].map(lit);
+            for (child, known) in children.iter().zip(of_parts(&around.into(), sliver)) {
+                let known = known.expect("it may be divided");
+                for (corner, known) in child.corners.iter().zip(known) {
+                    assert_eq!(known.direct, lit(*corner).direct);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn triangles_make_one_element_if_they_are_small_alike_and_hang_together() {
+        let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+        let row = |from: f64, gap: f64| {
+            (0..4).flat_map(move |k| {
+                let x = from + f64::from(k) * (1.0 + gap);
+                [
+                    patch([at(x, 0.0), at(x + 1.0, 0.0), at(x, 1.0)]),
+                    patch([at(x + 1.0, 0.0), at(x + 1.0, 1.0), at(x, 1.0)]),
+                ]
+            })
+        };
+        let leaves = |patches: Vec<Patch>, finest: f64| Hierarchy::new(patches, finest).leaves().len();
+        assert_eq!(leaves(row(0.0, 0.0).collect(), 10.0), 1);
+        // In two of four each, or alone.
+        assert_eq!(leaves(row(0.0, 0.0).collect(), 1.2), 2);
+        assert_eq!(leaves(row(0.0, 0.0).collect(), 0.1), 8);
+        // Squares of two, none of which touches another, are too few.
+        assert_eq!(leaves(row(0.0, 0.1).collect(), 10.0), 8);
+        // A wall that rises from them faces another way.
+        let wall = row(0.0, 0.0).map(|Patch { corners, .. }| patch(corners.map(|c| DVec3::new(c.x, 0.0, c.y))));
+        assert!(leaves(row(0.0, 0.0).chain(wall).collect(), 10.0) > 1);
+    }
 }

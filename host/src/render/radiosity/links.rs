@@ -154,8 +154,11 @@ impl Judge<'_, '_> {
             let link = Link { a, b, exchange: unoccluded * seen };
             return Verdict::Keep(Judged { link, doubt: most, is_clear });
         }
-        if !are_elements && distance < sizes {
-            return self.divide(a, b, is_clear).unwrap_or(Verdict::Drop);
+        if !are_elements
+            && distance < sizes
+            && let Some(verdict) = self.divide(a, b, is_clear)
+        {
+            return verdict;
         }
         let is_clear = is_clear || are_elements && self.sight.is_clear(first, second);
         let rough = self.sampled(a, b).min(most);

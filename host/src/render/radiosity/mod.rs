@@ -20,10 +20,12 @@ mod corners;
 mod direct;
 mod elements;
 mod exchange;
+mod faces;
 mod form_factor;
 mod gather;
 mod hierarchy;
 mod links;
+mod pieces;
 mod report;
 mod sight;
 mod solver;
@@ -127,7 +129,8 @@ impl Radiosity {
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
         let lengths = [finest, COARSEST * finest];
-        let contacts = Contacts::new(&sight, diagonal, |t| plan.keeps_object(prepared.object_of[t as usize] as usize));
+        let contacts =
+            Contacts::new(&sight, (diagonal, finest), |t| plan.keeps_object(prepared.object_of[t as usize] as usize));
         let patches = patches(prepared, plan, &sight);
         let hierarchy = visible::lit(&sight, patches, &contacts, (exitance, shadows), lengths);
         if hierarchy.nodes.is_empty() {

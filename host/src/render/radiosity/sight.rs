@@ -64,19 +64,16 @@ impl<'a> Sight<'a> {
         self.world.is_clear([one, other].map(|node| Bounds::of(node.corners)), counts)
     }
 
-    /// Looks from points of a triangle in directions that are as dense as their cosine.
+    /// Looks from points of an element in directions that are as dense as their cosine.
     ///
-    /// - `number`: of the triangle: each has directions of its own. `count`: of directions.
-    pub(super) fn around(&self, corners: [DVec3; 3], normal: DVec3, number: u64, count: u32) -> Vec<Seen> {
+    /// - `place`: a point with its unit normal, told which one and a point of the unit square.
+    /// - `number`: of the element: each has directions of its own. `count`: of directions.
+    pub(super) fn around(&self, place: impl Fn(u32, [f64; 2]) -> [DVec3; 2], number: u64, count: u32) -> Vec<Seen> {
         let sequence = Sequence::new(self.seed, number);
-        let [a, b, c] = corners;
         let look = |index: u32| {
-            let [u, v] = crate::numeric::sampling::triangle(sequence.point(index, 0));
+            let [point, normal] = place(index, sequence.point(index, 0));
             let towards = cosine_hemisphere(sequence.point(index, 1), normal);
-            // Points that are on an edge may lie in another surface.
-            let [u, v] = [u, v].map(|weight| weight * 0.998 + 0.001 / 1.5);
-            let origin = a + (b - a) * u + (c - a) * v + normal * self.clearance;
-            self.along(&Ray { origin, direction: towards })
+            self.along(&Ray { origin: point + normal * self.clearance, direction: towards })
         };
         (0..count).map(look).collect()
     }

@@ -5,6 +5,7 @@
 
 use super::corners::Corners;
 use super::elements::Elements;
+use super::faces;
 use super::hierarchy::{Hierarchy, NONE};
 use crate::color::Channels;
 use crate::scene::Prepared;
@@ -27,6 +28,8 @@ pub(super) struct SurfaceLight {
     patch_of: Vec<[u32; 2]>,
     /// Of each node that is a leaf, its corners among the values; [`NONE`] where no light comes.
     corners: Vec<[u32; 3]>,
+    /// The same of each patch that is part of a face cluster.
+    of_faces: Vec<[u32; 3]>,
     /// Irradiance by lights, and by other elements.
     values: Vec<[Channels; 2]>,
 }
@@ -38,7 +41,7 @@ pub struct Division {
     /// one the first, the third and the second.
     pub corners: [DVec3; 3],
     /// None for an element; else the four that the middles of its edges make, at the corners and in the middle, or, if it
-    /// is cut, what lines left.
+    /// is cut, two halves or what lines left.
     pub parts: Vec<Division>,
     /// Whether it is cut.
     pub is_cut: bool,
@@ -65,7 +68,7 @@ impl SurfaceLight {
         (leaves, is_dark): (&[u32], &[bool]),
         (shared, indirect): (&Corners, &[Channels]),
     ) -> SurfaceLight {
-        let Elements { hierarchy, around, .. } = elements;
+        let Elements { hierarchy, around, direct: lit, .. } = elements;
         let mut patch_of = vec![[NONE; 2]; prepared.triangles.len()];
         for (number, patch) in (0..).zip(&hierarchy.patches) {
             patch_of[patch.triangle as usize][usize::from(!patch.outside)] = number;
@@ -89,7 +92,12 @@ impl SurfaceLight {
             let (from, to) = (values[from as usize], values[to as usize]);
             values[middle as usize] = [0, 1].map(|part| (from[part] + to[part]) * 0.5);
         }
-        SurfaceLight { hierarchy, patch_of, corners, values }
+        let lit_leaves =
+            leaves.iter().zip(&shared.of).zip(is_dark).filter(|(_, is_dark)| !**is_dark).map(|(leaf, _)| leaf);
+        let faces = lit_leaves.filter(|(leaf, _)| hierarchy.nodes[**leaf as usize].is_face_cluster());
+        let faces = faces.map(|(leaf, [corner, ..])| (*leaf, [lit[*leaf as usize], indirect[*corner as usize]]));
+        let of_faces = faces::spread(&hierarchy, shared, faces, &mut values);
+        SurfaceLight { hierarchy, patch_of, corners, of_faces, values }
     }
 
     /// Irradiance at a place of a side of a triangle, W/m², in lanes that are means over all combs.
@@ -102,7 +110,8 @@ impl SurfaceLight {
         }
         let weights = self.hierarchy.patches[patch as usize].weights(weights);
         let (leaf, weights) = self.hierarchy.leaf_at(patch, weights);
-        let corners = self.corners[leaf as usize];
+        let is_of_faces = self.hierarchy.nodes[leaf as usize].is_cluster();
+        let corners = if is_of_faces { self.of_faces[patch as usize] } else { self.corners[leaf as usize] };
         if corners[0] == NONE {
             return Channels::ZERO;
         }
@@ -118,7 +127,16 @@ impl SurfaceLight {
     /// How a side of a triangle is divided; none where no light comes.
     pub(super) fn division(&self, triangle: u32, outside: bool) -> Option<Division> {
         let patch = self.patch_of[triangle as usize][usize::from(!outside)];
-        (patch != NONE).then(|| self.division_of(self.hierarchy.node_of[patch as usize] as usize))
+        (patch != NONE).then(|| {
+            let node = self.hierarchy.node_of[patch as usize] as usize;
+            match self.hierarchy.nodes[node].is_cluster() {
+                true => {
+                    let corners = self.hierarchy.patches[patch as usize].corners;
+                    Division { corners, parts: Vec::new(), is_cut: false }
+                }
+                false => self.division_of(node),
+            }
+        })
     }
 
     fn division_of(&self, node: usize) -> Division {

@@ -182,7 +182,7 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let world = World::new(&room, &plan).expect("a world");
     let sight = Sight::new(&world);
     let inside: Vec<Patch> = patches(&room, &plan, &sight).into_iter().filter(|patch| !patch.outside).collect();
-    let mut elements = Elements::new(Hierarchy::new(inside), &sight, (None, true), 0.1);
+    let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &sight, (None, true), 0.1);
     elements.divide_where_light_varies(&sight, f64::INFINITY, 0.6);
     let mut links = Vec::new();
     let mut found = Vec::new();
@@ -350,4 +350,44 @@ fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
         tracer.radiosity().expect("a solution").report.links
     };
     assert!(links(true) < links(false));
+}
+
+#[test]
+fn balls_of_many_small_triangles_have_few_elements_and_light_as_the_closed_form_tells() {
+    let fine = |name, radius: f64| Object { tolerance: Some(radius * 1e-3), ..sphere(name, radius, 0.001) };
+    let balls = prepared(vec![fine("inner", 1.0), fine("outer", 2.0)], vec![]);
+    let glowing = |_: u32, outside: bool, at: DVec3| {
+        let is_glowing = !outside && at.length() > 1.5;
+        Channels::splat(if is_glowing { 1.0 } else { 0.0 })
+    };
+    let radiosity =
+        solved(&balls, &Settings { error: 0.01, finest: 1.0 / 40.0, ..Settings::default() }, Some(&glowing));
+    let Report { patches, elements, .. } = radiosity.report;
+    assert!(2 * elements < patches, "{elements} of {patches}");
+    // The inner one sees nothing but the outer one, which sees of itself what the inner one leaves: 1 - (1/2)².
+    for (object, outside, exact) in [(0, true, 1.0), (1, false, 0.75)] {
+        let found = mean(&balls, &radiosity, object, outside, Part::Indirect);
+        assert!((found / exact - 1.0).abs() < 0.015, "{found} {exact}");
+        let of = &balls.objects[object];
+        let off: Vec<f64> = (of.first..of.first + of.count)
+            .map(|triangle| middle(&radiosity, triangle, outside, Part::Indirect) / exact - 1.0)
+            .collect();
+        let square = off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64;
+        let most = off.iter().fold(0.0f64, |most, off| most.max(off.abs()));
+        assert!(square.sqrt() < 0.03 && most < 0.15, "{} {most}", square.sqrt());
+    }
+}
+
+#[test]
+fn a_ball_of_face_clusters_that_glows_inside_keeps_all_light() {
+    let ball = Object { tolerance: Some(1e-3), ..sphere("ball", 1.0, 0.99) };
+    let ball = prepared(vec![ball], vec![]);
+    let glowing = |_: u32, outside: bool, _: DVec3| Channels::splat(if outside { 0.0 } else { 1.0 });
+    let radiosity = solved(&ball, &coarse(), Some(&glowing));
+    let Report { patches, elements, .. } = radiosity.report;
+    assert!(4 * elements < patches, "{elements} of {patches}");
+    for triangle in [0, 77, 400] {
+        let found = 1.0 + 0.99 * middle(&radiosity, triangle, false, Part::All);
+        assert!((found / 100.0 - 1.0).abs() < 1e-6, "{triangle}: {found}");
+    }
 }

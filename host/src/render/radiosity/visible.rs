@@ -3,62 +3,15 @@
 use super::contact::Contacts;
 use super::elements::{Elements, Exitance};
 use super::exchange::Looks;
-use super::hierarchy::{Hierarchy, NONE, Node, Patch};
+use super::hierarchy::{Hierarchy, NONE, Patch};
+use super::pieces::Pieces;
 use super::sight::{Seen, Sight};
-use crate::color::Channels;
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Directions in which a patch looks around for each of its parts, and at the most.
 const LOOKS: u32 = 16;
 const MOST_LOOKS: u32 = 1024;
-/// So many are asked at once whether they are lit.
-const ASKED: usize = 1024;
-
-/// Sets of what is joined.
-struct Joined(Vec<u32>);
-
-impl Joined {
-    fn new(count: usize) -> Joined {
-        Joined((0..count as u32).collect())
-    }
-
-    fn root(&mut self, mut at: u32) -> u32 {
-        while self.0[at as usize] != at {
-            let next = self.0[self.0[at as usize] as usize];
-            self.0[at as usize] = next;
-            at = next;
-        }
-        at
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        let (low, high) = (a.min(b), a.max(b));
-        self.0[high as usize] = low;
-    }
-
-    /// Whether each is joined to one that is lit.
-    ///
-    /// - `are_lit`: tells of some whether they are lit. It is asked no more than needs be.
-    fn alight(&mut self, are_lit: impl Fn(&[u32]) -> Vec<bool>) -> Vec<bool> {
-        let mut root_lit = vec![false; self.0.len()];
-        let mut next = 0;
-        while next < self.0.len() {
-            let mut asked = Vec::with_capacity(ASKED);
-            while next < self.0.len() && asked.len() < ASKED {
-                if !root_lit[self.root(next as u32) as usize] {
-                    asked.push(next as u32);
-                }
-                next += 1;
-            }
-            for (at, _) in asked.iter().zip(are_lit(&asked)).filter(|(_, is_lit)| *is_lit) {
-                root_lit[self.root(*at) as usize] = true;
-            }
-        }
-        (0..self.0.len() as u32).map(|at| root_lit[self.root(at) as usize]).collect()
-    }
-}
 
 /// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are dark.
 ///
@@ -70,7 +23,7 @@ pub(super) fn lit(
     (exitance, shadows): (Option<Exitance<'_>>, bool),
     [finest, coarsest]: [f64; 2],
 ) -> Hierarchy {
-    let mut all = Hierarchy::new(patches);
+    let mut all = Hierarchy::new(patches, finest);
     all.cut(contacts, finest);
     let is_dark = dark(sight, &all, (exitance, shadows), coarsest);
     all.darken(&is_dark);
@@ -79,7 +32,7 @@ pub(super) fn lit(
         return all;
     }
     let lit: Vec<usize> = (0..all.patches.len()).filter(|patch| is_lit(*patch)).collect();
-    let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect());
+    let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect(), finest);
     hierarchy.cut(contacts, finest);
     // Patches are divided as they were before.
     let mut is_dark = vec![false; hierarchy.nodes.len()];
@@ -102,38 +55,44 @@ fn dark(
     coarsest: f64,
 ) -> Vec<bool> {
     let nodes = &hierarchy.nodes;
-    let is_lit = |node: &Node| {
-        let at = |point: DVec3| {
-            let patch = &hierarchy.patches[node.patch as usize];
-            let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
-            extra.max() > 0.0 || sight.light_at(point, node.normal, shadows).max() > 0.0
+    let is_lit = |number: u32| {
+        let node = &nodes[number as usize];
+        let sends = |patch: u32, point: DVec3| {
+            let patch = &hierarchy.patches[patch as usize];
+            exitance.is_some_and(|of| of(patch.triangle, patch.outside, point).max() > 0.0)
         };
-        node.is_leaf() && is_any_lit(node.corners, coarsest, &at)
+        let takes = |place: [DVec3; 2]| sight.light_at(place, shadows).max() > 0.0;
+        if !node.is_leaf() {
+            false
+        } else if node.is_cluster() {
+            let middle = |patch: u32| hierarchy.patches[patch as usize].corners.iter().sum::<DVec3>() / 3.0;
+            let mut members = hierarchy.members(number).iter();
+            hierarchy.points(number).into_iter().any(takes) || members.any(|patch| sends(*patch, middle(*patch)))
+        } else {
+            is_any_lit(node.corners, coarsest, &|point| sends(node.patch, point) || takes([point, node.normal]))
+        }
     };
     let patch_of = numbers(sight, &hierarchy.patches);
-    let looked = |(number, node): (usize, &Node)| {
+    let looked = |number: u32| {
+        let node = &nodes[number as usize];
         if !node.is_leaf() {
             return Vec::new();
         }
         let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
         let count = (f64::from(LOOKS) * parts).min(f64::from(MOST_LOOKS)) as u32;
         let of = |seen: Seen| element(hierarchy, &patch_of, seen);
-        let seen = sight.around(node.corners, node.normal, number as u64, count);
+        let seen = sight.around(|index, uniform| hierarchy.place(number, index, uniform), u64::from(number), count);
         let mut seen: Vec<u32> = seen.into_iter().map(of).filter(|node| *node != NONE).collect();
         seen.sort_unstable();
         seen.dedup();
         seen
     };
-    let seen: Vec<Vec<u32>> = nodes.par_iter().enumerate().map(looked).collect();
-    let mut joined = Joined::new(nodes.len());
+    let seen: Vec<Vec<u32>> = (0..nodes.len() as u32).into_par_iter().map(looked).collect();
+    let mut joined = Pieces::new(nodes.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().for_each(|other| joined.join(number, *other));
     }
-    joined
-        .alight(|some| some.par_iter().map(|node| is_lit(&nodes[*node as usize])).collect())
-        .iter()
-        .map(|alight| !alight)
-        .collect()
+    joined.alight(|some| some.par_iter().map(|node| is_lit(*node)).collect()).iter().map(|alight| !alight).collect()
 }
 
 fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
@@ -181,17 +140,20 @@ pub(super) fn seen(
     let mut place = vec![NONE; hierarchy.nodes.len()];
     (0..).zip(leaves).for_each(|(number, leaf)| place[*leaf as usize] = number);
     let looked = |(number, leaf): (usize, &u32)| {
-        let node = &hierarchy.nodes[*leaf as usize];
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
         let of = |seen: Seen| match element(hierarchy, &patch_of, seen) {
             NONE => NONE,
             leaf => place[leaf as usize],
         };
-        sight.around(node.corners, node.normal, own, directions).into_iter().map(of).collect::<Vec<u32>>()
+        sight
+            .around(|index, uniform| hierarchy.place(*leaf, index, uniform), own, directions)
+            .into_iter()
+            .map(of)
+            .collect::<Vec<u32>>()
     };
     let seen: Vec<Vec<u32>> = leaves.par_iter().enumerate().map(looked).collect();
-    let mut joined = Joined::new(leaves.len());
+    let mut joined = Pieces::new(leaves.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
     }
