@@ -13,7 +13,7 @@ const SHORT: f64 = 1.0 - 1e-7;
 /// Points of a light with a size, and directions to a sky, that are asked for at the least.
 const LEAST_SAMPLES: u32 = 16;
 const LEAST_OF_SKY: u32 = 64;
-/// The same where a point is one of some that stand for an element together.
+/// The same for elements that are not divided: neighbours make up for chance in one of them.
 const FEW_SAMPLES: u32 = 4;
 const FEW_OF_SKY: u32 = 16;
 

@@ -154,7 +154,7 @@ impl<'a> Elements<'a> {
         for member in hierarchy.members(cluster) {
             let patch = &hierarchy.patches[*member as usize];
             let area = normal_and_area(patch.corners).1;
-            let middle = patch.corners.iter().sum::<DVec3>() / 3.0;
+            let middle = patch.middle();
             reflected += reflectance(sight, patch, (patch.corners, middle)) * area;
             extra += sight.exitance((patch, middle), self.exitance) * area;
             all += area;

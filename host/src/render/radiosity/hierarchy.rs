@@ -50,6 +50,12 @@ pub(super) struct Patch {
     pub(super) outside: bool,
 }
 
+impl Patch {
+    pub(super) fn middle(&self) -> DVec3 {
+        self.corners.iter().sum::<DVec3>() / 3.0
+    }
+}
+
 /// A cluster, a patch or an element of a patch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {

@@ -65,7 +65,7 @@ fn dark(
         if !node.is_leaf() {
             false
         } else if node.is_cluster() {
-            let middle = |patch: u32| hierarchy.patches[patch as usize].corners.iter().sum::<DVec3>() / 3.0;
+            let middle = |patch: u32| hierarchy.patches[patch as usize].middle();
             let mut members = hierarchy.members(number).iter();
             hierarchy.points(number).into_iter().any(takes) || members.any(|patch| sends(*patch, middle(*patch)))
         } else {
