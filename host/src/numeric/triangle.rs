@@ -1,6 +1,7 @@
 //! Triangles: where a ray hits one, decided exactly on the sheared plane, and the weights of its corners.
 
 use glam::DVec3;
+use wide::f64x4;
 
 use super::predicates::cross_sign;
 use super::ray::Ray;
@@ -10,6 +11,9 @@ pub const MAX_MAGNITUDE: f64 = 1e150;
 
 /// Slopes below this count as zero, so that no product of slopes and lengths falls below the normal numbers.
 const LEAST_SLOPE: f64 = 1e-100;
+
+/// For each axis, the two that follow in cyclic order.
+static OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 /// A ray made ready for many triangles: its longest axis, and the shear that makes it that axis.
 ///
@@ -26,6 +30,8 @@ pub struct Shear {
     scale: f64,
     unscale: f64,
     axes: [usize; 3],
+    slopes: f64x4,
+    longest: f64,
     shear_x: f64,
     shear_y: f64,
     length_z: f64,
@@ -50,30 +56,35 @@ impl Shear {
     /// - Returns `None` for a direction that is zero or not finite, and for components beyond [`MAX_MAGNITUDE`].
     #[inline(always)]
     pub fn new(ray: &Ray, scale: f64) -> Option<Self> {
-        let d = ray.direction.to_array();
-        let magnitude = [d[0].abs(), d[1].abs(), d[2].abs()];
-        // `all` with `<=` also refuses what is not a number; all are looked at, which is faster than to stop.
-        let sane = magnitude.iter().fold(true, |sane, &m| sane & (m <= f64::MAX))
-            & ray.origin.to_array().iter().fold(true, |sane, &x| sane & (x.abs() <= MAX_MAGNITUDE));
+        let (origin, direction) = (four(ray.origin), four(ray.direction));
+        let lengths = direction.abs();
+        // Comparisons also refuse what is not a number.
+        let sane = lengths.simd_le(f64x4::splat(f64::MAX)) & origin.abs().simd_le(f64x4::splat(MAX_MAGNITUDE));
         // Without branches, since no processor can foresee them.
+        let magnitude = lengths.to_array();
+        let xy_longest = if magnitude[1] > magnitude[0] { magnitude[1] } else { magnitude[0] };
+        let longest = if magnitude[2] > xy_longest { magnitude[2] } else { xy_longest };
         let xy = usize::from(magnitude[1] > magnitude[0]);
         let z = if (magnitude[2] > magnitude[0]) & (magnitude[2] > magnitude[1]) { 2 } else { xy };
-        if !sane || magnitude[z] == 0.0 {
+        if !sane.all() || longest == 0.0 {
             return None;
         }
-        let [x, y] = [[1, 2], [2, 0], [0, 1]][z];
-        let slope = |axis: usize| {
-            let slope = d[axis] / d[z];
-            if slope.abs() < LEAST_SLOPE { 0.0 } else { slope }
-        };
+        let [x, y] = OTHERS[z];
+        let slopes = direction / f64x4::splat(longest);
+        let slopes = slopes.abs().simd_lt(f64x4::splat(LEAST_SLOPE)).select(f64x4::ZERO, slopes);
+        let by_axis = slopes.to_array();
+        let length_z = direction.as_array()[z];
+        let sign_z = 1.0_f64.copysign(length_z);
         Some(Self {
             origin: ray.origin.to_array(),
             scale,
             unscale: scale.recip(),
             axes: [x, y, z],
-            shear_x: slope(x),
-            shear_y: slope(y),
-            length_z: d[z],
+            slopes,
+            longest,
+            shear_x: by_axis[x] * sign_z,
+            shear_y: by_axis[y] * sign_z,
+            length_z,
         })
     }
 
@@ -82,9 +93,19 @@ impl Shear {
         self.axes
     }
 
-    /// Slopes of the ray over its longest axis, each -1..=1, in the order of the first two of [`Shear::axes`].
-    pub fn slopes(&self) -> [f64; 2] {
-        [self.shear_x, self.shear_y]
+    /// The direction in lengths of its longest component, by axis, each -1..=1; then zero.
+    pub fn slopes(&self) -> f64x4 {
+        self.slopes
+    }
+
+    /// Length of the longest component of the direction.
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
+
+    /// The longest component of the direction.
+    pub fn length_z(&self) -> f64 {
+        self.length_z
     }
 
     #[inline(always)]
@@ -123,6 +144,13 @@ impl Shear {
         let z = (first * a[2] + second * b[2] + third * c[2]) / whole;
         Some(Crossing { t: z * self.unscale / self.length_z, u, v })
     }
+}
+
+/// The three numbers of a vector, and zero.
+#[inline(always)]
+pub fn four(vector: DVec3) -> f64x4 {
+    let [x, y, z] = vector.to_array();
+    f64x4::new([x, y, z, 0.0])
 }
 
 /// Weights of the corners of a triangle that give a point of it, each 0..=1 and their sum 1. For a point off its plane they

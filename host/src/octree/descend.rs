@@ -1,5 +1,6 @@
 //! Rays down the index, nearest child first.
 
+use super::frame::Line;
 use super::index::Child;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Wide;
@@ -72,21 +73,21 @@ impl Stack {
     }
 }
 
-/// Finds the nearest hit with `t_min < t < t_max`.
+/// Finds the nearest hit with `t_min < t < t_max`, and adds up the work that it takes.
 #[inline]
-pub fn nearest(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> (Option<Hit>, WalkCount) {
+pub fn nearest(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, count: &mut WalkCount) -> Option<Hit> {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn nearest_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
-            nearest_by::<Wide>(octree, ray, limits)
+        fn nearest_wide(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, count: &mut WalkCount) -> Option<Hit> {
+            nearest_by::<Wide>(octree, ray, [t_min, t_max], count)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { nearest_wide(octree, ray, [t_min, t_max]) };
+            return unsafe { nearest_wide(octree, ray, t_min, t_max, count) };
         }
     }
-    nearest_by::<Plain>(octree, ray, [t_min, t_max])
+    nearest_by::<Plain>(octree, ray, [t_min, t_max], count)
 }
 
 /// Says whether anything is hit with `t_min < t < t_max`.
@@ -95,12 +96,12 @@ pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn is_any_wide(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
-            is_any_by::<Wide>(octree, ray, limits)
+        fn is_any_wide(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
+            is_any_by::<Wide>(octree, ray, [t_min, t_max])
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { is_any_wide(octree, ray, [t_min, t_max]) };
+            return unsafe { is_any_wide(octree, ray, t_min, t_max) };
         }
     }
     is_any_by::<Plain>(octree, ray, [t_min, t_max])
@@ -108,17 +109,20 @@ pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
 
 /// The same as [`nearest`] with given instructions.
 #[inline(always)]
-pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> (Option<Hit>, WalkCount) {
-    let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], false) else { return Default::default() };
+pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count: &mut WalkCount) -> Option<Hit> {
+    let line = Line::new(ray, &octree.cube, limits[0], limits[1])?;
+    let mut search = Search::new(octree, &line, limits[0], limits[1], false);
     search.descend::<L, false>();
-    search.found()
+    let (hit, work) = search.found();
+    *count = work;
+    hit
 }
 
 /// The same as [`is_any`] with given instructions.
 #[inline(always)]
 pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
-    let search = Search::new(octree, ray, limits[0], limits[1], true);
-    search.is_some_and(|mut search| search.descend::<L, true>())
+    let line = Line::new(ray, &octree.cube, limits[0], limits[1]);
+    line.is_some_and(|line| Search::new(octree, &line, limits[0], limits[1], true).descend::<L, true>())
 }
 
 /// Gives all hits with `t_min < t < t_max`, in no order, until one is enough; says whether one was.
@@ -140,7 +144,8 @@ pub fn each(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, enough: impl FnM
 
 #[inline(always)]
 fn each_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], mut enough: impl FnMut(Hit) -> bool) -> bool {
-    let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], true) else { return false };
+    let Some(line) = Line::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
+    let mut search = Search::new(octree, &line, limits[0], limits[1], true);
     search.visit::<L>(|search, packet| search.any_of_packet::<L>(packet, &mut enough))
 }
 
@@ -198,14 +203,16 @@ fn each_in_by<L: Lanes>(
     limits: [f64; 2],
     mut enough: impl FnMut(Hit) -> bool,
 ) -> bool {
-    let Some(search) = Search::new(octree, ray, limits[0], limits[1], true) else { return false };
+    let Some(line) = Line::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
+    let search = Search::new(octree, &line, limits[0], limits[1], true);
     packets.iter().any(|packet| search.any_of_packet::<L>(packet, &mut enough))
 }
 
 #[inline(always)]
 fn is_any_in_by<L: Lanes>(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
-    let Some(mut search) = Search::new(octree, ray, limits[0], limits[1], true) else { return false };
-    let within = search.frame.within(search.t_min, search.t_max);
+    let Some(line) = Line::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
+    let mut search = Search::new(octree, &line, limits[0], limits[1], true);
+    let within = line.frame.within(search.t_min, search.t_max);
     packets.iter().any(|packet| search.test::<L, true>(packet, within))
 }
 
@@ -220,7 +227,7 @@ impl Search<'_> {
     /// Goes down the index; returns whether it ended at a hit that is enough.
     #[inline(always)]
     fn descend<L: Lanes, const ANY: bool>(&mut self) -> bool {
-        let within = if ANY { self.frame.within(self.t_min, self.t_max) } else { [0.0; 2] };
+        let within = if ANY { self.line.frame.within(self.t_min, self.t_max) } else { [0.0; 2] };
         self.visit::<L>(|search, packet| search.test::<L, ANY>(packet, within))
     }
 
@@ -238,7 +245,7 @@ impl Search<'_> {
             match child.place() {
                 Err(place) => {
                     let node = &index.nodes[place];
-                    let (mut lanes, near) = node.meets::<L>(&self.frame, self.limit);
+                    let (mut lanes, near) = node.meets::<L>(&self.line.frame, self.limit);
                     if lanes != 0 {
                         let first = lanes.trailing_zeros() as usize & (LANES - 1);
                         lanes &= lanes - 1;
@@ -281,7 +288,7 @@ impl Search<'_> {
     /// Gives the hits of a packet until one is enough.
     #[inline(always)]
     fn any_of_packet<L: Lanes>(&self, packet: &Packet, enough: &mut impl FnMut(Hit) -> bool) -> bool {
-        let (mut lanes, _) = packet.candidates::<L, false>(&self.frame, self.limit, [0.0; 2]);
+        let (mut lanes, _) = packet.candidates::<L, false>(&self.line.frame, self.limit, [0.0; 2]);
         while lanes != 0 {
             let triangle = packet.triangles[lanes.trailing_zeros() as usize & (LANES - 1)];
             lanes &= lanes - 1;
@@ -296,7 +303,7 @@ impl Search<'_> {
     #[inline(always)]
     fn test<L: Lanes, const ANY: bool>(&mut self, packet: &Packet, within: [f32; 2]) -> bool {
         self.count.triangles += LANES as u64;
-        let (mut lanes, certain) = packet.candidates::<L, ANY>(&self.frame, self.limit, within);
+        let (mut lanes, certain) = packet.candidates::<L, ANY>(&self.line.frame, self.limit, within);
         if ANY && certain != 0 {
             return true;
         }

@@ -4,7 +4,8 @@ use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 use crate::numeric::ray::Ray;
-use crate::numeric::triangle::Shear;
+use crate::numeric::triangle::{Shear, four};
+use wide::f64x4;
 
 /// Rounding of a point on the ray and of what it is compared with in single precision, twice what it can be.
 ///
@@ -19,21 +20,123 @@ const DOUBLE_TOLERANCE: f64 = 1.0 / (1_u64 << 48) as f64;
 /// A ray that begins farther from the cube than this many of its sides misses: rounding moves it by a quarter of one.
 pub const MAX_DISTANCE: f64 = (1_u64 << 46) as f64;
 
-/// Slopes below this count as this in the box test; the ray leaves its line by less than 1e-19 of the cube.
-const LEAST_SLOPE: f64 = 1e-20;
+/// One over a slope counts as this above it in the box test; the ray leaves its line by less than 1e-19 of the cube.
+const MOST_INVERSE: f64 = 1e20;
 
-/// A ray in the cube. Its points are `entry + s slope`, where s counts sides of the cube along the longest axis.
+/// A little, in tolerances.
+const MARGIN: f64 = 4.0;
+
+/// A ray made ready for what is in a cube.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// What decides which triangles it meets.
+    pub shear: Shear,
+    /// The part that counts.
+    pub part: Part,
+    /// The same for tests in single precision.
+    pub frame: Frame,
+}
+
+impl Line {
+    /// `None` if the ray misses the cube between `t_min` and `t_max`, or is none.
+    #[inline(always)]
+    pub fn new(ray: &Ray, cube: &Cube, t_min: f64, t_max: f64) -> Option<Self> {
+        let shear = Shear::new(ray, cube.unit())?;
+        let part = Part::new(ray, &shear, cube, t_min, t_max)?;
+        let frame = Frame::new(&shear, &part);
+        Some(Self { shear, part, frame })
+    }
+}
+
+/// The part of a ray that is in the cube, as a line in local coordinates.
+#[derive(Clone, Debug)]
+pub struct Part {
+    origin: f64x4,
+    /// One over the slope, by axis, bounded.
+    inverse: f64x4,
+    tolerance: f64,
+    rate: f64,
+    enter: f64,
+    exit: f64,
+}
+
+impl Part {
+    /// `None` if a ray that was sheared before misses the cube between `t_min` and `t_max`.
+    #[inline(always)]
+    pub fn new(ray: &Ray, shear: &Shear, cube: &Cube, t_min: f64, t_max: f64) -> Option<Self> {
+        let unit = cube.unit();
+        let origin = four((ray.origin - cube.origin) * unit);
+        let [x, y, z, _] = origin.abs().to_array();
+        let reach = greater(greater(x, y), greater(z, 1.0));
+        // Written so that what is not a number ends here.
+        let near = reach <= MAX_DISTANCE;
+        if !near {
+            return None;
+        }
+        let tolerance = SINGLE_TOLERANCE + reach * DOUBLE_TOLERANCE;
+        let rate = shear.longest() * unit;
+        let direction = four(ray.direction);
+        let steep = (f64x4::splat(shear.longest()) / direction.abs()).fast_min(f64x4::splat(MOST_INVERSE));
+        let inverse = steep.copysign(direction);
+        let margin = MARGIN * tolerance;
+        // The middle of the cube, and how far it is from there to its sides.
+        let middle = (f64x4::HALF - origin) * inverse;
+        let half = f64x4::splat(0.5 + margin) * steep;
+        let ([x, y, z, _], [to_x, to_y, to_z, _]) = ((middle - half).to_array(), (middle + half).to_array());
+        let enter = greater(greater(x, y), greater(z, t_min * rate));
+        let exit = lesser(lesser(to_x, to_y), lesser(to_z, t_max * rate));
+        let meets = enter <= exit + margin && enter.is_finite() && exit.is_finite();
+        meets.then_some(Self { origin, inverse, tolerance, rate, enter, exit })
+    }
+
+    /// Length of the ray in the cube, or to `t_max`.
+    pub fn length(&self) -> f64 {
+        self.exit - self.enter
+    }
+
+    /// Local coordinates where the ray enters the cube, or of its first point, by axis.
+    #[inline(always)]
+    pub fn entry(&self, shear: &Shear) -> f64x4 {
+        self.origin + shear.slopes() * f64x4::splat(self.enter)
+    }
+
+    /// By how much a coordinate may be off in double precision, sides of the cube.
+    pub fn double_tolerance(&self) -> f64 {
+        self.tolerance - SINGLE_TOLERANCE
+    }
+
+    /// Whether the ray may meet a cube of the octree, in double precision; in doubt it may.
+    pub fn may_meet(&self, shear: &Shear, cube: LocationalCode) -> bool {
+        let voxel = 1.0 / f64::from(1_u32 << MAX_DEPTH);
+        let margin = FAT + 4.0 * self.double_tolerance();
+        let (mut enter, mut exit) = (-margin, self.length() + margin);
+        let entry = self.entry(shear);
+        for (axis, corner) in cube.corner().into_iter().enumerate() {
+            let low = f64::from(corner) * voxel;
+            let high = low + f64::from(cube.side()) * voxel;
+            let along = |plane: f64| (plane - entry.as_array()[axis]) * self.inverse.as_array()[axis];
+            let [to_low, to_high] = [low - margin, high + margin].map(along);
+            enter = enter.max(to_low.min(to_high));
+            exit = exit.min(to_low.max(to_high));
+        }
+        enter <= exit + margin
+    }
+}
+
+/// A ray in the cube, for tests in single precision. Its points are `entry + s slope`, where s counts sides of the cube
+/// along the longest axis.
 ///
 /// Lengths in single precision are counted from a little before the entry, so that none that matters is negative.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// The longest axis last, the others in cyclic order.
     pub axes: [usize; 3],
-    /// Slopes over the longest axis as coordinates grow, of the other two.
-    pub shear: [f32; 2],
-    /// Where the line of the ray meets zero of the longest axis, along the other two; then the sign of its direction along
-    /// the longest times where it begins.
-    pub base: [f32; 3],
+    /// Slopes over the longest axis as coordinates grow, by axis.
+    pub shear: [f32; 4],
+    /// Where the line of the ray meets zero of the longest axis, by axis.
+    pub beside: [f32; 4],
+    /// The sign of its direction along the longest axis times where it begins there.
+    pub base_z: f32,
     /// 1 or -1: direction along the longest axis.
     pub sign_z: f32,
     /// By how much a coordinate may be off, sides of the cube.
@@ -41,109 +144,48 @@ pub struct Frame {
     /// What a tolerance and a size make of an edge function's error.
     pub error_scale: f32,
     /// One over the slope, by axis.
-    pub inverse: [f32; 3],
+    pub inverse: [f32; 4],
     /// What is to be taken from a coordinate times the inverse to get the length to the near side of a box, which is moved
     /// towards the ray by the tolerance; by axis.
-    pub near: [f32; 3],
+    pub near: [f32; 4],
     /// The same for the far sides.
-    pub far: [f32; 3],
+    pub far: [f32; 4],
     /// Whether the ray goes down, by axis.
     pub down: [bool; 3],
     /// Length of the ray in the cube, or to `t_max`.
-    pub length: f64,
-    /// Local coordinates where the ray enters the cube, or of its first point, by axis.
-    pub entry: [f64; 3],
-    /// Slopes in double precision, by axis; 1 or -1 along the longest.
-    pub slopes: [f64; 3],
-    /// Tolerance in double precision, apart from the single-precision part.
-    pub double_tolerance: f64,
+    length: f64,
     rate: f64,
     offset: f64,
 }
 
 impl Frame {
-    /// Prepares a ray that was sheared before; `None` if it misses the cube between `t_min` and `t_max`.
+    /// Prepares a part of a ray that was sheared before.
     #[inline(always)]
-    pub fn new(ray: &Ray, shear: &Shear, cube: &Cube, t_min: f64, t_max: f64) -> Option<Self> {
-        let axes = shear.axes();
-        let [x, y, z] = axes;
-        let [slope_x, slope_y] = shear.slopes();
-        let length_z = ray.direction[z];
-        let sign_z = 1.0_f64.copysign(length_z);
-        let mut slopes = [0.0; 3];
-        (slopes[x], slopes[y], slopes[z]) = (slope_x * sign_z, slope_y * sign_z, sign_z);
-        let unit = cube.unit();
-        let origin = ((ray.origin - cube.origin) * unit).to_array();
-        let reach = greater(greater(origin[0].abs(), origin[1].abs()), greater(origin[2].abs(), 1.0));
-        // Written so that what is not a number ends here.
-        let near = reach <= MAX_DISTANCE;
-        if !near {
-            return None;
-        }
-        let double_tolerance = reach * DOUBLE_TOLERANCE;
-        let tolerance = SINGLE_TOLERANCE + double_tolerance;
-
-        let rate = length_z.abs() * unit;
-        let inverse = [inverse(slopes[0]), inverse(slopes[1]), inverse(slopes[2])];
-        let margin = 4.0 * tolerance;
-        let (mut enter, mut exit) = (t_min * rate, t_max * rate);
-        for axis in 0..3 {
-            // The middle of the cube, and how far it is from there to its sides.
-            let middle = (0.5 - origin[axis]) * inverse[axis];
-            let half = (0.5 + margin) * inverse[axis].abs();
-            enter = greater(enter, middle - half);
-            exit = -greater(-exit, -(middle + half));
-        }
-        let meets = enter <= exit + margin && enter.is_finite() && exit.is_finite();
-        if !meets {
-            return None;
-        }
-        let (mut entry, mut first) = ([0.0; 3], [0.0; 3]);
-        let (mut near, mut far) = ([0.0; 3], [0.0; 3]);
-        for axis in 0..3 {
-            entry[axis] = origin[axis] + slopes[axis] * enter;
-            first[axis] = entry[axis] - slopes[axis] * margin;
-            let (length, aside) = (first[axis] * inverse[axis], tolerance * inverse[axis].abs());
-            (near[axis], far[axis]) = ((length + aside) as f32, (length - aside) as f32);
-        }
-        Some(Self {
+    pub fn new(shear: &Shear, part: &Part) -> Self {
+        let Part { origin, inverse, tolerance, enter, .. } = *part;
+        let (slopes, axes) = (shear.slopes(), shear.axes());
+        let sign_z = 1.0_f64.copysign(shear.length_z());
+        let origin_z = origin.as_array()[axes[2]] * sign_z;
+        // Where lengths are counted from.
+        let first = enter - MARGIN * tolerance;
+        let (length, aside) = (origin * inverse, inverse.abs() * f64x4::splat(tolerance));
+        let [x, y, z, _] = inverse.to_array();
+        Self {
             axes,
-            shear: [slope_x as f32, slope_y as f32],
-            base: [
-                (first[x] - slope_x * first[z]) as f32,
-                (first[y] - slope_y * first[z]) as f32,
-                (first[z] * sign_z) as f32,
-            ],
+            shear: single(slopes * f64x4::splat(sign_z)),
+            beside: single(origin - slopes * f64x4::splat(origin_z)),
+            base_z: (origin_z + first) as f32,
             sign_z: sign_z as f32,
             tolerance: tolerance as f32,
             error_scale: (16.0 * tolerance) as f32,
-            inverse: [inverse[0] as f32, inverse[1] as f32, inverse[2] as f32],
-            near,
-            far,
-            down: [slopes[0].is_sign_negative(), slopes[1].is_sign_negative(), slopes[2].is_sign_negative()],
-            length: exit - enter,
-            entry,
-            slopes,
-            double_tolerance,
-            rate,
-            offset: enter,
-        })
-    }
-
-    /// Whether the ray may meet a cube of the octree, in double precision; in doubt it may.
-    pub fn may_meet(&self, cube: LocationalCode) -> bool {
-        let voxel = 1.0 / f64::from(1_u32 << MAX_DEPTH);
-        let margin = FAT + 4.0 * self.double_tolerance;
-        let (mut enter, mut exit) = (-margin, self.length + margin);
-        for (axis, corner) in cube.corner().into_iter().enumerate() {
-            let low = f64::from(corner) * voxel;
-            let high = low + f64::from(cube.side()) * voxel;
-            let inverse = inverse(self.slopes[axis]);
-            let [to_low, to_high] = [low - margin, high + margin].map(|plane| (plane - self.entry[axis]) * inverse);
-            enter = enter.max(to_low.min(to_high));
-            exit = exit.min(to_low.max(to_high));
+            inverse: single(inverse),
+            near: single(f64x4::splat(-first) - (length + aside)),
+            far: single(f64x4::splat(-first) - (length - aside)),
+            down: [x.is_sign_negative(), y.is_sign_negative(), z.is_sign_negative()],
+            length: part.length(),
+            rate: part.rate,
+            offset: part.enter,
         }
-        enter <= exit + margin
     }
 
     /// A bound for the parameter s of a hit at `t`, rounded up.
@@ -178,8 +220,15 @@ fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// One over a slope, bounded.
+/// The lesser of two numbers, or the second if the first is none.
 #[inline(always)]
-fn inverse(slope: f64) -> f64 {
-    greater(slope.abs(), LEAST_SLOPE).copysign(slope).recip()
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// In single precision.
+#[inline(always)]
+fn single(numbers: f64x4) -> [f32; 4] {
+    let [x, y, z, w] = numbers.to_array();
+    [x as f32, y as f32, z as f32, w as f32]
 }

@@ -107,14 +107,14 @@ impl Node {
 #[inline(always)]
 fn near<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &Frame) -> L {
     let side = L::load(&sides[usize::from(frame.down[axis])]);
-    side.times_minus(L::splat(frame.inverse[axis]), L::splat(frame.near[axis]))
+    side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.near[axis]))
 }
 
 /// Lengths to the far sides of boxes.
 #[inline(always)]
 fn far<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &Frame) -> L {
     let side = L::load(&sides[usize::from(!frame.down[axis])]);
-    side.times_minus(L::splat(frame.inverse[axis]), L::splat(frame.far[axis]))
+    side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.far[axis]))
 }
 
 /// The index over items: nodes and packets.

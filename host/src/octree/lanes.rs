@@ -24,6 +24,8 @@ pub trait Lanes: Copy {
     fn minus(self, other: Self) -> Self;
     /// Product.
     fn times(self, other: Self) -> Self;
+    /// `self other + more`.
+    fn times_plus(self, other: Self, more: Self) -> Self;
     /// `self other - less`.
     fn times_minus(self, other: Self, less: Self) -> Self;
     /// `from - self other`.
@@ -73,6 +75,10 @@ impl Lanes for Plain {
     #[inline(always)]
     fn times(self, other: Self) -> Self {
         self.each(other, |a, b| a * b)
+    }
+    #[inline(always)]
+    fn times_plus(self, other: Self, more: Self) -> Self {
+        self.times(other).plus(more)
     }
     #[inline(always)]
     fn times_minus(self, other: Self, less: Self) -> Self {
@@ -141,6 +147,10 @@ mod wide {
         #[inline(always)]
         fn times(self, other: Self) -> Self {
             Self(unsafe { _mm256_mul_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn times_plus(self, other: Self, more: Self) -> Self {
+            Self(unsafe { _mm256_fmadd_ps(self.0, other.0, more.0) })
         }
         #[inline(always)]
         fn times_minus(self, other: Self, less: Self) -> Self {

@@ -44,6 +44,7 @@ use build::{Division, Leaves, Nodes, PARALLEL_TRIANGLES};
 pub use code::{LocationalCode, MAX_DEPTH};
 use cube::Cube;
 pub use file::FileError;
+use frame::Line;
 pub use frame::MAX_DISTANCE;
 use index::Index;
 pub use inside::Side;
@@ -280,14 +281,21 @@ impl Octree {
     /// through; of several hits with the same `t` the triangle with the lowest index counts. A triangle seen exactly
     /// edge-on is not hit. A ray whose direction is zero, or that is not finite, or that begins farther away than
     /// [`MAX_DISTANCE`] sides of the modelling cube, hits nothing.
+    #[inline]
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
-        self.closest_counted(ray, t_min, t_max).0
+        match self.walk {
+            Walk::Index => descend::nearest(self, ray, t_min, t_max, &mut WalkCount::default()),
+            Walk::LeadingDirection => self.walked(ray, t_min, t_max, false).0,
+        }
     }
 
     /// [`Octree::closest`], with the work that it took.
     pub fn closest_counted(&self, ray: &Ray, t_min: f64, t_max: f64) -> (Option<Hit>, WalkCount) {
         match self.walk {
-            Walk::Index => descend::nearest(self, ray, t_min, t_max),
+            Walk::Index => {
+                let mut count = WalkCount::default();
+                (descend::nearest(self, ray, t_min, t_max, &mut count), count)
+            }
             Walk::LeadingDirection => self.walked(ray, t_min, t_max, false),
         }
     }
@@ -312,6 +320,7 @@ impl Octree {
     }
 
     /// Says whether anything is hit with `t_min < t < t_max`.
+    #[inline]
     pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
         match self.walk {
             Walk::Index => descend::is_any(self, ray, t_min, t_max),
@@ -326,11 +335,10 @@ impl Octree {
     }
 
     fn walked(&self, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> (Option<Hit>, WalkCount) {
-        let search = Search::new(self, ray, t_min, t_max, any).map(|mut search| {
-            search.walk();
-            search.found()
-        });
-        search.unwrap_or_default()
+        let Some(line) = Line::new(ray, &self.cube, t_min, t_max) else { return Default::default() };
+        let mut search = Search::new(self, &line, t_min, t_max, any);
+        search.walk();
+        search.found()
     }
 
     /// Number of objects.

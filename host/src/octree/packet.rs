@@ -89,13 +89,15 @@ impl Packet {
 fn across<L: Lanes>(corners: &[Eight; 3], frame: &Frame) -> (L, L) {
     let [x, y, z] = frame.axes;
     let along = L::load(&corners[z]);
-    let x = L::splat(frame.shear[0]).times_from(along, L::load(&corners[x]).minus(L::splat(frame.base[0])));
-    let y = L::splat(frame.shear[1]).times_from(along, L::load(&corners[y]).minus(L::splat(frame.base[1])));
-    (x, y)
+    let across = |axis: usize| {
+        let beside = L::load(&corners[axis]).minus(L::splat(frame.beside[axis]));
+        L::splat(frame.shear[axis]).times_from(along, beside)
+    };
+    (across(x), across(y))
 }
 
 /// Where corners lie along the ray.
 #[inline(always)]
 fn along<L: Lanes>(corners: &[Eight; 3], frame: &Frame) -> L {
-    L::load(&corners[frame.axes[2]]).times_minus(L::splat(frame.sign_z), L::splat(frame.base[2]))
+    L::load(&corners[frame.axes[2]]).times_minus(L::splat(frame.sign_z), L::splat(frame.base_z))
 }

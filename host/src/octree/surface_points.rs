@@ -7,6 +7,7 @@
 
 use super::build::{Leaves, Nodes, Reference, eighths, place};
 use super::clip::clipped;
+use super::frame::Line;
 use super::walk::Search;
 use super::{Division, Hit, Index, LocationalCode, Octree, PARALLEL_TRIANGLES, Ray};
 use crate::numeric::sampling::{Stream, triangle};
@@ -91,13 +92,14 @@ impl SurfacePoints {
     /// stands for one. The hit of a point is where the point is on its triangle, off the ray by about a voxel; `t` is where
     /// the ray meets its plane.
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
-        let mut search = Search::new(&self.octree, ray, t_min, t_max, false)?;
+        let line = Line::new(ray, &self.octree.cube, t_min, t_max)?;
+        let mut search = Search::new(&self.octree, &line, t_min, t_max, false);
         search.walk_with(|search, leaf, [enter, exit]| match self.points[leaf] {
             Some(kept) if enter > CLEAR * self.side => {
                 let [a, b, c] = self.octree.corners(kept.triangle);
                 let normal = (b - a).cross(c - a);
                 let t = (a - ray.origin).dot(normal) / ray.direction.dot(normal);
-                let along = search.frame.along(t);
+                let along = line.frame.along(t);
                 let slack = SLACK * self.side;
                 if along > enter - slack && along < exit + slack {
                     search.offer(Hit { t, triangle: kept.triangle, u: kept.u.into(), v: kept.v.into() });

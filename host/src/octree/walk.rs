@@ -3,9 +3,8 @@
 use super::build::eighths;
 use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
-use super::frame::Frame;
-use super::{Hit, Location, Octree, Ray, WalkCount};
-use crate::numeric::triangle::Shear;
+use super::frame::Line;
+use super::{Hit, Location, Octree, WalkCount};
 
 /// Voxels along the cube.
 const VOXELS: i64 = 1 << MAX_DEPTH;
@@ -13,8 +12,8 @@ const VOXELS: i64 = 1 << MAX_DEPTH;
 /// One ray on its way: what it has met so far.
 pub struct Search<'a> {
     pub(super) octree: &'a Octree,
-    shear: Shear,
-    pub(super) frame: Frame,
+    /// Apart, so that what changes can stay in the registers of the processor.
+    pub(super) line: &'a Line,
     pub(super) t_min: f64,
     pub(super) t_max: f64,
     /// Whether any hit will do.
@@ -26,13 +25,11 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Prepares a search for a hit with `t_min < t < t_max`; `None` if there is none for certain.
+    /// Prepares a search for a hit with `t_min < t < t_max`, for which the line was made.
     #[inline(always)]
-    pub fn new(octree: &'a Octree, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> Option<Self> {
-        let shear = Shear::new(ray, octree.cube.unit())?;
-        let frame = Frame::new(ray, &shear, &octree.cube, t_min, t_max)?;
-        let limit = frame.limit_of(frame.length);
-        Some(Self { octree, shear, frame, t_min, t_max, any, best: None, limit, count: WalkCount::default() })
+    pub fn new(octree: &'a Octree, line: &'a Line, t_min: f64, t_max: f64, any: bool) -> Self {
+        let limit = line.frame.limit_of(line.part.length());
+        Self { octree, line, t_min, t_max, any, best: None, limit, count: WalkCount::default() }
     }
 
     /// What was found.
@@ -48,7 +45,7 @@ impl<'a> Search<'a> {
         }
         // A ray from so far away that its points are less certain than a cell is fat may be in the cell beside the one
         // that it is taken for.
-        if 4.0 * self.frame.double_tolerance <= FAT {
+        if 4.0 * self.line.part.double_tolerance() <= FAT {
             self.step_from_cell_to_cell(|search, leaf, _| search.any_of_leaf(leaf));
         } else {
             self.look_from_above();
@@ -60,7 +57,7 @@ impl<'a> Search<'a> {
     /// - `visit`: the terminal node, and from where to where the ray is in it, sides of the modelling cube along the longest
     ///   axis; returns whether the search is over.
     pub(super) fn walk_with(&mut self, visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
-        if 4.0 * self.frame.double_tolerance <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
+        if 4.0 * self.line.part.double_tolerance() <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
     }
 }
 
@@ -76,6 +73,7 @@ impl Search<'_> {
     #[inline(always)]
     pub(super) fn crossed(&self, triangle: u32) -> Option<Hit> {
         let crossing = self
+            .line
             .shear
             .crossing(self.octree.corners(triangle))
             .filter(|crossing| crossing.t > self.t_min && crossing.t < self.t_max)?;
@@ -85,7 +83,7 @@ impl Search<'_> {
     /// Decides in double precision whether a triangle is hit nearer than any before.
     #[inline(always)]
     pub(super) fn decide(&mut self, triangle: u32) -> bool {
-        let Some(crossing) = self.shear.crossing(self.octree.corners(triangle)) else { return false };
+        let Some(crossing) = self.line.shear.crossing(self.octree.corners(triangle)) else { return false };
         self.offer(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
     }
 
@@ -101,7 +99,7 @@ impl Search<'_> {
             return false;
         }
         self.best = Some(hit);
-        self.limit = self.frame.limit(t);
+        self.limit = self.line.frame.limit(t);
         true
     }
 }
@@ -115,12 +113,13 @@ impl Search<'_> {
     fn step_from_cell_to_cell(&mut self, mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
         let octree = self.octree;
         let leaves = octree.leaves();
-        let frame = self.frame.clone();
+        let slopes = self.line.shear.slopes().to_array();
         let voxels = VOXELS as f64;
-        let entry = frame.entry.map(|x| x * voxels);
-        let forward = frame.down.map(|down| 1 - 2 * i64::from(down));
-        let leading = frame.axes[2];
-        let others = [frame.axes[0], frame.axes[1]];
+        let [x, y, z, _] = self.line.part.entry(&self.line.shear).to_array();
+        let entry = [x, y, z].map(|x| x * voxels);
+        let forward = self.line.frame.down.map(|down| 1 - 2 * i64::from(down));
+        let [second, third, leading] = self.line.shear.axes();
+        let others = [second, third];
         let mut voxel = entry.map(|x| (x.floor() as i64).clamp(0, VOXELS - 1));
         let mut enter = 0.0;
         loop {
@@ -135,7 +134,7 @@ impl Search<'_> {
             let side = i64::from(cell.side());
             // The plane through which each axis would leave the cell.
             let plane = [0, 1, 2].map(|axis| low[axis] + if forward[axis] > 0 { side } else { 0 });
-            let at = |axis: usize, s: f64| entry[axis] + frame.slopes[axis] * s;
+            let at = |axis: usize, s: f64| entry[axis] + slopes[axis] * s;
             let inside = |axis: usize, x: f64| x >= low[axis] as f64 && x <= (low[axis] + side) as f64;
 
             // Along the leading axis the slope is 1 or -1: no multiplication gives the length, two the exit point.
@@ -147,12 +146,12 @@ impl Search<'_> {
             }
             if let Some(second) = others.into_iter().find(|&axis| !inside(axis, point[axis])) {
                 crossed = second;
-                s = (plane[second] as f64 - entry[second]) * self.inverse(second);
+                s = (plane[second] as f64 - entry[second]) * slopes[second].recip();
                 let third = if second == others[0] { others[1] } else { others[0] };
                 point[third] = at(third, s);
                 if !inside(third, point[third]) {
                     crossed = third;
-                    s = (plane[third] as f64 - entry[third]) * self.inverse(third);
+                    s = (plane[third] as f64 - entry[third]) * slopes[third].recip();
                     point[second] = at(second, s);
                 }
                 point[leading] = at(leading, s);
@@ -184,7 +183,7 @@ impl Search<'_> {
         let leaves = self.octree.leaves();
         let mut cubes = vec![(LocationalCode::ROOT, 0..leaves.codes.len())];
         while let Some((cube, nodes)) = cubes.pop() {
-            if nodes.is_empty() || !self.frame.may_meet(cube) {
+            if nodes.is_empty() || !self.line.part.may_meet(&self.line.shear, cube) {
                 continue;
             }
             self.count.cells += 1;
@@ -194,10 +193,5 @@ impl Search<'_> {
                 return;
             }
         }
-    }
-
-    /// One over the slope of an axis that the ray crosses.
-    fn inverse(&self, axis: usize) -> f64 {
-        self.frame.slopes[axis].recip()
     }
 }
