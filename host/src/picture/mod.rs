@@ -12,6 +12,7 @@ pub use difference::{Difference, RELATIVE_FLOOR, difference};
 pub use file::PictureError;
 pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip};
 
+use crate::memory::prefer_large_pages;
 use protocol::raster::srgb_from_linear;
 
 /// Most pixels that a picture may have (16384 x 16384).
@@ -45,7 +46,8 @@ impl Picture {
     /// # Errors
     /// [`PictureError::Size`] for an empty side or more than [`MAX_PIXELS`].
     pub fn new(width: u32, height: u32) -> Result<Picture, PictureError> {
-        let pixels = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
+        let mut pixels = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
+        prefer_large_pages(&mut pixels);
         Ok(Picture { width, height, pixels })
     }
 

@@ -1,5 +1,6 @@
 //! What the samples of all pixels add up to.
 
+use crate::memory::prefer_large_pages;
 use crate::picture::{Picture, PictureError, Pixel};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -193,7 +194,8 @@ impl Film {
     /// A film without samples whose memory is not got yet, for one who writes all of it before reading any: to read first
     /// makes the system give each page twice. Samples may be added in any order.
     pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
-        let tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
+        let mut tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
+        prefer_large_pages(&mut tallies);
         Ok(Film { width, height, tallies, classes: Vec::new(), in_turn: false })
     }
 

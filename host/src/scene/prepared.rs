@@ -222,8 +222,10 @@ impl Prepared {
     }
 
     /// The corners of a triangle, in scene coordinates.
+    #[inline]
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|i| self.vertices[i as usize])
+        let [a, b, c] = self.triangles[triangle as usize];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 
     /// The object that a triangle belongs to.
