@@ -290,9 +290,9 @@ impl Search<'_> {
     fn any_of_packet<L: Lanes>(&self, packet: &Packet, enough: &mut impl FnMut(Hit) -> bool) -> bool {
         let (mut lanes, _) = packet.candidates::<L, false>(&self.line.frame, self.limit, [0.0; 2]);
         while lanes != 0 {
-            let triangle = packet.triangles[lanes.trailing_zeros() as usize & (LANES - 1)];
+            let lane = lanes.trailing_zeros() as usize & (LANES - 1);
             lanes &= lanes - 1;
-            if self.crossed(triangle).is_some_and(&mut *enough) {
+            if self.crossed(packet.triangles[lane], packet.vertices[lane]).is_some_and(&mut *enough) {
                 return true;
             }
         }
@@ -308,9 +308,9 @@ impl Search<'_> {
             return true;
         }
         while lanes != 0 {
-            let triangle = packet.triangles[lanes.trailing_zeros() as usize & (LANES - 1)];
+            let lane = lanes.trailing_zeros() as usize & (LANES - 1);
             lanes &= lanes - 1;
-            if self.decide(triangle) && ANY {
+            if self.decide(packet.triangles[lane], packet.vertices[lane]) && ANY {
                 return true;
             }
         }

@@ -13,6 +13,7 @@ use super::items::{self, Item};
 use super::lanes::{Eight, LANES, Lanes};
 use super::packet::Packet;
 use super::partition::{Part, divide};
+use crate::memory::prefer_large_pages;
 use crate::numeric::bounds::Bounds;
 
 /// So many cells or fewer are divided by their items.
@@ -141,8 +142,7 @@ impl Index {
         index.of_cells(&mut cells, &part, &mut groups);
         let build = |cells: &[Item], index: &mut Self| builder.of_group(cells, index);
         if current_num_threads() == 1 {
-            index.nodes.reserve(items.len() / 24);
-            index.packets.reserve(items.len() / 4);
+            index.reserve(items.len() / 24, items.len() / 4);
             for (cells, place) in groups {
                 let child = build(cells, &mut index);
                 index.attach(child, place);
@@ -156,6 +156,8 @@ impl Index {
                     made
                 })
                 .collect();
+            let sum = |of: fn(&Self) -> usize| made.iter().map(of).sum();
+            index.reserve(sum(|made| made.nodes.len()), sum(|made| made.packets.len()));
             for (made, (_, place)) in made.iter().zip(groups) {
                 let child = index.append(made);
                 index.attach(child, place);
@@ -191,6 +193,14 @@ impl Index {
         if let Some((node, lane)) = place {
             self.nodes[node].children[lane] = child;
         }
+    }
+
+    /// Gets memory for so many more.
+    fn reserve(&mut self, nodes: usize, packets: usize) {
+        self.nodes.reserve(nodes);
+        self.packets.reserve(packets);
+        prefer_large_pages(self.nodes.spare_capacity_mut());
+        prefer_large_pages(self.packets.spare_capacity_mut());
     }
 
     /// Adds what another one holds; returns its top.
@@ -265,14 +275,13 @@ impl Builder<'_> {
     }
 
     fn packets(&self, items: &[Item], index: &mut Index) -> Child {
-        let corners = |triangle: u32| {
-            self.triangles[triangle as usize].map(|i| {
-                let [x, y, z, _] = self.local[i as usize].to_array();
-                [x, y, z]
-            })
+        let place = |vertex: u32| {
+            let [x, y, z, _] = self.local[vertex as usize].to_array();
+            [x, y, z]
         };
+        let packet = |items: &[Item]| Packet::new(items.iter().map(Item::number), self.triangles, place);
         let first = index.packets.len();
-        index.packets.extend(items.chunks(LANES).map(|items| Packet::new(items.iter().map(Item::number), corners)));
+        index.packets.extend(items.chunks(LANES).map(packet));
         Child::packets(first..index.packets.len())
     }
 }

@@ -15,15 +15,22 @@ pub struct Packet {
     size: Eight,
     /// Indices of the triangles.
     pub triangles: [u32; LANES],
+    /// Indices of their corners, beside them so that what decides is found at once.
+    pub vertices: [[u32; 3]; LANES],
 }
 
 impl Packet {
-    /// Packs up to eight triangles; `corners` gives the local coordinates of one.
-    pub fn new(triangles: impl Iterator<Item = u32>, corners: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
-        let nothing = Eight([f32::NEG_INFINITY; LANES]);
-        let mut packet = Self { corners: [[Eight([0.0; LANES]); 3]; 3], size: nothing, triangles: [u32::MAX; LANES] };
-        for (lane, triangle) in triangles.take(LANES).enumerate() {
-            let [a, b, c] = corners(triangle);
+    /// Packs up to eight of all triangles; `place` gives the local coordinates of a vertex.
+    pub fn new(chosen: impl Iterator<Item = u32>, all: &[[u32; 3]], place: impl Fn(u32) -> [f32; 3]) -> Self {
+        let mut packet = Self {
+            corners: [[Eight([0.0; LANES]); 3]; 3],
+            size: Eight([f32::NEG_INFINITY; LANES]),
+            triangles: [u32::MAX; LANES],
+            vertices: [[0; 3]; LANES],
+        };
+        for (lane, triangle) in chosen.take(LANES).enumerate() {
+            let vertices = all[triangle as usize];
+            let [a, b, c] = vertices.map(&place);
             let mut size = 0.0_f32;
             for axis in 0..3 {
                 for (corner, point) in [a, b, c].iter().enumerate() {
@@ -35,6 +42,7 @@ impl Packet {
             }
             packet.size.0[lane] = size + ROUNDING;
             packet.triangles[lane] = triangle;
+            packet.vertices[lane] = vertices;
         }
         packet
     }

@@ -89,8 +89,9 @@ impl Octree {
         if found.len() > most {
             return Between::Many;
         }
-        let corners = |triangle: u32| self.local_corners(triangle).map(|corner| corner.as_vec3().to_array());
-        let packets = found.chunks(super::lanes::LANES).map(|chunk| Packet::new(chunk.iter().copied(), corners));
+        let place = |vertex: u32| self.cube.local(self.vertices[vertex as usize]).as_vec3().to_array();
+        let packet = |chunk: &[u32]| Packet::new(chunk.iter().copied(), &self.triangles, place);
+        let packets = found.chunks(super::lanes::LANES).map(packet);
         Between::Some(Shaft { packets: packets.collect(), triangles: found.len() })
     }
 

@@ -66,25 +66,22 @@ impl Search<'_> {
     pub(super) fn any_of_leaf(&mut self, leaf: usize) -> bool {
         let triangles = self.octree.leaves().of(leaf);
         self.count.triangles += triangles.len() as u64;
-        triangles.iter().any(|&triangle| self.decide(triangle) && self.any)
+        triangles.iter().any(|&triangle| self.decide(triangle, self.octree.triangles[triangle as usize]) && self.any)
     }
 
-    /// The hit of a triangle, decided in double precision.
+    /// The hit of a triangle with given corners, decided in double precision.
     #[inline(always)]
-    pub(super) fn crossed(&self, triangle: u32) -> Option<Hit> {
-        let crossing = self
-            .line
-            .shear
-            .crossing(self.octree.corners(triangle))
-            .filter(|crossing| crossing.t > self.t_min && crossing.t < self.t_max)?;
-        Some(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
+    pub(super) fn crossed(&self, triangle: u32, [a, b, c]: [u32; 3]) -> Option<Hit> {
+        let vertices = &self.octree.vertices;
+        let crossing = self.line.shear.crossing([vertices[a as usize], vertices[b as usize], vertices[c as usize]])?;
+        let is_within = crossing.t > self.t_min && crossing.t < self.t_max;
+        is_within.then_some(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
     }
 
-    /// Decides in double precision whether a triangle is hit nearer than any before.
+    /// Decides in double precision whether a triangle with given corners is hit nearer than any before.
     #[inline(always)]
-    pub(super) fn decide(&mut self, triangle: u32) -> bool {
-        let Some(crossing) = self.line.shear.crossing(self.octree.corners(triangle)) else { return false };
-        self.offer(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
+    pub(super) fn decide(&mut self, triangle: u32, corners: [u32; 3]) -> bool {
+        self.crossed(triangle, corners).is_some_and(|hit| self.offer(hit))
     }
 
     /// Takes a hit if it is nearer than any before; returns whether it is.
