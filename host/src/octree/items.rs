@@ -1,7 +1,7 @@
 //! What the index holds, in the order of locational codes: triangles, and pieces of large ones that are thin and slanted.
 
-use super::build::{Division, eighths};
-use super::clip::Bounds;
+use super::build::{Division, eighths, place};
+use super::clip::{Bounds, FAT};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::sorted::{DIGITS, radix_sorted};
 use glam::DVec3;
@@ -171,7 +171,16 @@ fn collect(division: &Division<'_>, triangle: u32, cell: LocationalCode, level: 
     let Some(piece) = division.part(triangle, cell) else { return };
     if cell.level() >= level.min(MAX_DEPTH) {
         pieces.push(piece);
-    } else {
-        eighths(cell).for_each(|eighth| collect(division, triangle, eighth, level, pieces));
+        return;
     }
+    // Most eighths are beside what is in the cell: nothing has to be cut to know that.
+    let (low, half) = place(cell);
+    let touches = |eighth: &LocationalCode| {
+        let digit = eighth.digit(eighth.level()).unwrap_or(0);
+        (0..3).all(|axis| match digit >> axis & 1 {
+            0 => f64::from(piece.low[axis]) <= low[axis] + half + FAT,
+            _ => f64::from(piece.high[axis]) >= low[axis] + half - FAT,
+        })
+    };
+    eighths(cell).filter(touches).for_each(|eighth| collect(division, triangle, eighth, level, pieces));
 }
