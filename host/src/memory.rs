@@ -2,7 +2,7 @@
 
 /// Asks the system for large pages under memory that is about to be written for the first time.
 ///
-/// Without, each page of 4 KiB is a fault of its own: a sixth of the time of a large picture by scan line. Nothing but time
+/// Without, each page of 4 KiB is a fault of its own: an eighth of the time of a large picture by scan line. Nothing but time
 /// depends on it; systems other than Linux do without.
 pub fn prefer_large_pages<T>(memory: &mut [T]) {
     #[cfg(target_os = "linux")]

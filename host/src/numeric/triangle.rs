@@ -62,6 +62,7 @@ impl Shear {
         let sane = lengths.simd_le(f64x4::splat(f64::MAX)) & origin.abs().simd_le(f64x4::splat(MAX_MAGNITUDE));
         // Without branches, since no processor can foresee them.
         let magnitude = lengths.to_array();
+        // Not looked up by the axis, which is known later.
         let xy_longest = if magnitude[1] > magnitude[0] { magnitude[1] } else { magnitude[0] };
         let longest = if magnitude[2] > xy_longest { magnitude[2] } else { xy_longest };
         let xy = usize::from(magnitude[1] > magnitude[0]);

@@ -73,7 +73,7 @@ impl Stack {
     }
 }
 
-/// Finds the nearest hit with `t_min < t < t_max`, and adds up the work that it takes.
+/// Finds the nearest hit with `t_min < t < t_max`, and counts the work, if there was any.
 #[inline]
 pub fn nearest(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, count: &mut WalkCount) -> Option<Hit> {
     #[cfg(target_arch = "x86_64")]

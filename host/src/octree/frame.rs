@@ -23,7 +23,7 @@ pub const MAX_DISTANCE: f64 = (1_u64 << 46) as f64;
 /// One over a slope counts as this above it in the box test; the ray leaves its line by less than 1e-19 of the cube.
 const MOST_INVERSE: f64 = 1e20;
 
-/// A little, in tolerances.
+/// How far before its entry a ray is taken to begin, in tolerances.
 const MARGIN: f64 = 4.0;
 
 /// A ray made ready for what is in a cube.
@@ -32,7 +32,7 @@ pub struct Line {
     /// What decides which triangles it meets.
     pub shear: Shear,
     /// The part that counts.
-    pub part: Part,
+    pub chord: Chord,
     /// The same for tests in single precision.
     pub frame: Frame,
 }
@@ -42,15 +42,15 @@ impl Line {
     #[inline(always)]
     pub fn new(ray: &Ray, cube: &Cube, t_min: f64, t_max: f64) -> Option<Self> {
         let shear = Shear::new(ray, cube.unit())?;
-        let part = Part::new(ray, &shear, cube, t_min, t_max)?;
-        let frame = Frame::new(&shear, &part);
-        Some(Self { shear, part, frame })
+        let chord = Chord::new(ray, &shear, cube, t_min, t_max)?;
+        let frame = Frame::new(&shear, &chord);
+        Some(Self { shear, chord, frame })
     }
 }
 
 /// The part of a ray that is in the cube, as a line in local coordinates.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct Chord {
     origin: f64x4,
     /// One over the slope, by axis, bounded.
     inverse: f64x4,
@@ -60,7 +60,7 @@ pub struct Part {
     exit: f64,
 }
 
-impl Part {
+impl Chord {
     /// `None` if a ray that was sheared before misses the cube between `t_min` and `t_max`.
     #[inline(always)]
     pub fn new(ray: &Ray, shear: &Shear, cube: &Cube, t_min: f64, t_max: f64) -> Option<Self> {
@@ -145,7 +145,7 @@ pub struct Frame {
     pub error_scale: f32,
     /// One over the slope, by axis.
     pub inverse: [f32; 4],
-    /// What is to be taken from a coordinate times the inverse to get the length to the near side of a box, which is moved
+    /// What is to be added to a coordinate times the inverse to get the length to the near side of a box, which is moved
     /// towards the ray by the tolerance; by axis.
     pub near: [f32; 4],
     /// The same for the far sides.
@@ -161,8 +161,8 @@ pub struct Frame {
 impl Frame {
     /// Prepares a part of a ray that was sheared before.
     #[inline(always)]
-    pub fn new(shear: &Shear, part: &Part) -> Self {
-        let Part { origin, inverse, tolerance, enter, .. } = *part;
+    pub fn new(shear: &Shear, chord: &Chord) -> Self {
+        let Chord { origin, inverse, tolerance, enter, .. } = *chord;
         let (slopes, axes) = (shear.slopes(), shear.axes());
         let sign_z = 1.0_f64.copysign(shear.length_z());
         let origin_z = origin.as_array()[axes[2]] * sign_z;
@@ -182,9 +182,9 @@ impl Frame {
             near: single(f64x4::splat(-first) - (length + aside)),
             far: single(f64x4::splat(-first) - (length - aside)),
             down: [x.is_sign_negative(), y.is_sign_negative(), z.is_sign_negative()],
-            length: part.length(),
-            rate: part.rate,
-            offset: part.enter,
+            length: chord.length(),
+            rate: chord.rate,
+            offset: chord.enter,
         }
     }
 

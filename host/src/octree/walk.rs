@@ -28,7 +28,7 @@ impl<'a> Search<'a> {
     /// Prepares a search for a hit with `t_min < t < t_max`, for which the line was made.
     #[inline(always)]
     pub fn new(octree: &'a Octree, line: &'a Line, t_min: f64, t_max: f64, any: bool) -> Self {
-        let limit = line.frame.limit_of(line.part.length());
+        let limit = line.frame.limit_of(line.chord.length());
         Self { octree, line, t_min, t_max, any, best: None, limit, count: WalkCount::default() }
     }
 
@@ -45,7 +45,7 @@ impl<'a> Search<'a> {
         }
         // A ray from so far away that its points are less certain than a cell is fat may be in the cell beside the one
         // that it is taken for.
-        if 4.0 * self.line.part.double_tolerance() <= FAT {
+        if 4.0 * self.line.chord.double_tolerance() <= FAT {
             self.step_from_cell_to_cell(|search, leaf, _| search.any_of_leaf(leaf));
         } else {
             self.look_from_above();
@@ -57,7 +57,7 @@ impl<'a> Search<'a> {
     /// - `visit`: the terminal node, and from where to where the ray is in it, sides of the modelling cube along the longest
     ///   axis; returns whether the search is over.
     pub(super) fn walk_with(&mut self, visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
-        if 4.0 * self.line.part.double_tolerance() <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
+        if 4.0 * self.line.chord.double_tolerance() <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
     }
 }
 
@@ -112,7 +112,7 @@ impl Search<'_> {
         let leaves = octree.leaves();
         let slopes = self.line.shear.slopes().to_array();
         let voxels = VOXELS as f64;
-        let [x, y, z, _] = self.line.part.entry(&self.line.shear).to_array();
+        let [x, y, z, _] = self.line.chord.entry(&self.line.shear).to_array();
         let entry = [x, y, z].map(|x| x * voxels);
         let forward = self.line.frame.down.map(|down| 1 - 2 * i64::from(down));
         let [second, third, leading] = self.line.shear.axes();
@@ -180,7 +180,7 @@ impl Search<'_> {
         let leaves = self.octree.leaves();
         let mut cubes = vec![(LocationalCode::ROOT, 0..leaves.codes.len())];
         while let Some((cube, nodes)) = cubes.pop() {
-            if nodes.is_empty() || !self.line.part.may_meet(&self.line.shear, cube) {
+            if nodes.is_empty() || !self.line.chord.may_meet(&self.line.shear, cube) {
                 continue;
             }
             self.count.cells += 1;
