@@ -4,10 +4,11 @@ use super::frame::Line;
 use super::index::Child;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Wide;
-use super::lanes::{LANES, Lanes, Plain};
+use super::lanes::{LANES, Lanes, Plain, prefetch};
 use super::packet::Packet;
 use super::walk::Search;
 use super::{Hit, Octree, Ray, WalkCount};
+use glam::DVec3;
 
 /// Entries of the stack that need no allocation.
 const STACK: usize = 32;
@@ -268,7 +269,9 @@ impl Search<'_> {
                     }
                 }
                 Ok(places) => {
-                    for packet in &index.packets[places] {
+                    let packets = &index.packets[places];
+                    packets.iter().for_each(prefetch);
+                    for packet in packets {
                         if is_last(self, packet) {
                             return true;
                         }
@@ -285,6 +288,12 @@ impl Search<'_> {
         }
     }
 
+    /// The corners of a triangle, world units.
+    #[inline(always)]
+    fn corners(&self, packet: &Packet, lane: usize) -> [DVec3; 3] {
+        packet.corners(lane).unwrap_or_else(|| self.octree.corners(packet.triangles[lane]))
+    }
+
     /// Gives the hits of a packet until one is enough.
     #[inline(always)]
     fn any_of_packet<L: Lanes>(&self, packet: &Packet, enough: &mut impl FnMut(Hit) -> bool) -> bool {
@@ -292,7 +301,7 @@ impl Search<'_> {
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize & (LANES - 1);
             lanes &= lanes - 1;
-            if self.crossed(packet.triangles[lane], packet.vertices[lane]).is_some_and(&mut *enough) {
+            if self.crossed(packet.triangles[lane], self.corners(packet, lane)).is_some_and(&mut *enough) {
                 return true;
             }
         }
@@ -310,7 +319,7 @@ impl Search<'_> {
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize & (LANES - 1);
             lanes &= lanes - 1;
-            if self.decide(packet.triangles[lane], packet.vertices[lane]) && ANY {
+            if self.decide(packet.triangles[lane], self.corners(packet, lane)) && ANY {
                 return true;
             }
         }

@@ -136,7 +136,8 @@ impl Index {
         if items.is_empty() {
             return index;
         }
-        let builder = Builder { triangles: division.triangles, local: &local, items: &items };
+        let builder =
+            Builder { vertices: division.vertices, triangles: division.triangles, local: &local, items: &items };
         let mut groups = Vec::new();
         let part = Part::of(&cells);
         index.of_cells(&mut cells, &part, &mut groups);
@@ -247,6 +248,7 @@ fn shares<'a>(mut items: &'a mut [Item], part: &Part) -> Vec<(&'a mut [Item], Pa
 
 /// What all nodes are made of.
 struct Builder<'a> {
+    vertices: &'a [DVec3],
     triangles: &'a [[u32; 3]],
     local: &'a [f32x4],
     items: &'a [Item],
@@ -279,7 +281,8 @@ impl Builder<'_> {
             let [x, y, z, _] = self.local[vertex as usize].to_array();
             [x, y, z]
         };
-        let packet = |items: &[Item]| Packet::new(items.iter().map(Item::number), self.triangles, place);
+        let packet =
+            |items: &[Item]| Packet::new(items.iter().map(Item::number), (self.vertices, self.triangles), place);
         let first = index.packets.len();
         index.packets.extend(items.chunks(LANES).map(packet));
         Child::packets(first..index.packets.len())

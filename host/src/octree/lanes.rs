@@ -40,6 +40,23 @@ pub trait Lanes: Copy {
     fn is_at_most(self, other: Self) -> u32;
 }
 
+/// Asks for all lines of the cache that something lies in, before they are read one after the other.
+#[inline(always)]
+pub fn prefetch<T>(thing: &T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        const LINE: usize = 64;
+        let begin = std::ptr::from_ref(thing).cast::<i8>();
+        for line in 0..size_of::<T>().div_ceil(LINE) {
+            // SAFETY: Every processor of this kind has the instruction, which changes nothing but the cache.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(begin.wrapping_add(line * LINE)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = thing;
+}
+
 /// Whatever the processor.
 #[derive(Clone, Copy)]
 pub struct Plain([f32; LANES]);

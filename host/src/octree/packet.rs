@@ -2,9 +2,17 @@
 
 use super::frame::Frame;
 use super::lanes::{Eight, LANES, Lanes};
+use glam::DVec3;
 
 /// What rounding the corners may add to the size of a triangle.
 const ROUNDING: f32 = 1.0 / (1_u32 << 22) as f32;
+
+/// The place of a corner that is not there.
+const NOWHERE: u8 = u8::MAX;
+
+/// Points in a packet: eight triangles side by side have nine or ten corners, and eleven points fill ten lines of the cache.
+/// One triangle in two hundred finds no room for its own.
+const POINTS: usize = 11;
 
 /// Eight triangles in local coordinates, rounded to single precision, lane by lane.
 #[derive(Clone, Debug)]
@@ -15,22 +23,31 @@ pub struct Packet {
     size: Eight,
     /// Indices of the triangles.
     pub triangles: [u32; LANES],
-    /// Indices of their corners, beside them so that what decides is found at once.
-    pub vertices: [[u32; 3]; LANES],
+    /// Which of the points are their corners; none where there is no room.
+    places: [[u8; 3]; LANES],
+    /// Vertices in double precision, beside the triangles so that what decides comes with them.
+    points: [DVec3; POINTS],
 }
 
 impl Packet {
     /// Packs up to eight of all triangles; `place` gives the local coordinates of a vertex.
-    pub fn new(chosen: impl Iterator<Item = u32>, all: &[[u32; 3]], place: impl Fn(u32) -> [f32; 3]) -> Self {
+    pub fn new(
+        chosen: impl Iterator<Item = u32>,
+        (vertices, all): (&[DVec3], &[[u32; 3]]),
+        place: impl Fn(u32) -> [f32; 3],
+    ) -> Self {
+        // Which vertices the points are.
+        let (mut known, mut count) = ([u32::MAX; POINTS], 0);
         let mut packet = Self {
             corners: [[Eight([0.0; LANES]); 3]; 3],
             size: Eight([f32::NEG_INFINITY; LANES]),
             triangles: [u32::MAX; LANES],
-            vertices: [[0; 3]; LANES],
+            places: [[NOWHERE; 3]; LANES],
+            points: [DVec3::ZERO; POINTS],
         };
         for (lane, triangle) in chosen.take(LANES).enumerate() {
-            let vertices = all[triangle as usize];
-            let [a, b, c] = vertices.map(&place);
+            let corners = all[triangle as usize];
+            let [a, b, c] = corners.map(&place);
             let mut size = 0.0_f32;
             for axis in 0..3 {
                 for (corner, point) in [a, b, c].iter().enumerate() {
@@ -42,9 +59,24 @@ impl Packet {
             }
             packet.size.0[lane] = size + ROUNDING;
             packet.triangles[lane] = triangle;
-            packet.vertices[lane] = vertices;
+            for (corner, vertex) in corners.into_iter().enumerate() {
+                let at = known[..count].iter().position(|other| *other == vertex).unwrap_or(count);
+                if at == count && count < POINTS {
+                    known[count] = vertex;
+                    packet.points[count] = vertices[vertex as usize];
+                    count += 1;
+                }
+                packet.places[lane][corner] = if at < count { at as u8 } else { NOWHERE };
+            }
         }
         packet
+    }
+
+    /// The corners of a triangle, world units, if they are here.
+    #[inline(always)]
+    pub fn corners(&self, lane: usize) -> Option<[DVec3; 3]> {
+        let [a, b, c] = self.places[lane].map(|place| self.points.get(usize::from(place)));
+        Some([*a?, *b?, *c?])
     }
 
     /// The triangles that the ray may hit between the start of the frame and `limit`, and for `ANY` those that it certainly

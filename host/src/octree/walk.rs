@@ -5,6 +5,7 @@ use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::frame::Line;
 use super::{Hit, Location, Octree, WalkCount};
+use glam::DVec3;
 
 /// Voxels along the cube.
 const VOXELS: i64 = 1 << MAX_DEPTH;
@@ -66,21 +67,20 @@ impl Search<'_> {
     pub(super) fn any_of_leaf(&mut self, leaf: usize) -> bool {
         let triangles = self.octree.leaves().of(leaf);
         self.count.triangles += triangles.len() as u64;
-        triangles.iter().any(|&triangle| self.decide(triangle, self.octree.triangles[triangle as usize]) && self.any)
+        triangles.iter().any(|&triangle| self.decide(triangle, self.octree.corners(triangle)) && self.any)
     }
 
     /// The hit of a triangle with given corners, decided in double precision.
     #[inline(always)]
-    pub(super) fn crossed(&self, triangle: u32, [a, b, c]: [u32; 3]) -> Option<Hit> {
-        let vertices = &self.octree.vertices;
-        let crossing = self.line.shear.crossing([vertices[a as usize], vertices[b as usize], vertices[c as usize]])?;
+    pub(super) fn crossed(&self, triangle: u32, corners: [DVec3; 3]) -> Option<Hit> {
+        let crossing = self.line.shear.crossing(corners)?;
         let is_within = crossing.t > self.t_min && crossing.t < self.t_max;
         is_within.then_some(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
     }
 
     /// Decides in double precision whether a triangle with given corners is hit nearer than any before.
     #[inline(always)]
-    pub(super) fn decide(&mut self, triangle: u32, corners: [u32; 3]) -> bool {
+    pub(super) fn decide(&mut self, triangle: u32, corners: [DVec3; 3]) -> bool {
         self.crossed(triangle, corners).is_some_and(|hit| self.offer(hit))
     }
 
