@@ -4,7 +4,7 @@ use libm::erfc;
 
 /// Slopes beyond this, in units of the root mean square times root 2, are rarer than 1e-22.
 const STEEPEST: f64 = 7.0;
-/// Most rounds of the iteration; it needs three to six.
+/// Most rounds of the iteration; it needs three, seldom more than five.
 const ROUNDS: usize = 60;
 const INVERSE_ROOT_OF_PI: f64 = 0.564_189_583_547_756_3;
 
@@ -15,24 +15,34 @@ const INVERSE_ROOT_OF_PI: f64 = 0.564_189_583_547_756_3;
 /// - `cosine`, `sine`: of the direction, both 0 and more, squares adding up to 1. `uniform`: 0..1.
 /// - Returns −7..=7.
 pub(super) fn inverse_of_visible(cosine: f64, sine: f64, uniform: f64) -> f64 {
-    let below = |x: f64| cosine * 0.5 * erfc(-x) + sine * 0.5 * INVERSE_ROOT_OF_PI * (-x * x).exp();
+    let below = |x: f64, bell: f64| cosine * 0.5 * erfc(-x) + sine * 0.5 * bell;
+    let bell = |x: f64| INVERSE_ROOT_OF_PI * (-x * x).exp();
     let top = if cosine >= STEEPEST * sine { STEEPEST } else { cosine / sine };
-    let wanted = uniform * below(top);
+    let wanted = uniform * below(top, bell(top));
     let (mut low, mut high) = (-STEEPEST, top);
-    let mut x = guess(uniform).clamp(low, high);
+    // From straight above they are those of a Gaussian; from the horizon a part exp(-x²) of them is seen. Where the slope is
+    // that of the direction itself nothing is seen, and no step leads away.
+    let flat = 0.5 * INVERSE_ROOT_OF_PI * sine / (0.5 * INVERSE_ROOT_OF_PI * sine + cosine);
+    let from_horizon = -(-uniform.max(f64::MIN_POSITIVE).ln()).max(0.0).sqrt();
+    let begin = guess(uniform) * (1.0 - flat) + from_horizon * flat;
+    let mut x = begin.min(top - 0.25 * (1.0 - uniform)).max(low);
     for _ in 0..ROUNDS {
-        let excess = below(x) - wanted;
+        let here = bell(x);
+        let excess = below(x, here) - wanted;
         if excess > 0.0 {
             high = x;
         } else {
             low = x;
         }
-        let slope = (cosine - x * sine) * INVERSE_ROOT_OF_PI * (-x * x).exp();
-        let next = x - excess / slope;
-        // Newton's step, or half of the bracket where the step leaves it.
+        // Halley's step: Newton's, and how the slope changes along it, by half at the most. Or half of the bracket where the
+        // step leaves it.
+        let seen = cosine - x * sine;
+        let newton = excess / (seen * here);
+        let change = (newton * (x + 0.5 * sine / seen)).max(-0.5);
+        let next = x - newton / (1.0 + change);
         let next = if (low..=high).contains(&next) { next } else { 0.5 * (low + high) };
-        // The error after a step is about its square.
-        if (next - x).abs() <= 1e-8 {
+        // The error after a step is about its cube.
+        if (next - x).abs() <= 1e-6 {
             return next;
         }
         x = next;

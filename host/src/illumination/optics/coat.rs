@@ -7,6 +7,7 @@ use crate::illumination::distribution::{Distribution, Microfacet};
 use crate::illumination::fresnel::Dielectric;
 use crate::numeric::cubature::{GAUSS, unit_square};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
@@ -43,7 +44,8 @@ impl Coat {
                 };
                 1.0 - unit_square(reflected, TOLERANCE, MOST_EVALUATIONS).value.clamp(0.0, 1.0)
             };
-            coat.through = (0..=STEPS).map(entry).collect();
+            let through = (0..=STEPS).into_par_iter().map(entry).collect();
+            coat.through = through;
         }
         coat
     }

@@ -24,12 +24,14 @@ pub struct Library<'a> {
     everything: bool,
     /// By name and roughness.
     forms: Vec<(String, f64, Shape)>,
+    /// By refractive index and roughness.
+    coats: Vec<([f64; 2], Arc<Coat>)>,
 }
 
 impl<'a> Library<'a> {
     /// - `everything`: keeps lobes that reflect nothing, which changes no picture.
     pub fn new(wavelengths: &'a Wavelengths, everything: bool) -> Library<'a> {
-        Library { wavelengths, everything, forms: Vec::new() }
+        Library { wavelengths, everything, forms: Vec::new(), coats: Vec::new() }
     }
 
     /// A material, ready.
@@ -137,13 +139,8 @@ impl<'a> Library<'a> {
         optics.add(lobe, Interreflection::Followed);
     }
 
-    fn coated(&self, coated: &Coated, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
-        let surface = Dielectric::new(1.0, coated.index)?;
-        let facets = match coated.roughness {
-            0.0 => None,
-            roughness => Some(Microfacet::new(Facets::Ggx, DVec2::splat(roughness))?),
-        };
-        let coat = Arc::new(Coat::new(surface, facets));
+    fn coated(&mut self, coated: &Coated, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
+        let coat = self.coat(coated.index, coated.roughness)?;
         optics.add(Lobe::Coat(coat.clone()), Interreflection::Followed);
         if let Some(shade) = self.needed(&coated.diffuse, optics) {
             let ground = Ground::new(coat, coated.index, &shade, self.wavelengths.combs());
@@ -151,6 +148,21 @@ impl<'a> Library<'a> {
             optics.ambient = shade;
         }
         Ok(())
+    }
+
+    /// A coat of a refractive index and a roughness.
+    fn coat(&mut self, index: f64, roughness: f64) -> Result<Arc<Coat>, MaterialError> {
+        let key = [index, roughness];
+        if let Some((_, coat)) = self.coats.iter().find(|(other, _)| *other == key) {
+            return Ok(coat.clone());
+        }
+        let facets = match roughness {
+            0.0 => None,
+            roughness => Some(Microfacet::new(Facets::Ggx, DVec2::splat(roughness))?),
+        };
+        let coat = Arc::new(Coat::new(Dielectric::new(1.0, index)?, facets));
+        self.coats.push((key, coat.clone()));
+        Ok(coat)
     }
 
     /// A fraction of light; its pattern goes to the others of the material.
