@@ -39,10 +39,10 @@ pub(super) fn inverse_of_visible(cosine: f64, sine: f64, uniform: f64) -> f64 {
         let seen = cosine - x * sine;
         let newton = excess / (seen * here);
         let change = (newton * (x + 0.5 * sine / seen)).max(-0.5);
-        let next = x - newton / (1.0 + change);
-        let next = if (low..=high).contains(&next) { next } else { 0.5 * (low + high) };
-        // The error after a step is about its cube.
-        if (next - x).abs() <= 1e-6 {
+        let step = x - newton / (1.0 + change);
+        // The error after such a step is about its cube, after half a bracket as large as that.
+        let (next, close) = if (low..=high).contains(&step) { (step, 1e-6) } else { (0.5 * (low + high), 1e-8) };
+        if (next - x).abs() <= close {
             return next;
         }
         x = next;
