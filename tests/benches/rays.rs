@@ -26,6 +26,9 @@ use shapes::Shape;
 /// Passes over each set; the median counts.
 const PASSES: usize = 5;
 
+/// Seconds that a pass takes at least where threads are compared, so that their start is no part of it.
+const LONG_ENOUGH: f64 = 0.1;
+
 /// One ray in so many goes to those that are slow: the walk from cell to cell, `bvh` and `parry3d`.
 const STRIDE: usize = 8;
 
@@ -98,17 +101,16 @@ fn report(shape: &Shape, side: usize) {
                 &|| parries.iter().step_by(STRIDE).filter(|ray| parry.hits(ray, set.t_max)).count(),
             ],
         );
-        let all = all_threads(&octree, set);
+        let (all, to_one) = all_threads(&octree, set);
         let other = embree.as_ref().map_or(f64::NAN, |embree| embree.rates[index]);
         let (cells, triangles) = work(&octree, set);
         println!(
-            "  {:8} {fast:7.2} {all:7.2} {slow:7.2} {binary:7.2} {wide:7.2} {bvh:7.2} {parry:7.2} {other:7.2} | {:.2}, {:.1}, {:.1}, {:.2}; {:.2} | {cells:.1}, {triangles:.1}, {differ}",
+            "  {:8} {fast:7.2} {all:7.2} {slow:7.2} {binary:7.2} {wide:7.2} {bvh:7.2} {parry:7.2} {other:7.2} | {:.2}, {:.1}, {:.1}, {:.2}; {to_one:.2} | {cells:.1}, {triangles:.1}, {differ}",
             set.name,
             fast / binary.max(wide),
             fast / bvh,
             fast / parry,
             fast / other,
-            all / fast,
         );
     }
     println!();
@@ -200,17 +202,26 @@ fn rates<const N: usize>(rays: [usize; N], rivals: [&dyn Fn() -> usize; N]) -> [
     })
 }
 
-/// Millions of rays per second of all threads, by the clock on the wall.
-fn all_threads(octree: &Octree, set: &RaySet) -> f64 {
-    let mut seconds: Vec<f64> = (0..PASSES)
-        .map(|_| {
-            let start = Instant::now();
-            black_box(set.rays.par_iter().with_min_len(1024).filter(|ray| hit(octree, ray, set)).count());
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    seconds.sort_by(f64::total_cmp);
-    set.rays.len() as f64 / seconds[PASSES / 2] / 1e6
+/// Millions of rays per second of all threads, and that over what one thread of as many jobs does by the same clock, that on
+/// the wall.
+fn all_threads(octree: &Octree, set: &RaySet) -> (f64, f64) {
+    let pools = [1, 0].map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads"));
+    let pass = || set.rays.par_iter().with_min_len(1024).filter(|ray| hit(octree, ray, set)).count();
+    let took = |pool: &rayon::ThreadPool, times: usize| {
+        let start = Instant::now();
+        (0..times).for_each(|_| _ = black_box(pool.install(pass)));
+        start.elapsed().as_secs_f64() / times as f64
+    };
+    let times = (LONG_ENOUGH / took(&pools[1], 1).max(1e-6)).ceil() as usize;
+    let mut seconds = [const { Vec::new() }; 2];
+    for _ in 0..PASSES {
+        pools.iter().zip(&mut seconds).for_each(|(pool, seconds)| seconds.push(took(pool, times)));
+    }
+    let [one, all] = seconds.map(|mut seconds| {
+        seconds.sort_by(f64::total_cmp);
+        seconds[PASSES / 2]
+    });
+    (set.rays.len() as f64 / all / 1e6, one / all)
 }
 
 /// Processor time of this thread.
