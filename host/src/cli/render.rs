@@ -35,7 +35,7 @@ enum Kind {
     /// The same, with light that is followed from lamps through mirrors and glass first: caustics
     TwoWay,
     /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors and
-    /// glass show highlights only
+    /// glass show lights and ambient light only
     ScanLine,
     /// Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are
     /// not seen

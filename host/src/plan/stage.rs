@@ -358,12 +358,15 @@ fn highlights(facts: &Facts<'_>) -> Decision {
 }
 
 fn ambient(facts: &Facts<'_>) -> Decision {
-    let count = facts.count(has_diffuse);
+    let count = facts.count(|material| has_diffuse(material) || carries_on(material));
     if facts.prepared.ambient.max_element() <= 0.0 {
         Decision::new(false, "there is no ambient light")
     } else if count == 0 {
-        Decision::new(false, "no material has a diffuse part")
+        Decision::new(false, "no material has a diffuse part, or is a mirror or transparent")
     } else {
-        Decision::new(true, format!("{} with a diffuse part", counted(count, "object")))
+        Decision::new(
+            true,
+            format!("{} with a diffuse part, or that may show what is around", counted(count, "object")),
+        )
     }
 }

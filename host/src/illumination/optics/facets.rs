@@ -62,6 +62,11 @@ impl Metallic {
         Metallic { shape, conductors, further }
     }
 
+    /// Fresnel's term of a facet that faces halfway.
+    pub(super) fn reflected(&self, cosine: f64, comb: usize) -> Channels {
+        reflectance(&self.conductors[comb.min(self.conductors.len() - 1)], cosine)
+    }
+
     /// D K / (N·V), 1/sr, for light above the horizon.
     pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
         let Sighting { view, comb, .. } = *sighting;

@@ -125,6 +125,21 @@ impl Lobe {
         }
     }
 
+    /// About the part of light from all around that it reflects or refracts to the viewer, where it is one that carries light
+    /// on from somewhere else; nothing of others.
+    pub(super) fn passed_on(&self, sighting: &Sighting) -> Channels {
+        let Sighting { view, comb, .. } = *sighting;
+        match self {
+            Lobe::Mirror(fraction) => fraction.of(sighting),
+            Lobe::Polished(metal) => reflectance(&metal[comb.min(metal.len() - 1)], view.z),
+            Lobe::Metallic(metal) => metal.reflected(view.z, comb),
+            Lobe::Coat(coat) => Channels::splat(coat.reflected(view.z)),
+            // What is not reflected is refracted.
+            Lobe::Smooth(_) | Lobe::Rough(_) => Channels::ONE,
+            _ => Channels::ZERO,
+        }
+    }
+
     /// The density of its samples, 1/sr.
     pub(super) fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
         let view = sighting.view;

@@ -30,6 +30,24 @@ const MOST_LOBES: usize = 4;
 /// What the patterns of a material give at a place.
 pub type Painting = [Channels; MOST_LOBES];
 
+/// What patterns are mixed of at a place.
+#[derive(Clone, Debug, Default)]
+pub struct Mixture<'a> {
+    /// The number of the pattern, a color in it, and how much there is of it.
+    parts: Vec<(usize, &'a Curve, f64)>,
+}
+
+impl Mixture<'_> {
+    /// What the patterns give at the wavelengths of a comb.
+    pub fn at(&self, comb: usize) -> Painting {
+        let mut painting = Painting::default();
+        for (number, curve, amount) in &self.parts {
+            painting[*number] += curve.of(comb) * *amount;
+        }
+        painting
+    }
+}
+
 /// Which of the lobes.
 ///
 /// The first two carry rays from the eye on. A way of light may be told by them: each of its turns is by a broad lobe or by a narrow one.
@@ -234,6 +252,11 @@ impl Optics {
         self.ambient.of(sighting)
     }
 
+    /// About what ambient light adds by mirrors, metals, coats and glass, where what they show is not followed.
+    pub fn surrounded(&self, sighting: &Sighting) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.passed_on(sighting))
+    }
+
     /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under a
     /// coat gives in the mean.
     pub fn diffuse(&self, sighting: &Sighting) -> Channels {
@@ -248,6 +271,15 @@ impl Optics {
     /// Whether it changes from place to place.
     pub fn is_textured(&self) -> bool {
         !self.patterns.is_empty() || self.relief.is_some()
+    }
+
+    /// What its patterns are mixed of in the mean over a place, for any wavelengths.
+    pub fn mix(&self, place: &Place) -> Mixture<'_> {
+        let mut mixture = Mixture::default();
+        for (number, pattern) in self.patterns.iter().enumerate() {
+            pattern.each(place, 1.0, &mut |curve, amount| mixture.parts.push((number, curve, amount)));
+        }
+        mixture
     }
 
     /// What its patterns give in the mean over a place.

@@ -44,15 +44,20 @@ impl Painted {
 
     /// The mean over a place.
     pub(super) fn at(&self, place: &Place, comb: usize) -> Channels {
-        let amounts = self.pattern.parts(place);
-        let parts = self.parts.iter().zip(amounts).filter(|(_, amount)| *amount != 0.0);
-        parts.fold(Channels::ZERO, |sum, (part, amount)| {
-            let color = match part {
-                Part::Plain(curve) => curve.of(comb),
-                Part::Painted(painted) => painted.at(place, comb),
-            };
-            sum + color * amount
-        })
+        let mut sum = Channels::ZERO;
+        self.each(place, 1.0, &mut |curve, amount| sum += curve.of(comb) * amount);
+        sum
+    }
+
+    /// Gives what it is mixed of in the mean over a place, and how much of each.
+    pub(super) fn each<'a>(&'a self, place: &Place, amount: f64, give: &mut dyn FnMut(&'a Curve, f64)) {
+        let amounts = self.pattern.parts(place).map(|part| part * amount);
+        for (part, amount) in self.parts.iter().zip(amounts).filter(|(_, amount)| *amount != 0.0) {
+            match part {
+                Part::Plain(curve) => give(curve, amount),
+                Part::Painted(painted) => painted.each(place, amount, give),
+            }
+        }
     }
 }
 

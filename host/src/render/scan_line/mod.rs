@@ -4,10 +4,11 @@
 //! covers spans of the lines; the nearest is seen, sample by sample, and passable ones before it are kept in their order.
 //! Light is found once for each pixel and surface, shadows for each sample.
 //!
-//! *Not modelled*: only light that comes straight from lights is seen. Mirrors and glass show nothing but highlights;
-//! transparency goes straight on and shadows are as weak as what stands in between lets through (where a pattern says how
-//! much, as in the middle of its first triangle). A light with a size is represented by points of it, in number the
-//! `light_samples` of the scene, and is itself no obstacle to others; a sky is background only; a lens is a pinhole.
+//! *Not modelled*: only light that comes straight from lights is seen. Mirrors, metals and glass show lights, and for all
+//! else around them the ambient light, the same radiance from everywhere; transparency goes straight on and shadows are as
+//! weak as what stands in between lets through (where a pattern says how much, as in the middle of its first triangle). A
+//! light with a size is represented by points of it, in number the `light_samples` of the scene, and is itself no obstacle to
+//! others; a sky is background only; a lens is a pinhole.
 //!
 //! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and light, and
 //! for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
@@ -167,7 +168,8 @@ impl<'a> ScanLine<'a> {
         if self.solution.is_some() {
             left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
         } else if self.plan.needs(Stage::Reflection) {
-            left_out.push("mirrors, glass and rough surfaces reflect and refract nothing but light of lights");
+            left_out
+                .push("mirrors, glass and rough surfaces show lights and ambient light, and nothing else around them");
         }
         if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the sky is seen, but lights nothing");
@@ -246,7 +248,9 @@ impl<'a> ScanLine<'a> {
         let size = [order.width, order.height];
         let eye = Eye::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
         let filter = prepared.settings.texture_filter.max(1e-3);
-        let eye = if self.plan.needs(Stage::Textures) { eye.with_cones(filter) } else { eye };
+        // Where the samples of a pixel are too many to be looked at together, the groups of them share it.
+        let groups = (samples as usize).div_ceil(MOST_LINES) as f64;
+        let eye = if self.plan.needs(Stage::Textures) { eye.with_cones(filter / groups.sqrt()) } else { eye };
         let screen = Screen::new(view, size, samples, &prepared.bounds).ok_or(RenderError::View)?;
         let offsets = rooks(samples);
         let rows = (MOST_LINES / samples as usize).max(1);

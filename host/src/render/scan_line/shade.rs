@@ -6,7 +6,8 @@ use super::enclosed::Enclosed;
 use super::surfaces::{Found, Part, Pixel, Surface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
-use crate::illumination::optics::{Painting, Side, Sighting};
+use crate::illumination::optics::{Mixture, Side, Sighting};
+use crate::illumination::texture::Place;
 use crate::numeric::triangle::weights;
 use crate::render::element::Element;
 use crate::render::eye::{Eye, Sight};
@@ -21,11 +22,24 @@ use std::f64::consts::FRAC_1_PI;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lit {
     lamp: usize,
+    /// At the wavelengths that are looked at.
     adds: Channels,
     /// What to add to the count of the surface's own group: its light arrives on the other side.
     turned: i32,
     /// In how many opaque volumes it is, where that is not left to the samples.
     known: Option<bool>,
+}
+
+/// The line of sight of a sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    /// Where its parts begin.
+    pub(super) begin: usize,
+    /// The first sample of the pixel that gets the same light.
+    pub(super) like: usize,
+    /// How many of its parts are before a light that is no object, if it sees one.
+    pub(super) glow: Option<usize>,
+    pub(super) light: DVec3,
 }
 
 /// Lights the samples of a picture.
@@ -57,12 +71,13 @@ pub(super) struct Shader<'a> {
 pub(super) struct Desk<'a> {
     pub(super) surfaces: Vec<Surface>,
     pub(super) parts: Vec<Part>,
-    /// Elements of the surfaces.
+    /// Elements of the surfaces, and what their patterns are mixed of.
     founds: Vec<Found<'a>>,
+    mixtures: Vec<Option<Mixture<'a>>>,
     /// What lamps add, surface by surface.
-    pub(super) lit: Vec<Lit>,
-    /// For each sample of the pixel, where its parts begin, and the light that comes to it.
-    pub(super) samples: Vec<(usize, DVec3)>,
+    lit: Vec<Lit>,
+    /// For each sample of the pixel.
+    pub(super) samples: Vec<Line>,
     /// The last element: its neighbours may differ in their place only.
     pub(super) last: Option<Found<'a>>,
 }
@@ -90,47 +105,67 @@ impl<'a> Shader<'a> {
             return tally.add_alike(&sample, pixel.count() as u32);
         }
         self.gather(pixel, strip, desk);
-        let Desk { surfaces, parts, founds, lit, samples, last } = desk;
-        founds.clear();
-        for (index, surface) in surfaces.iter_mut().enumerate() {
-            let own = parts.iter().filter(|part| part.surface == index);
-            surface.found = self.find(surface, own, pixel, (founds, last));
-        }
-        let combs = self.appearance.wavelengths.combs();
-        for comb in 0..combs {
-            lit.clear();
-            for (index, surface) in surfaces.iter_mut().enumerate() {
-                let Some(found) = surface.found.map(|found| &founds[found]) else { continue };
-                let begin = lit.len();
-                let is_dark = |lit: &Lit| {
-                    let mut own = parts.iter().filter(|part| part.surface == index);
-                    own.all(|part| self.is_shaded(lit, counts, (part.fragment, strip), found.triangle))
-                };
-                surface.own = self.light(found, comb, is_dark, |own| lit.push(own));
-                surface.lit = begin..lit.len();
+        self.look(pixel, (strip, counts), desk);
+        let Desk { surfaces, parts, founds, mixtures, lit, samples, .. } = desk;
+        for comb in 0..self.appearance.wavelengths.combs() {
+            for surface in surfaces.iter_mut() {
+                let Some(index) = surface.found else { continue };
+                let found = &founds[index];
+                let painting = mixtures[index].as_ref().map(|mixture| mixture.at(comb));
+                let sighting = self.sighting(found, comb, painting.as_ref().map_or(&[], |painting| &painting[..]));
+                surface.own = self.own(found, &sighting);
+                for lit in &mut lit[surface.lit.clone()] {
+                    lit.adds = self.adds(lit, found, &sighting);
+                }
             }
-            if combs == 1
-                && let Some(sample) = self.all_alike((surfaces, founds, lit), parts, (strip, counts), pixel)
-            {
-                return tally.add_alike(&sample, pixel.count() as u32);
-            }
-            let mut before: Option<(usize, DVec3)> = None;
-            for i in 0..pixel.count() {
-                let own = seen_by(samples, parts, i);
-                let seen = match before {
-                    Some((j, seen)) if self.is_alike((surfaces, lit), [seen_by(samples, parts, j), own], counts) => {
-                        seen
-                    }
-                    _ => {
-                        let sum = self.sample((surfaces, founds, lit), own, (strip, counts), (pixel, i), comb);
-                        self.appearance.wavelengths.seen(comb, sum)
-                    }
-                };
-                before = Some((i, seen));
-                samples[i].1 += seen;
+            for i in 0..samples.len() {
+                if samples[i].like == i {
+                    let light =
+                        self.sample((surfaces, founds, lit), (samples, parts), (strip, counts), (pixel, i), comb);
+                    samples[i].light += self.appearance.wavelengths.seen(comb, light);
+                }
             }
         }
         self.add_samples(pixel, desk, tally);
+    }
+
+    /// Finds what the samples of a pixel see, by the light of which lamps, and which of them get the same light.
+    fn look(&self, pixel: &Pixel<'_>, (strip, counts): (&Strip, &[Vec<i32>]), desk: &mut Desk<'a>) {
+        let Desk { surfaces, parts, founds, mixtures, lit, samples, last } = desk;
+        founds.clear();
+        mixtures.clear();
+        lit.clear();
+        for (index, surface) in surfaces.iter_mut().enumerate() {
+            let own = || parts.iter().filter(|part| part.surface == index);
+            surface.found = self.find(surface, own(), pixel, (founds, last));
+            let begin = lit.len();
+            if let Some(found) = surface.found.map(|found| &founds[found]) {
+                mixtures.push(found.optics.is_textured().then(|| found.optics.mix(&self.place(found))));
+                let is_dark =
+                    |lit: &Lit| own().all(|part| self.is_shaded(lit, counts, (part.fragment, strip), found.triangle));
+                lit.extend(self.lights(found).filter(|lit| !is_dark(lit)));
+            }
+            surface.lit = begin..lit.len();
+        }
+        for i in 0..samples.len() {
+            let own = seen_by(samples, parts, i);
+            samples[i].glow = if self.has_surfaces {
+                let before = own.iter().map(|part| (part, surfaces[part.surface].found.map(|found| &founds[found])));
+                self.glow_behind(pixel.place(i), before, strip)
+            } else {
+                None
+            };
+            let is_like = |j: &usize| {
+                samples[*j].like == *j
+                    && samples[*j].glow.is_none()
+                    && self.is_alike([seen_by(samples, parts, *j), own], strip, counts)
+            };
+            if samples[i].glow.is_none()
+                && let Some(like) = (0..i).find(is_like)
+            {
+                samples[i].like = like;
+            }
+        }
     }
 
     /// Adds up what was found sample by sample.
@@ -139,21 +174,23 @@ impl<'a> Shader<'a> {
         let scale = (self.appearance.wavelengths.combs() as f64).recip();
         let mut last: Option<(Sample, u32)> = None;
         for i in 0..pixel.count() {
+            if i > 0
+                && samples[i].like == samples[i - 1].like
+                && let Some((_, count)) = &mut last
+            {
+                *count += 1;
+                continue;
+            }
             let first = seen_by(samples, parts, i).first().map(|part| &surfaces[part.surface]);
             let found = first.and_then(|seen| seen.found.map(|found| (seen, &founds[found])));
-            let glows = self.glows((pixel, i), found.map(|(_, found)| found), 0).is_some();
-            let first = found.map(|(seen, found)| self.first(seen, found));
-            let first = first.filter(|_| !glows);
-            let covered = first.is_some() || glows;
-            let radiance = if self.matte && !covered { DVec3::ZERO } else { samples[i].1 * scale };
+            let glow = samples[i].glow;
+            let first = found.filter(|_| glow != Some(0)).map(|(seen, found)| self.first(seen, found));
+            let covered = first.is_some() || glow.is_some();
+            let light = samples[samples[i].like].light * scale;
+            let radiance = if self.matte && !covered { DVec3::ZERO } else { light };
             let sample = Sample { radiance, covered, first, shared: 0.0 };
-            match &mut last {
-                Some((before, count)) if *before == sample => *count += 1,
-                _ => {
-                    if let Some((before, count)) = last.replace((sample, 1)) {
-                        tally.add_alike(&before, count);
-                    }
-                }
+            if let Some((before, count)) = last.replace((sample, 1)) {
+                tally.add_alike(&before, count);
             }
         }
         if let Some((sample, count)) = last {
@@ -180,16 +217,18 @@ impl<'a> Shader<'a> {
             let radiance = if self.matte { DVec3::ZERO } else { self.background? };
             return Some(Sample { radiance, ..Sample::default() });
         }
-        let near = strip.near[pixel.first];
         let sight = self.eye.ray(pixel.middle(), [0.5; 2])?;
-        if !last.as_mut().is_some_and(|found| found.meet(triangle, &sight.ray, near)) {
-            *last = Some(self.element(triangle, near, &sight)?);
+        if !last.as_mut().is_some_and(|found| found.meet(triangle, &sight.ray)) {
+            *last = Some(self.element(triangle, &sight, 0.0)?);
         }
         let found = last.as_ref()?;
-        let mut sum = Channels::ZERO;
-        let is_dark = |lit: &Lit| self.is_shaded(lit, counts, (pixel.first, strip), triangle);
-        let own = self.light(found, 0, is_dark, |lit| sum += lit.adds);
-        let radiance = self.appearance.wavelengths.seen(0, own + sum);
+        let painting = found.optics.is_textured().then(|| found.optics.paint(&self.place(found), 0));
+        let sighting = self.sighting(found, 0, painting.as_ref().map_or(&[], |painting| &painting[..]));
+        let mut sum = self.own(found, &sighting);
+        for lit in self.lights(found).filter(|lit| !self.is_shaded(lit, counts, (pixel.first, strip), triangle)) {
+            sum += self.adds(&lit, found, &sighting);
+        }
+        let radiance = self.appearance.wavelengths.seen(0, sum);
         let mut nearness = [0.0; 2];
         for near in pixel.samples().map(|sample| strip.near[sample]) {
             nearness = [nearness[0] + near, nearness[1] + self.depth(near)];
@@ -199,66 +238,42 @@ impl<'a> Shader<'a> {
         Some(Sample { radiance, covered: true, first: Some((distance, found.element.normal, found.seen)), shared: 0.0 })
     }
 
-    /// What all samples of a pixel get, if they see one surface by the light of the same lamps.
-    fn all_alike(
-        &self,
-        (surfaces, founds, lit): (&[Surface], &[Found<'a>], &[Lit]),
-        parts: &[Part],
-        (strip, counts): (&Strip, &[Vec<i32>]),
-        pixel: &Pixel<'_>,
-    ) -> Option<Sample> {
-        let [one, rest @ ..] = parts else { return None };
-        let is_alike = |part: &Part| self.is_alike((surfaces, lit), [&[*one], &[*part]], counts);
-        let is_single = parts.len() == pixel.count() && strip.layers.is_empty() && !self.has_surfaces;
-        if !is_single || !rest.iter().all(is_alike) {
-            return None;
-        }
-        let seen = &surfaces[one.surface];
-        let found = &founds[seen.found?];
-        let sum = self.sample((surfaces, founds, lit), &parts[..1], (strip, counts), (pixel, 0), 0);
-        let radiance = self.appearance.wavelengths.seen(0, sum);
-        Some(Sample { radiance, covered: true, first: Some(self.first(seen, found)), shared: 0.0 })
-    }
-
-    /// Whether two samples of a pixel surely get the same light.
-    fn is_alike(&self, (surfaces, lit): (&[Surface], &[Lit]), parts: [&[Part]; 2], counts: &[Vec<i32>]) -> bool {
-        if self.has_surfaces || self.passing.len() > 1 {
-            return false;
-        }
-        match parts {
-            [[], []] => !self.has_sky,
-            [[a], [b]] => {
-                a.surface == b.surface
-                    && lit[surfaces[a.surface].lit.clone()].iter().all(|lit| {
-                        lit.known.is_some()
-                            || counts.get(lit.lamp).is_none_or(|counts| {
-                                (counts[a.fragment] + lit.turned > 0) == (counts[b.fragment] + lit.turned > 0)
-                            })
-                    })
-            }
-            _ => false,
-        }
+    /// Whether two samples of a pixel, of which none glows, surely get the same light: they see the same surfaces in as many
+    /// volumes of shadow.
+    fn is_alike(&self, [a, b]: [&[Part]; 2], strip: &Strip, counts: &[Vec<i32>]) -> bool {
+        let fragments = strip.fragments();
+        let sees_sky = |parts: &[Part]| parts.last().is_none_or(|part| part.fragment >= strip.near.len());
+        let volumes = |counts: &Vec<i32>, a: usize, b: usize| {
+            (0..self.passing.len()).all(|group| counts[group * fragments + a] == counts[group * fragments + b])
+        };
+        a.len() == b.len()
+            && !(self.has_sky && sees_sky(a))
+            && a.iter().zip(b).all(|(a, b)| {
+                a.surface == b.surface && counts.iter().all(|counts| volumes(counts, a.fragment, b.fragment))
+            })
     }
 
     /// The light that comes to one sample.
     fn sample(
         &self,
         (surfaces, founds, lit): (&[Surface], &[Found<'a>], &[Lit]),
-        parts: &[Part],
+        (samples, parts): (&[Line], &[Part]),
         (strip, counts): (&Strip, &[Vec<i32>]),
         (pixel, i): (&Pixel<'_>, usize),
         comb: usize,
     ) -> Channels {
         let mut sum = Channels::ZERO;
         let mut passed = Channels::ONE;
+        let Line { glow, .. } = samples[i];
+        let at = pixel.place(i);
+        let shines = || self.glow(at, comb).map_or(Channels::ZERO, |(_, radiance)| radiance);
+        let parts = seen_by(samples, parts, i);
         for (order, part) in parts.iter().enumerate() {
+            if glow == Some(order) {
+                return sum + passed * shines();
+            }
             let surface = &surfaces[part.surface];
             let Some(found) = surface.found.map(|found| &founds[found]) else { continue };
-            if order == 0
-                && let Some(glow) = self.glows((pixel, i), Some(found), comb)
-            {
-                return glow;
-            }
             let mut radiance = surface.own;
             for lit in &lit[surface.lit.clone()] {
                 radiance += lit.adds * self.arrived(lit, counts, (part.fragment, strip), found.triangle, comb);
@@ -269,10 +284,9 @@ impl<'a> Shader<'a> {
             }
             passed *= self.passed(found, comb);
         }
-        if let Some(glow) = self.glows((pixel, i), None, comb) {
-            return sum + passed * glow;
+        if glow.is_some() {
+            return sum + passed * shines();
         }
-        let at = pixel.place(i);
         let direction = self.eye.ray(at, [0.5; 2]).map_or(DVec3::NEG_Z, |sight| sight.ray.direction.normalize());
         sum + passed * self.appearance.beyond(direction, None, comb, |_, _| 1.0)
     }
@@ -310,73 +324,98 @@ impl<'a> Shader<'a> {
         part
     }
 
-    /// The light of a surface that emits and is no object, if a sample sees one before what is found there.
-    fn glows(&self, (pixel, i): (&Pixel<'_>, usize), found: Option<&Found<'_>>, comb: usize) -> Option<Channels> {
-        if !self.has_surfaces {
-            return None;
+    /// The nearest light that is a surface and no object in a line of sight: where, in lengths of its direction, and its
+    /// radiance.
+    fn glow(&self, at: [f64; 2], comb: usize) -> Option<(f64, Channels)> {
+        let Sight { ray, t_min, t_max, .. } = self.eye.ray(at, [0.5; 2])?;
+        self.appearance.glow(&ray, t_min, t_max, comb).map(|(_, glow)| (glow.t, glow.radiance))
+    }
+
+    /// How many of the parts of a line of sight are before the light that is met there; none if there is none, or something
+    /// opaque is before it.
+    fn glow_behind<'p>(
+        &self,
+        at: [f64; 2],
+        parts: impl Iterator<Item = (&'p Part, Option<&'p Found<'a>>)>,
+        strip: &Strip,
+    ) -> Option<usize>
+    where
+        'a: 'p,
+    {
+        let (t, _) = self.glow(at, 0)?;
+        let ray = self.eye.ray(at, [0.5; 2])?.ray;
+        let mut before = 0;
+        for (part, found) in parts {
+            // What was found once for the pixel is met elsewhere by each sample: a lamp may be close before it.
+            let met = found.map_or(f64::INFINITY, |found| {
+                let Element { position, face, .. } = found.element;
+                let met = (position - ray.origin).dot(face) / ray.direction.dot(face);
+                if met > 0.0 { met } else { found.distance / ray.direction.length() }
+            });
+            if t < met {
+                break;
+            }
+            if part.fragment < strip.near.len() {
+                return None;
+            }
+            before += 1;
         }
-        let Sight { ray, t_min, t_max, .. } = self.eye.ray(pixel.place(i), [0.5; 2])?;
-        // What was found once for the pixel is met elsewhere by each sample: a lamp may be close before it.
-        let met = found.map_or(f64::INFINITY, |found| {
-            let Element { position, face, .. } = found.element;
-            let t = (position - ray.origin).dot(face) / ray.direction.dot(face);
-            if t > 0.0 { t } else { found.distance / ray.direction.length() }
-        });
-        self.appearance.glow(&ray, t_min, t_max.min(met), comb).map(|(_, glow)| glow.radiance)
+        Some(before)
     }
 
     /// The part of light that goes straight through a surface.
     fn passed(&self, found: &Found<'_>, comb: usize) -> Channels {
-        found.optics.passing(comb, || self.appearance.prepared.place(found.triangle, found.weights, found.sides))
+        found.optics.passing(comb, || self.place(found))
     }
 
-    /// What an element sends to the eye without lamps; gives what each lamp adds.
+    /// Where an element is in the patterns of its material.
+    fn place(&self, found: &Found<'_>) -> Place {
+        self.appearance.prepared.place(found.triangle, found.weights, found.sides)
+    }
+
+    /// How an element is looked at.
     ///
-    /// - `is_dark`: whether no sample gets light of a lamp; what it adds is not yet known.
-    fn light(
-        &self,
-        found: &Found<'a>,
-        comb: usize,
-        is_dark: impl Fn(&Lit) -> bool,
-        mut give: impl FnMut(Lit),
-    ) -> Channels {
-        let Found { element, frame, optics, towards, .. } = found;
-        let mut own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(comb));
-        let place = || self.appearance.prepared.place(found.triangle, found.weights, found.sides);
-        let painting: Option<Painting> = optics.is_textured().then(|| optics.paint(&place(), comb));
-        let painted = painting.as_ref().map_or(&[][..], |painting| painting.as_slice());
+    /// - `painted`: what the patterns of its material give.
+    fn sighting<'p>(&self, found: &Found<'_>, comb: usize, painted: &'p [Channels]) -> Sighting<'p> {
+        let index = found.optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
+        let side = match found.element.outside {
+            true => Side { before: Channels::ONE, behind: index },
+            false => Side { before: index, behind: Channels::ONE },
+        };
+        Sighting { view: found.frame.local(-found.towards), comb, side, lane: 0, painted }
+    }
+
+    /// What an element sends to the eye without lamps.
+    fn own(&self, found: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
+        let Found { element, optics, .. } = found;
+        let mut own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(sighting.comb));
         if let Some(solution) = self.solution {
             // Elements of flat triangles are moved from pixel to pixel without their weights.
             let weights = weights(self.appearance.prepared.corners(found.triangle), element.position);
             let irradiance = solution.irradiance(found.triangle, element.outside, weights, Light::All);
-            return own + diffuse(optics, comb, painted) * irradiance * FRAC_1_PI;
+            return own + diffuse(optics, sighting.comb, sighting.painted) * irradiance * FRAC_1_PI;
         }
-        let index = optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
-        let side = match element.outside {
-            true => Side { before: Channels::ONE, behind: index },
-            false => Side { before: index, behind: Channels::ONE },
-        };
-        let sighting = Sighting { view: frame.local(-*towards), comb, side, lane: 0, painted };
         if let Some(ambient) = &self.appearance.ambient {
-            own += optics.ambient(&sighting) * ambient.of(comb);
-        }
-        if !optics.answers_lights() {
-            return own;
-        }
-        for (number, lamp) in self.lamps.iter().enumerate() {
-            let mut lit = self.between(number, lamp, found);
-            if is_dark(&lit) {
-                continue;
-            }
-            let source = &self.appearance.sources[lamp.source].1;
-            let Some(beam) = source.beam_from(&lamp.point, element.position, comb) else { continue };
-            let light = frame.local(beam.towards);
-            lit.adds = optics.response(&sighting, light) * beam.irradiance * light.z.abs();
-            if lit.adds != Channels::ZERO && lit.adds.is_finite() {
-                give(lit);
-            }
+            own += (optics.ambient(sighting) + optics.surrounded(sighting)) * ambient.of(sighting.comb);
         }
         own
+    }
+
+    /// The lamps that an element answers, and how their shadows are counted; what they add is not yet known.
+    fn lights(&self, found: &Found<'a>) -> impl Iterator<Item = Lit> {
+        let answers = self.solution.is_none() && found.optics.answers_lights();
+        let lamps = if answers { self.lamps } else { &[] };
+        lamps.iter().enumerate().map(|(number, lamp)| self.between(number, lamp, found))
+    }
+
+    /// What a lamp adds where nothing stands between.
+    fn adds(&self, lit: &Lit, Found { element, frame, optics, .. }: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
+        let lamp = &self.lamps[lit.lamp];
+        let source = &self.appearance.sources[lamp.source].1;
+        let Some(beam) = source.beam_from(&lamp.point, element.position, sighting.comb) else { return Channels::ZERO };
+        let light = frame.local(beam.towards);
+        let adds = optics.response(sighting, light) * beam.irradiance * light.z.abs();
+        if adds.is_finite() { adds } else { Channels::ZERO }
     }
 
     /// How shadows are counted that fall on an element by the light of a lamp.
@@ -397,6 +436,6 @@ impl<'a> Shader<'a> {
 }
 
 /// The parts of a sample of a pixel, from the nearest.
-fn seen_by<'p>(samples: &[(usize, DVec3)], parts: &'p [Part], i: usize) -> &'p [Part] {
-    &parts[samples[i].0..samples.get(i + 1).map_or(parts.len(), |next| next.0)]
+fn seen_by<'p>(samples: &[Line], parts: &'p [Part], i: usize) -> &'p [Part] {
+    &parts[samples[i].begin..samples.get(i + 1).map_or(parts.len(), |next| next.begin)]
 }

@@ -1,6 +1,6 @@
 //! Surfaces in a pixel: which samples see them, and the element in the middle of what they see.
 
-use super::shade::{Desk, Shader};
+use super::shade::{Desk, Line, Shader};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
@@ -18,6 +18,9 @@ const SMOOTH: f64 = 0.94;
 const FLAT: f64 = 1.0 - 1e-12;
 /// And if their depths differ by less than this part of them.
 const BESIDE: f64 = 0.01;
+/// How far beyond a triangle its plane and its normals may stand for neighbours that are lit as one with it: the least weight
+/// of a corner.
+const BEYOND: f64 = -1.0;
 
 /// A pixel of a strip.
 pub(super) struct Pixel<'p> {
@@ -61,7 +64,6 @@ pub(super) struct Part {
     pub(super) surface: usize,
     pub(super) fragment: usize,
     pub(super) triangle: u32,
-    pub(super) near: f64,
     /// Which of the pixel's samples.
     pub(super) sample: usize,
 }
@@ -76,14 +78,14 @@ pub(super) struct Surface {
     /// Its object and material.
     seen: [u32; 2],
     /// How many samples see it, the sum of their places in pixels, and whether all see the same triangle.
-    pub(super) count: u32,
-    pub(super) sum: [f64; 2],
-    pub(super) alone: bool,
+    count: u32,
+    sum: [f64; 2],
+    alone: bool,
     /// Sums of their nearness and depth.
-    pub(super) nearness: [f64; 2],
+    nearness: [f64; 2],
     /// Which of the elements that were found is its own.
     pub(super) found: Option<usize>,
-    /// What it sends to the eye without lights.
+    /// What it sends to the eye without lights, at the wavelengths that are looked at.
     pub(super) own: Channels,
     /// Which of the lights that were found are its own.
     pub(super) lit: Range<usize>,
@@ -119,8 +121,6 @@ pub(super) struct Found<'a> {
     pub(super) curved: bool,
     /// Whether neighbours in its triangle differ in their place only.
     pub(super) is_flat: bool,
-    /// Of the sample from which it was found.
-    pub(super) near: f64,
     /// About its normal.
     pub(super) frame: Frame,
     pub(super) optics: &'a Optics,
@@ -143,12 +143,12 @@ impl<'a> Shader<'a> {
         samples.clear();
         let opaque = strip.near.len();
         for (i, sample) in pixel.samples().enumerate() {
-            samples.push((parts.len(), DVec3::ZERO));
+            samples.push(Line { begin: parts.len(), like: i, glow: None, light: DVec3::ZERO });
             let mut add = |triangle: u32, near: f64, fragment: usize| {
                 let before = parts.iter().rfind(|part| part.triangle == triangle).map(|part| part.surface);
                 let surface = before.unwrap_or_else(|| self.surface(surfaces, triangle, near));
                 surfaces[surface].add(triangle, pixel.place(i), [near, self.depth(near)]);
-                parts.push(Part { surface, fragment, triangle, near, sample: i });
+                parts.push(Part { surface, fragment, triangle, sample: i });
             };
             for index in strip.layers_of(sample) {
                 let layer = strip.layers[index];
@@ -204,8 +204,7 @@ impl<'a> Shader<'a> {
     /// The mean distance of what samples see of a surface, its normal, object and material.
     pub(super) fn first(&self, surface: &Surface, found: &Found<'_>) -> (f64, DVec3, [u32; 2]) {
         let [near, depth] = surface.nearness.map(|sum| sum / f64::from(surface.count));
-        let middle = self.depth(if surface.alone { near } else { found.near });
-        (self.distance(found.distance, middle, depth), found.element.normal, found.seen)
+        (self.distance(found.distance, self.depth(near), depth), found.element.normal, found.seen)
     }
 
     /// The mean distance of some samples.
@@ -228,21 +227,21 @@ impl<'a> Shader<'a> {
     ) -> Option<usize> {
         let part = f64::from(surface.count).recip();
         let middle = surface.sum.map(|sum| sum * part);
-        let (at, triangle, near) = if surface.alone {
-            (middle, surface.triangle, surface.near)
+        let (triangle, least) = if surface.alone {
+            (surface.triangle, 0.0)
         } else {
-            // The mean of samples in several triangles may lie in none of them.
+            // The middle may lie in no triangle that a sample sees: the nearest then goes on up to there.
             let away = |at: [f64; 2]| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
-            let places = parts.map(|part| (pixel.place(part.sample), part.triangle, part.near));
-            places.min_by(|(a, ..), (b, ..)| away(*a).total_cmp(&away(*b)))?
+            let places = parts.map(|part| (pixel.place(part.sample), part.triangle));
+            (places.min_by(|(a, _), (b, _)| away(*a).total_cmp(&away(*b)))?.1, BEYOND)
         };
-        let sight = self.eye.ray(at, [0.5; 2])?;
+        let sight = self.eye.ray(middle, [0.5; 2])?;
         if let Some(found) = last
-            && found.meet(triangle, &sight.ray, near)
+            && found.meet(triangle, &sight.ray)
         {
             founds.push(*found);
         } else {
-            let found = self.element(triangle, near, &sight)?;
+            let found = self.element(triangle, &sight, least)?;
             founds.push(found);
             if found.is_flat {
                 *last = Some(found);
@@ -252,11 +251,13 @@ impl<'a> Shader<'a> {
     }
 
     /// The element that a line of sight meets in a triangle.
-    pub(super) fn element(&self, triangle: u32, near: f64, sight: &Sight) -> Option<Found<'a>> {
+    ///
+    /// - `least`: the least weight of a corner, 0 where the element must lie within the triangle.
+    pub(super) fn element(&self, triangle: u32, sight: &Sight, least: f64) -> Option<Found<'a>> {
         let prepared = self.appearance.prepared;
         let length = sight.ray.direction.length();
         let towards = sight.ray.direction * length.recip();
-        let hit = met(&sight.ray, prepared.corners(triangle), triangle)?;
+        let hit = met(&sight.ray, prepared.corners(triangle), triangle, least)?;
         let mut element = Element::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
         let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let optics = self.appearance.optics(object, material);
@@ -273,14 +274,14 @@ impl<'a> Shader<'a> {
         let curved = self.is_curved(triangle);
         let is_flat = !curved && !optics.is_textured();
         let seen = [object, material];
-        Some(Found { near, element, curved, is_flat, frame, optics, distance, seen, towards, triangle, weights, sides })
+        Some(Found { element, curved, is_flat, frame, optics, distance, seen, towards, triangle, weights, sides })
     }
 }
 
 impl Found<'_> {
     /// Moves to where another line of sight meets a triangle, if it is the same, flat and without a texture.
     #[inline]
-    pub(super) fn meet(&mut self, triangle: u32, ray: &Ray, near: f64) -> bool {
+    pub(super) fn meet(&mut self, triangle: u32, ray: &Ray) -> bool {
         if !self.is_flat || triangle != self.triangle {
             return false;
         }
@@ -288,13 +289,14 @@ impl Found<'_> {
         let t = (self.element.position - ray.origin).dot(face) / ray.direction.dot(face);
         let length = ray.direction.length();
         self.element.position = ray.at(t);
-        (self.near, self.distance, self.towards) = (near, t * length, ray.direction * length.recip());
+        (self.distance, self.towards) = (t * length, ray.direction * length.recip());
         self.distance.is_finite()
     }
 }
 
-/// Where a line of sight meets the plane of a triangle, within the triangle.
-fn met(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32) -> Option<Hit> {
+/// Where a line of sight meets the plane of a triangle, moved towards its centroid until no weight is below the least.
+fn met(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32, least: f64) -> Option<Hit> {
+    const THIRD: f64 = 1.0 / 3.0;
     let (across, up, from) = (b - a, c - a, ray.origin - a);
     let p = ray.direction.cross(up);
     let scale = across.dot(p).recip();
@@ -303,7 +305,7 @@ fn met(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32) -> Option<Hit> {
     if !(t.is_finite() && u.is_finite() && v.is_finite()) {
         return None;
     }
-    let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
-    let over = (u + v).max(1.0);
-    Some(Hit { t, triangle, u: u / over, v: v / over })
+    let lowest = u.min(v).min(1.0 - u - v);
+    let part = if lowest < least { (THIRD - least) / (THIRD - lowest) } else { 1.0 };
+    Some(Hit { t, triangle, u: THIRD + (u - THIRD) * part, v: THIRD + (v - THIRD) * part })
 }

@@ -3,7 +3,8 @@
 use super::*;
 use crate::color::Color;
 use crate::illumination::light::Patch;
-use crate::illumination::material::Classic;
+use crate::illumination::material::{Body, Classic, Index, Transparent};
+use crate::illumination::texture::{Laying, Motif, Pattern};
 use crate::illumination::{Bands, Material, Paint};
 use crate::numeric::ray::Ray;
 use crate::octree::{Octree, Settings as OctreeSettings};
@@ -50,6 +51,18 @@ fn pane(at: DVec3, turned: f64) -> Object {
     let material = Classic { transparency: through, ..diffuse(0.2) };
     let transform = DMat4::from_translation(at) * DMat4::from_rotation_y(turned);
     object(Shape::Solid(Primitive::Box { size: DVec3::new(1.5, 2.0, 0.1) }), transform, material)
+}
+
+/// Turns a ground so that it faces a viewer on the z axis.
+fn facing(z: f64) -> DMat4 {
+    DMat4::from_translation(DVec3::Z * z) * DMat4::from_rotation_x(PI / 2.0)
+}
+
+/// Squares, light and dark.
+fn checker(size: f64) -> Paint {
+    let laying = Laying { size: DVec3::splat(size), ..Laying::default() };
+    let paints = vec![Paint::grey(0.1), Paint::grey(0.9)];
+    Paint::Pattern(Pattern { motif: Motif::Checker, laying, paints }.into())
 }
 
 fn lamp(at: DVec3) -> crate::illumination::Light {
@@ -275,6 +288,89 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
         }
     }
     assert!(in_shadow > points / 4, "{in_shadow}");
+}
+
+#[test]
+fn a_highlight_is_the_same_however_many_samples_see_it() {
+    let shiny = Classic { specular: Paint::grey(0.4), exponent: 60.0, ..diffuse(0.1) };
+    let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, shiny);
+    let mut scene = scene(vec![ball], vec![lamp(DVec3::new(2.0, 3.0, 4.0))], camera(DVec3::Z * 6.0, DVec3::ZERO));
+    let mut drawn = |samples: u32| {
+        scene.settings.samples = samples;
+        scan(&scene, None, 1).film
+    };
+    let (one, few, many) = (drawn(1), drawn(4), drawn(64));
+    let most = one.tallies().iter().map(|tally| tally.mean().max_element()).fold(0.0, f64::max);
+    let mut seen = 0;
+    for ((one, few), many) in one.tallies().iter().zip(few.tallies()).zip(many.tallies()) {
+        if many.covered == many.count {
+            let off = [few, many].map(|tally| (tally.mean() - one.mean()).abs().max_element());
+            assert!(off.into_iter().all(|off| off < 0.02 * most), "{off:?} of {most}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 800, "{seen}");
+}
+
+#[test]
+fn a_lamp_is_seen_behind_panes_and_before_a_wall() {
+    let lamp = crate::illumination::Light::Area {
+        patch: Patch::Sphere { center: DVec3::ZERO, radius: 0.5 },
+        radiance: Color::grey(7.0),
+    };
+    let wall = object(
+        Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.1) }),
+        DMat4::from_translation(DVec3::NEG_Z * 2.0),
+        diffuse(0.5),
+    );
+    let glass = |z: f64| {
+        object(Shape::Ground { size: 9.0 }, facing(z), Classic { transparency: Paint::grey(0.5), ..diffuse(0.0) })
+    };
+    let view = camera(DVec3::Z * 6.0, DVec3::ZERO);
+    let middle = |objects: Vec<Object>| {
+        let scene = scene(objects, vec![lamp.clone()], view);
+        scan(&scene, None, 1).film.tallies()[32 * 72 + 36].mean().x
+    };
+    for (objects, expected) in [
+        (vec![wall.clone()], 7.0),
+        (vec![wall.clone(), glass(2.0)], 3.5),
+        (vec![wall.clone(), glass(2.0), glass(1.0)], 1.75),
+        (vec![glass(2.0)], 3.5),
+        (vec![wall.clone(), glass(2.0), glass(-1.0)], 3.5),
+    ] {
+        let found = middle(objects);
+        assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+    }
+    let hidden = Object { transform: DMat4::from_translation(DVec3::Z * 2.0), ..wall };
+    assert!(middle(vec![hidden]) < 1.0);
+}
+
+#[test]
+fn mirrors_metals_and_glass_show_the_ambient_light() {
+    let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) };
+    let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::grey(0.0) };
+    for (material, expected) in [(Material::from(mirror), 0.8), (Body::Transparent(glass).into(), 1.0)] {
+        let sheet = object(Shape::Ground { size: 9.0 }, facing(0.0), material);
+        let mut scene = scene(vec![sheet], Vec::new(), camera(DVec3::Z * 6.0, DVec3::ZERO));
+        scene.ambient = Bands::new(0.2, 0.4, 0.6);
+        let found = scan(&scene, None, 1).film.tallies()[32 * 72 + 36].mean();
+        assert!((found - scene.ambient * expected).abs().max_element() < 1e-12, "{found}");
+    }
+}
+
+#[test]
+fn patterns_are_as_sharp_where_many_samples_are_looked_at_in_groups() {
+    let squares = checker(0.3);
+    let tiles = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, Classic { diffuse: squares, ..diffuse(0.0) });
+    let mut scene = scene(vec![tiles], vec![sun()], usual());
+    let mut drawn = |samples: u32| {
+        scene.settings.samples = samples;
+        scan(&scene, None, 2).film
+    };
+    let (few, many) = (drawn(64), drawn(128));
+    let off = few.tallies().iter().zip(many.tallies()).map(|(a, b)| (a.mean() - b.mean()).abs().max_element());
+    let (sum, most) = off.fold((0.0, 0.0_f64), |(sum, most), off| (sum + off, most.max(off)));
+    assert!(sum / (72.0 * 64.0) < 0.003 && most < 0.05, "{sum} {most}");
 }
 
 #[test]
