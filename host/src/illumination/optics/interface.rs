@@ -50,7 +50,7 @@ fn by_lane(sighting: &Sighting, value: impl Fn(usize) -> f64) -> Channels {
 }
 
 /// What the lanes reflect at a facet.
-fn reflected(sighting: &Sighting, cosine: f64) -> Channels {
+pub(super) fn reflected(sighting: &Sighting, cosine: f64) -> Channels {
     by_lane(sighting, |lane| interface(sighting, lane).map_or(0.0, |s| s.reflectance(cosine).mean()))
 }
 

@@ -2,7 +2,7 @@
 
 use super::coat::{Coat, Ground};
 use super::facets::{Metallic, Shape};
-use super::interface::{Rough, Smooth};
+use super::interface::{Rough, Smooth, reflected};
 use super::shade::Shade;
 use super::{Onward, Sighting};
 use crate::color::Channels;
@@ -125,17 +125,16 @@ impl Lobe {
         }
     }
 
-    /// About the part of light from all around that it reflects or refracts to the viewer, where it is one that carries light
-    /// on from somewhere else; nothing of others.
-    pub(super) fn passed_on(&self, sighting: &Sighting) -> Channels {
+    /// About the part of light from all around that it reflects to the viewer, where it is one that shows what is around;
+    /// nothing of others.
+    pub(super) fn shown(&self, sighting: &Sighting) -> Channels {
         let Sighting { view, comb, .. } = *sighting;
         match self {
             Lobe::Mirror(fraction) => fraction.of(sighting),
             Lobe::Polished(metal) => reflectance(&metal[comb.min(metal.len() - 1)], view.z),
             Lobe::Metallic(metal) => metal.reflected(view.z, comb),
             Lobe::Coat(coat) => Channels::splat(coat.reflected(view.z)),
-            // What is not reflected is refracted.
-            Lobe::Smooth(_) | Lobe::Rough(_) => Channels::ONE,
+            Lobe::Smooth(_) | Lobe::Rough(_) => reflected(sighting, view.z),
             _ => Channels::ZERO,
         }
     }

@@ -252,9 +252,9 @@ impl Optics {
         self.ambient.of(sighting)
     }
 
-    /// About what ambient light adds by mirrors, metals, coats and glass, where what they show is not followed.
+    /// About what ambient light adds by what mirrors, metals, coats and glass reflect, where that is not followed.
     pub fn surrounded(&self, sighting: &Sighting) -> Channels {
-        self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.passed_on(sighting))
+        self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.shown(sighting))
     }
 
     /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under a

@@ -5,9 +5,9 @@
 //! Light is found once for each pixel and surface, shadows for each sample.
 //!
 //! *Not modelled*: only light that comes straight from lights is seen. Mirrors, metals and glass show lights, and for all
-//! else around them the ambient light, the same radiance from everywhere; transparency goes straight on and shadows are as
-//! weak as what stands in between lets through (where a pattern says how much, as in the middle of its first triangle). A
-//! light with a size is represented by points of it, in number the `light_samples` of the scene, and is itself no obstacle to
+//! else around them the ambient light, the same radiance from everywhere. Light goes straight through glass, which throws the
+//! shadow of an opaque body, and through what is transparent without bending it; the shadow of that is as weak as it lets
+//! light through (where a pattern says how much, as in the middle of its first triangle). A light with a size is represented by points of it, in number the `light_samples` of the scene, and is itself no obstacle to
 //! others; a sky is background only; a lens is a pinhole.
 //!
 //! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and light, and
@@ -148,7 +148,7 @@ impl<'a> ScanLine<'a> {
         let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
         let (groups, passing) = groups(&appearance);
-        let passable: Vec<bool> = groups.iter().map(|group| *group > 0).collect();
+        let passable = seen_through(&appearance, &groups);
         let shadows = plan.needs(Stage::Shadows) && solution.is_none();
         let casters = Casters::new(prepared, if shadows { triangles.clone() } else { Vec::new() }, groups);
         let samples = prepared.settings.light_samples.max(1);
@@ -169,7 +169,7 @@ impl<'a> ScanLine<'a> {
             left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
         } else if self.plan.needs(Stage::Reflection) {
             left_out
-                .push("mirrors, glass and rough surfaces show lights and ambient light, and nothing else around them");
+                .push("mirrors, metals and coats show lights and ambient light and nothing else around them, and light goes straight through glass");
         }
         if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the sky is seen, but lights nothing");
@@ -333,6 +333,20 @@ impl<'a> Work<'a> {
         }
         drawn
     }
+}
+
+/// For each triangle, whether something is seen straight through it; nothing where that is so for none. Glass, which bends
+/// light, is seen through, but throws the shadow of an opaque body: what comes through it are caustics.
+fn seen_through(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
+    let prepared = appearance.prepared;
+    let is_glass = |triangle: u32| {
+        let object = prepared.object_of[triangle as usize];
+        appearance.optics(object, prepared.material_number(triangle)).interior.is_some()
+    };
+    let is_passable =
+        |triangle: u32| groups.get(triangle as usize).is_some_and(|group| *group > 0) || is_glass(triangle);
+    let passable: Vec<bool> = (0..prepared.triangles.len() as u32).map(is_passable).collect();
+    if passable.contains(&true) { passable } else { Vec::new() }
 }
 
 /// For each triangle, which group of casters it is of, and what each group lets through; no groups where all are opaque.

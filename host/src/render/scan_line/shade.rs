@@ -6,7 +6,7 @@ use super::enclosed::Enclosed;
 use super::surfaces::{Found, Part, Pixel, Surface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
-use crate::illumination::optics::{Mixture, Side, Sighting};
+use crate::illumination::optics::{Interior, Mixture, Side, Sighting};
 use crate::illumination::texture::Place;
 use crate::numeric::triangle::weights;
 use crate::render::element::Element;
@@ -114,6 +114,7 @@ impl<'a> Shader<'a> {
                 let painting = mixtures[index].as_ref().map(|mixture| mixture.at(comb));
                 let sighting = self.sighting(found, comb, painting.as_ref().map_or(&[], |painting| &painting[..]));
                 surface.own = self.own(found, &sighting);
+                surface.passed = through(found, &sighting);
                 for lit in &mut lit[surface.lit.clone()] {
                     lit.adds = self.adds(lit, found, &sighting);
                 }
@@ -264,6 +265,8 @@ impl<'a> Shader<'a> {
     ) -> Channels {
         let mut sum = Channels::ZERO;
         let mut passed = Channels::ONE;
+        // What the line of sight is in, and from where on.
+        let mut inside: Option<(&Interior, f64)> = None;
         let Line { glow, .. } = samples[i];
         let at = pixel.place(i);
         let shines = || self.glow(at, comb).map_or(Channels::ZERO, |(_, radiance)| radiance);
@@ -274,6 +277,10 @@ impl<'a> Shader<'a> {
             }
             let surface = &surfaces[part.surface];
             let Some(found) = surface.found.map(|found| &founds[found]) else { continue };
+            if let Some((interior, from)) = &mut inside {
+                let length = found.distance - std::mem::replace(from, found.distance);
+                passed *= interior.absorption.of(comb).map(|absorption| (-absorption * length.max(0.0)).exp());
+            }
             let mut radiance = surface.own;
             for lit in &lit[surface.lit.clone()] {
                 radiance += lit.adds * self.arrived(lit, counts, (part.fragment, strip), found.triangle, comb);
@@ -282,7 +289,11 @@ impl<'a> Shader<'a> {
             if part.fragment < strip.near.len() {
                 return sum;
             }
-            passed *= self.passed(found, comb);
+            passed *= surface.passed;
+            if let Some(interior) = &found.optics.interior {
+                let absorbs = found.element.outside && interior.absorption.max() > 0.0;
+                inside = absorbs.then_some((interior, found.distance));
+            }
         }
         if glow.is_some() {
             return sum + passed * shines();
@@ -363,11 +374,6 @@ impl<'a> Shader<'a> {
         Some(before)
     }
 
-    /// The part of light that goes straight through a surface.
-    fn passed(&self, found: &Found<'_>, comb: usize) -> Channels {
-        found.optics.passing(comb, || self.place(found))
-    }
-
     /// Where an element is in the patterns of its material.
     fn place(&self, found: &Found<'_>) -> Place {
         self.appearance.prepared.place(found.triangle, found.weights, found.sides)
@@ -396,7 +402,8 @@ impl<'a> Shader<'a> {
             return own + diffuse(optics, sighting.comb, sighting.painted) * irradiance * FRAC_1_PI;
         }
         if let Some(ambient) = &self.appearance.ambient {
-            own += (optics.ambient(sighting) + optics.surrounded(sighting)) * ambient.of(sighting.comb);
+            own += (optics.ambient(sighting) + optics.surrounded(&from_outside(found, sighting)))
+                * ambient.of(sighting.comb);
         }
         own
     }
@@ -432,6 +439,22 @@ impl<'a> Shader<'a> {
             lit.known = enclosed.map(|enclosed| enclosed.counts(element.leave_curved)[0] > 0);
         }
         lit
+    }
+}
+
+/// The part of light that goes straight through an element.
+fn through(found: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
+    match &found.optics.interior {
+        Some(_) => Channels::ONE - found.optics.surrounded(&from_outside(found, sighting)),
+        None => found.optics.straight(sighting).map_or(Channels::ZERO, |onward| onward.weight),
+    }
+}
+
+/// As an element of a transparent body is looked at from outside: what is not bent is never reflected totally.
+fn from_outside<'p>(found: &Found<'_>, sighting: &Sighting<'p>) -> Sighting<'p> {
+    match (found.element.outside, sighting.side) {
+        (true, _) => *sighting,
+        (false, Side { before, behind }) => Sighting { side: Side { before: behind, behind: before }, ..*sighting },
     }
 }
 

@@ -132,7 +132,7 @@ impl Shadow {
                 }
             });
         }
-        if self.start.len() > 1 {
+        if !strip.layers.is_empty() {
             self.count_layers((casters, handed), strip, counts);
         }
         spans

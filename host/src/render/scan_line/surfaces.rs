@@ -85,8 +85,10 @@ pub(super) struct Surface {
     nearness: [f64; 2],
     /// Which of the elements that were found is its own.
     pub(super) found: Option<usize>,
-    /// What it sends to the eye without lights, at the wavelengths that are looked at.
+    /// At the wavelengths that are looked at, what it sends to the eye without lights, and the part of light that goes straight
+    /// through.
     pub(super) own: Channels,
+    pub(super) passed: Channels,
     /// Which of the lights that were found are its own.
     pub(super) lit: Range<usize>,
 }
@@ -185,6 +187,7 @@ impl<'a> Shader<'a> {
             nearness: [0.0; 2],
             found: None,
             own: Channels::ZERO,
+            passed: Channels::ZERO,
             lit: 0..0,
         }
     }

@@ -348,14 +348,41 @@ fn a_lamp_is_seen_behind_panes_and_before_a_wall() {
 #[test]
 fn mirrors_metals_and_glass_show_the_ambient_light() {
     let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) };
-    let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::grey(0.0) };
-    for (material, expected) in [(Material::from(mirror), 0.8), (Body::Transparent(glass).into(), 1.0)] {
-        let sheet = object(Shape::Ground { size: 9.0 }, facing(0.0), material);
-        let mut scene = scene(vec![sheet], Vec::new(), camera(DVec3::Z * 6.0, DVec3::ZERO));
+    let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::grey(2.0) };
+    let slab = Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.5) });
+    // Of each face of the glass 4 %, of the rest what a way of half a unit leaves.
+    let (reflected, left) = (0.04, 0.96 * (-1.0_f64).exp());
+    for (shape, material, ambient, background) in [
+        (Shape::Ground { size: 9.0 }, Material::from(mirror), 0.8, 0.0),
+        (slab, Body::Transparent(glass).into(), reflected * (1.0 + left), left * 0.96),
+    ] {
+        let transform = if matches!(shape, Shape::Ground { .. }) { facing(0.0) } else { DMat4::IDENTITY };
+        let mut scene =
+            scene(vec![object(shape, transform, material)], Vec::new(), camera(DVec3::Z * 600.0, DVec3::ZERO));
+        scene.camera = scene.camera.map(|camera| Camera { field_of_view: 0.1, ..camera });
         scene.ambient = Bands::new(0.2, 0.4, 0.6);
         let found = scan(&scene, None, 1).film.tallies()[32 * 72 + 36].mean();
-        assert!((found - scene.ambient * expected).abs().max_element() < 1e-12, "{found}");
+        let expected = scene.ambient * ambient + scene.background * background;
+        assert!((found - expected).abs().max_element() < 1e-6, "{found}, not {expected}");
     }
+}
+
+#[test]
+fn glass_that_bends_no_light_is_what_ray_tracing_sees_with_opaque_shadows() {
+    // A block and a ball in it that absorbs, and an eye that looks through both at their shadow.
+    let glass = |absorption: f64| {
+        let (index, absorption) = (Index::Constant(1.0 + 1e-9), Color::grey(absorption));
+        Material::from(Body::Transparent(Transparent { index, roughness: 0.0, absorption }))
+    };
+    let at = DMat4::from_translation(DVec3::new(0.0, 0.8, 0.0));
+    let size = DVec3::splat(1.5);
+    let objects = vec![
+        ground(20.0),
+        object(Shape::Solid(Primitive::Box { size }), at, glass(0.0)),
+        object(Shape::Solid(Primitive::Sphere { radius: 0.5 }), at, glass(1.0)),
+        cuboid(DVec3::splat(0.8), DVec3::new(0.3, 0.4, -2.0)),
+    ];
+    agrees("glass", &scene(objects, vec![sun(), lamp(DVec3::new(-2.0, 4.0, 3.0))], usual()), None);
 }
 
 #[test]
