@@ -34,8 +34,8 @@ enum Kind {
     RayTracing,
     /// The same, with light that is followed from lamps through mirrors and glass first: caustics
     TwoWay,
-    /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors and
-    /// glass show lights and ambient light only
+    /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show
+    /// lights and ambient light only, and glass bends nothing
     ScanLine,
     /// Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are
     /// not seen

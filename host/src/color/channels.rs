@@ -22,13 +22,6 @@ impl Channels {
         Channels([value; LANES])
     }
 
-    /// The number of one lane, where all others lost theirs: it stands for all of them.
-    ///
-    /// - `lanes`: how many there were.
-    pub fn only(self, lane: usize, lanes: usize) -> Channels {
-        Channels(std::array::from_fn(|i| if i == lane { self.0[i] * lanes as f64 } else { 0.0 }))
-    }
-
     /// One lane, drawn as often as the numbers times others tell, and that alone: it stands for all of them.
     ///
     /// - `uniform`: in 0..1, chooses.

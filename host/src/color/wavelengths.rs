@@ -276,9 +276,20 @@ mod tests {
     }
 
     #[test]
-    fn a_lane_that_is_left_alone_stands_for_all() {
-        let light = Channels([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
-        let sum: f64 = (0..LANES).map(|lane| light.only(lane, LANES).0.iter().sum::<f64>()).sum();
-        assert_eq!(sum / LANES as f64, 36.0);
+    fn a_lane_that_is_drawn_stands_for_all() {
+        let light = Channels([1.0, 2.0, 3.0, 0.0, 5.0, 6.0, 7.0, 8.0]);
+        let weights = [1.0, 4.0, 0.5, 1.0, 0.0, 2.0, 0.01, 3.0];
+        let mut sum = Channels::ZERO;
+        for i in 0..100_000 {
+            let (lane, alone) = light.drawn(weights, (f64::from(i) + 0.5) / 1e5).expect("something is seen");
+            assert!((0..LANES).all(|other| other == lane || alone.0[other] == 0.0));
+            sum += alone * 1e-5;
+        }
+        // What is never seen is never drawn.
+        for (lane, mean) in sum.0.into_iter().enumerate() {
+            let expected = if weights[lane] > 0.0 { light.0[lane] } else { 0.0 };
+            assert!((mean - expected).abs() < 0.05, "{lane}: {mean}, not {expected}");
+        }
+        assert_eq!(Channels::ZERO.drawn(weights, 0.5), None);
     }
 }

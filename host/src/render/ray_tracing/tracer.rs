@@ -281,10 +281,15 @@ impl<'a> Tracer<'a> {
             return;
         }
         let frame = found.frame();
-        let lanes = self.world.appearance.wavelengths.lanes();
-        // Where wavelengths part, the one that is left is drawn together with the comb: all of them get their turn.
-        let parting = draws.point(Purpose::Wavelengths)[1];
-        let lane = leg.lane.unwrap_or(((parting * lanes as f64) as usize).min(lanes - 1));
+        // Where wavelengths part, the one that is left is drawn together with the comb, as often as it will be seen.
+        let drawn = match leg.lane {
+            None if found.disperses() => {
+                let visibility = self.world.appearance.wavelengths.visibility(comb);
+                leg.passed.drawn(visibility, draws.point(Purpose::Wavelengths)[1])
+            }
+            _ => None,
+        };
+        let (lane, alone) = drawn.unwrap_or((leg.lane.unwrap_or(0), leg.passed));
         let side = leg.media.side(self.world, found, comb);
         let sighting = Sighting { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
         if leg.for_lights {
@@ -317,6 +322,7 @@ impl<'a> Tracer<'a> {
             among,
             highest,
             is_known: leg.is_known,
+            alone,
         };
         if optics.answers_lights() {
             let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
@@ -382,7 +388,7 @@ impl<'a> Tracer<'a> {
 
     /// The leg that goes on in a direction; none if it is not worth following.
     fn onward(&self, leg: &Leg, encounter: &Encounter<'_>, onward: Onward, branch: u32) -> Option<Leg> {
-        let Encounter { found, frame, sighting, draws, highest, .. } = *encounter;
+        let Encounter { found, frame, sighting, draws, highest, alone, .. } = *encounter;
         if onward.is_straight {
             return self.straight(leg, found, (onward, branch), &draws);
         }
@@ -398,10 +404,7 @@ impl<'a> Tracer<'a> {
         if is_known && !self.has_others {
             return None;
         }
-        let mut passed = leg.passed * onward.weight;
-        if parts_wavelengths {
-            passed = passed.only(sighting.lane, self.world.appearance.wavelengths.lanes());
-        }
+        let passed = if parts_wavelengths { alone } else { leg.passed } * onward.weight;
         let number = leg.number.wrapping_mul(3).wrapping_add(branch);
         let passed = survived(passed, number, &draws)?;
         let element = &found.element;

@@ -67,6 +67,8 @@ pub(super) struct Encounter<'a> {
     pub(super) highest: f64,
     /// Whether lamps that were followed count nothing.
     pub(super) is_known: bool,
+    /// How much of the radiance along the leg comes to the eye, where wavelengths part: in the one lane that is left.
+    pub(super) alone: Channels,
 }
 
 /// An element of an object.
