@@ -39,6 +39,7 @@ pub(super) struct Line {
     pub(super) like: usize,
     /// How many of its parts are before a light that is no object, if it sees one.
     pub(super) glow: Option<usize>,
+    /// What it gets, summed over the combs of wavelengths, if it is not like another.
     pub(super) light: DVec3,
 }
 
