@@ -5,6 +5,7 @@ use super::hierarchy::{Hierarchy, Node, Patch, normal_and_area};
 use super::sight::Sight;
 use crate::color::Channels;
 use crate::illumination::optics::{Optics, Side, Sighting};
+use crate::illumination::texture::Place;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -185,12 +186,17 @@ fn reflectance(sight: &Sight<'_>, patch: &Patch, ([a, b, c], middle): ([DVec3; 3
     // About the parallelogram of the area of the element.
     let sides = [(b - a) * 0.5f64.sqrt(), (c - a) * 0.5f64.sqrt()];
     let place = optics.is_textured().then(|| prepared.place(triangle, weights, sides));
-    let combs = appearance.wavelengths.combs();
+    mean_diffuse(optics, place.as_ref(), appearance.wavelengths.combs()).map(|part| part.clamp(0.0, 1.0))
+}
+
+/// The part of light that a material reflects diffusely at a place, in the mean over all combs of wavelengths.
+pub(in crate::render) fn mean_diffuse(optics: &Optics, place: Option<&Place>, combs: usize) -> Channels {
+    let mixture = place.map(|place| optics.mix(place));
     let sum = (0..combs).fold(Channels::ZERO, |sum, comb| {
-        let painting = place.as_ref().map(|place| optics.paint(place, comb));
+        let painting = mixture.as_ref().map(|mixture| mixture.at(comb));
         sum + diffuse(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()))
     });
-    (sum * (combs as f64).recip()).map(|part| part.clamp(0.0, 1.0))
+    sum * (combs as f64).recip()
 }
 
 /// The part of light that a material reflects diffusely.

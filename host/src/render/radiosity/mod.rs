@@ -35,7 +35,7 @@ mod tests;
 mod visible;
 
 pub use elements::Exitance;
-pub(in crate::render) use elements::diffuse;
+pub(in crate::render) use elements::{diffuse, mean_diffuse};
 pub use report::Report;
 pub use solver::Unsolvable;
 pub use surface::{Division, Part};

@@ -7,8 +7,9 @@
 //! *Not modelled*: only light that comes straight from lights is seen. Mirrors, metals and glass show lights, and for all
 //! else around them the ambient light, the same radiance from everywhere. Light goes straight through glass, which throws the
 //! shadow of an opaque body, and through what is transparent without bending it; the shadow of that is as weak as it lets
-//! light through (where a pattern says how much, as in the middle of its first triangle). A light with a size is represented by points of it, in number the `light_samples` of the scene, and is itself no obstacle to
-//! others; a sky is background only; a lens is a pinhole.
+//! light through (where a pattern says how much, as in the middle of its first triangle). A light with a size is represented
+//! by points of it, in number the `light_samples` of the scene, and is itself no obstacle to others; a sky is background only;
+//! a lens is a pinhole.
 //!
 //! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and light, and
 //! for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
@@ -168,8 +169,7 @@ impl<'a> ScanLine<'a> {
         if self.solution.is_some() {
             left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
         } else if self.plan.needs(Stage::Reflection) {
-            left_out
-                .push("mirrors, metals and coats show lights and ambient light and nothing else around them, and light goes straight through glass");
+            left_out.push("mirrors, metals and coats show lights and ambient light only, and glass bends nothing");
         }
         if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the sky is seen, but lights nothing");

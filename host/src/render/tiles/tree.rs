@@ -2,7 +2,6 @@
 
 use super::{Corner, Tile};
 use crate::color::{Channels, srgb};
-use crate::illumination::optics::Painting;
 use crate::numeric::triangle::weights;
 use crate::render::radiosity::{Division, Part, Radiosity, diffuse};
 use crate::render::ready::Appearance;
@@ -156,13 +155,13 @@ impl Looks<'_> {
     fn colors(&self, triangle: u32, weights: [f64; 3]) -> Colors {
         let Appearance { prepared, wavelengths, .. } = self.appearance;
         let optics = self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
-        let place = optics.is_textured().then(|| prepared.place(triangle, weights, Default::default()));
+        let mixture = optics.is_textured().then(|| optics.mix(&prepared.place(triangle, weights, Default::default())));
         let irradiance = [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, Part::All));
         let mut seen = [DVec3::ZERO; 2];
         let combs = wavelengths.combs();
         for comb in 0..combs {
             let own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(comb));
-            let painting: Option<Painting> = place.as_ref().map(|place| optics.paint(place, comb));
+            let painting = mixture.as_ref().map(|mixture| mixture.at(comb));
             let reflectance = diffuse(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()));
             for (seen, irradiance) in seen.iter_mut().zip(irradiance) {
                 *seen += wavelengths.seen(comb, own + reflectance * irradiance * FRAC_1_PI);

@@ -34,7 +34,7 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
 use crate::render::Watch;
-use crate::render::radiosity::diffuse;
+use crate::render::radiosity::mean_diffuse;
 use crate::scene::Prepared;
 use aim::{Aimed, Ball};
 use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
@@ -358,12 +358,7 @@ impl CaughtLight<'_> {
         let weights = crate::numeric::triangle::weights(corners, at);
         let size = normal.any_orthonormal_pair();
         let place = optics.is_textured().then(|| prepared.place(triangle, weights, [size.0 * lift, size.1 * lift]));
-        let combs = appearance.wavelengths.combs();
-        let reflectance = (0..combs).fold(Channels::ZERO, |sum, comb| {
-            let painting = place.as_ref().map(|place| optics.paint(place, comb));
-            sum + diffuse(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()))
-        });
-        reflectance * (combs as f64).recip() * irradiance
+        mean_diffuse(optics, place.as_ref(), appearance.wavelengths.combs()) * irradiance
     }
 
     fn surroundings(&self, detail: Detail) -> Surroundings<'_> {
