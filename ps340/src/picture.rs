@@ -1,7 +1,8 @@
 //! A picture of either screen: linear red, green and blue, as PNG or OpenEXR.
 
+use files::{Destination, WriteError};
 use protocol::raster::srgb_from_linear;
-use std::io::Cursor;
+use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use image::ExtendedColorType::{Rgb8, Rgb32F};
@@ -47,14 +48,9 @@ pub enum PictureError {
         /// What the encoder says.
         source: ImageError,
     },
-    /// The file system refused.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file asked for.
-        path: PathBuf,
-        /// What the file system says.
-        source: std::io::Error,
-    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 impl Picture {
@@ -125,19 +121,45 @@ impl Picture {
         Ok(file.into_inner())
     }
 
-    /// Writes the picture to a file, whose ending says how: `.png` or `.exr`, in either case of letters.
+    /// Where a picture will be written, tested before it is made. The ending of the name says how: `.png` or `.exr`, in
+    /// either case of letters.
     ///
     /// # Errors
-    /// Another ending, or what the encoder or the file system says; each names the path.
-    pub fn write(&self, path: &Path) -> Result<(), PictureError> {
-        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-        let encoded = match ending.as_ref().and_then(|ending| ending.to_str()) {
-            Some("png") => self.to_png(),
-            Some("exr") => self.to_exr(),
-            _ => return Err(PictureError::Extension { path: path.into() }),
+    /// Another ending, or that no file can be written there; each names the path.
+    pub fn destination(path: &Path) -> Result<Destination, PictureError> {
+        Format::of(path)?;
+        Ok(Destination::of(path)?)
+    }
+
+    /// Writes the picture to a file.
+    ///
+    /// # Errors
+    /// What the encoder or the file system says; each names the path.
+    pub fn write(&self, destination: &Destination) -> Result<(), PictureError> {
+        let path = destination.path();
+        let encoded = match Format::of(path)? {
+            Format::Png => self.to_png(),
+            Format::Exr => self.to_exr(),
         };
-        let file = encoded.map_err(|source| PictureError::Encode { path: path.into(), source })?;
-        std::fs::write(path, file).map_err(|source| PictureError::Write { path: path.into(), source })
+        let bytes = encoded.map_err(|source| PictureError::Encode { path: path.into(), source })?;
+        Ok(destination.write(|file| file.write_all(&bytes))?)
+    }
+}
+
+/// How a picture is written.
+enum Format {
+    Png,
+    Exr,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Format, PictureError> {
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        match ending.as_ref().and_then(|ending| ending.to_str()) {
+            Some("png") => Ok(Format::Png),
+            Some("exr") => Ok(Format::Exr),
+            _ => Err(PictureError::Extension { path: path.into() }),
+        }
     }
 }
 
@@ -173,15 +195,17 @@ mod tests {
     fn the_ending_chooses_the_format_and_errors_name_the_path() {
         let folder = tempfile::tempdir().unwrap();
         let png = folder.path().join("a.PNG");
-        gradient().write(&png).unwrap();
+        gradient().write(&Picture::destination(&png).unwrap()).unwrap();
         assert_eq!(std::fs::read(&png).unwrap(), gradient().to_png().unwrap());
         let exr = folder.path().join("a.exr");
-        gradient().write(&exr).unwrap();
+        gradient().write(&Picture::destination(&exr).unwrap()).unwrap();
         assert_eq!(std::fs::read(&exr).unwrap(), gradient().to_exr().unwrap());
 
-        for (name, kind) in [("a.gif", "must end in"), ("a", "must end in"), ("no/such/folder/a.png", "cannot write")] {
+        for (name, kind) in
+            [("a.gif", "must end in"), ("a", "must end in"), ("no/such/folder/a.png", "there is no folder")]
+        {
             let path = folder.path().join(name);
-            let message = gradient().write(&path).unwrap_err().to_string();
+            let message = Picture::destination(&path).unwrap_err().to_string();
             assert!(message.contains(kind) && message.contains(path.to_str().unwrap()), "{message}");
         }
     }

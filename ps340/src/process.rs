@@ -40,7 +40,7 @@ struct Arguments {
     #[arg(long, value_name = "LINE", default_value = "tcp:127.0.0.1:3400")]
     listen: Vec<LineAddress>,
     /// Writes what passes on all host lines, and what the operator does, to a file; 'file:FILE,pace=captured' plays it
-    /// again.
+    /// again. The file is FILE.part until the machine ends.
     #[arg(long, value_name = "FILE")]
     capture: Option<PathBuf>,
     /// Who gives orders: stdio, none, or an address to listen on. By default stdio if that is a terminal, else none.

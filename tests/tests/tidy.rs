@@ -23,15 +23,28 @@ const TOP_LEVEL: &[&str] = &[
     "peris-run",
 ];
 
-/// The crates, and the crates of the workspace that each may name.
-const CRATES: &[(&str, &[&str])] =
-    &[("protocol", &[]), ("ps340", &["protocol"]), ("host", &["protocol"]), ("tests", &["protocol", "ps340", "host"])];
+/// A crate of the workspace.
+struct Crate {
+    name: &'static str,
+    /// Where it is, seen from the root.
+    folder: &'static str,
+    /// The crates of the workspace that it may name.
+    below: &'static [&'static str],
+}
+
+const CRATES: &[Crate] = &[
+    Crate { name: "files", folder: "protocol/files", below: &[] },
+    Crate { name: "protocol", folder: "protocol", below: &[] },
+    Crate { name: "ps340", folder: "ps340", below: &["protocol", "files"] },
+    Crate { name: "host", folder: "host", below: &["protocol", "files"] },
+    Crate { name: "tests", folder: "tests", below: &["protocol", "files", "ps340", "host"] },
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace is the parent folder").to_owned()
 }
 
-/// All Rust files of a folder, sorted.
+/// All Rust files of a folder, sorted, without those of crates inside it.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     let Ok(entries) = fs::read_dir(folder) else {
@@ -39,7 +52,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     };
     for entry in entries {
         let path = entry.expect("a folder that was opened can be read").path();
-        if path.is_dir() && path.file_name().is_none_or(|name| name != "target") {
+        if path.is_dir() && !path.ends_with("target") && !path.join("Cargo.toml").exists() {
             files.extend(sources(&path));
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             files.push(path);
@@ -192,8 +205,8 @@ fn climbed(code: &str) -> usize {
 fn a_folder_uses_only_the_layers_below_it() {
     let mut faults = Vec::new();
     let mut seen = 0;
-    for (name, _) in CRATES {
-        let folder = root().join(name).join("src");
+    for Crate { folder, .. } in CRATES {
+        let folder = root().join(folder).join("src");
         let (layers, exports) = layers(&read(&folder.join("lib.rs")));
         for path in sources(&folder) {
             let inside = path.strip_prefix(&folder).expect("the file was found in the folder");
@@ -233,14 +246,14 @@ fn a_folder_uses_only_the_layers_below_it() {
 #[test]
 fn crates_name_only_the_crates_below_them() {
     let mut faults = Vec::new();
-    for (name, allowed) in CRATES {
-        let forbidden = CRATES.iter().map(|row| row.0).filter(|other| other != name && !allowed.contains(other));
-        let manifest = read(&root().join(name).join("Cargo.toml"));
+    for Crate { name, folder, below } in CRATES {
+        let forbidden = CRATES.iter().map(|row| row.name).filter(|other| other != name && !below.contains(other));
+        let manifest = read(&root().join(folder).join("Cargo.toml"));
         for other in forbidden {
             if manifest.lines().any(|line| line.split(['.', ' ', '=']).next() == Some(other)) {
-                faults.push(format!("{name}/Cargo.toml names `{other}`"));
+                faults.push(format!("{folder}/Cargo.toml names `{other}`"));
             }
-            for path in sources(&root().join(name)) {
+            for path in sources(&root().join(folder)) {
                 let text = code(&read(&path));
                 // A module of the crate itself may bear the name, as in `crate::ps340::`.
                 let imported = text.contains(&format!("use {other};")) || text.contains(&format!("crate {other};"));
@@ -256,7 +269,7 @@ fn crates_name_only_the_crates_below_them() {
 #[test]
 fn every_file_says_first_what_it_is_for_and_is_short() {
     let mut faults = Vec::new();
-    for path in CRATES.iter().flat_map(|(name, _)| sources(&root().join(name))) {
+    for path in CRATES.iter().flat_map(|one| sources(&root().join(one.folder))) {
         let text = read(&path);
         let first = text.lines().next().unwrap_or_default();
         if first.strip_prefix("//! ").is_none_or(|purpose| purpose.len() < 8) {

@@ -36,9 +36,7 @@ struct Arguments {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { formula, output, json } = arguments;
     let (meshes, expression) = formula::parse(formula).map_err(|error| Failure::new(Exit::Usage, error))?;
-    if mesh::Format::of(output).is_none() {
-        return Err(mesh::MeshError::Format { path: output.clone() }.into());
-    }
+    let destination = mesh::destination(output)?;
     let (mut solids, mut names, mut looks) = (Vec::new(), Vec::new(), Vec::new());
     for path in &meshes {
         let Operand { solid, names: own, looks: its_looks } = grouped_solid(path)?;
@@ -52,7 +50,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (result, outcome) = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
     let seconds = start.elapsed().as_secs_f64();
     let grouped = Grouped { mesh: result.into_mesh(), names, looks };
-    mesh::write_grouped(&grouped, output)?;
+    mesh::write_grouped(&grouped, &destination)?;
     let mesh = &grouped.mesh;
     let volume = mesh.signed_volume();
     if *json {

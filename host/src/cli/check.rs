@@ -27,6 +27,7 @@ struct Arguments {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let repaired = arguments.repair.as_ref().map(mesh::destination).transpose()?;
     let mesh = mesh::read(&arguments.mesh)?;
     let report = mesh.edge_report();
     let duplicates = mesh.duplicate_triangles();
@@ -56,7 +57,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             say!("a solid");
         }
     }
-    if let Some(path) = &arguments.repair {
+    if let Some(destination) = &repaired {
         verdict = Solid::repaired(mesh).map(|(solid, repair)| {
             if !arguments.json {
                 say!(
@@ -71,7 +72,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             solid
         });
         if let Ok(solid) = &verdict {
-            mesh::write(solid.mesh(), path)?;
+            mesh::write(solid.mesh(), destination)?;
         }
     }
     match verdict {

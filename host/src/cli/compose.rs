@@ -3,6 +3,7 @@
 use super::{Exit, Failure, Row};
 use crate::picture::{self, Deep, Operator, Picture};
 use clap::{Args, FromArgMatches};
+use files::Destination;
 use std::path::PathBuf;
 
 pub(super) const ROW: Row = Row {
@@ -38,15 +39,15 @@ struct Arguments {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { a, operator, b, output, depth, json } = arguments;
-    Picture::check_name(output)?;
+    let destination = Picture::destination(output)?;
     let picture = match depth {
-        true => by_depth(arguments)?,
+        true => by_depth(arguments, &destination)?,
         false => {
             let (first, second) = (Picture::read_finite(a)?, Picture::read_finite(b)?);
             let [a_as_matte, b_as_matte] = operator.needs_mattes();
             warn_of_background(arguments, [(a_as_matte, &first), (b_as_matte, &second)]);
             let picture = picture::compose(&first, *operator, &second)?;
-            picture.write(output)?;
+            picture.write(&destination)?;
             picture
         }
     };
@@ -62,8 +63,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Combines the pictures by their depth, and writes the result.
-fn by_depth(arguments: &Arguments) -> Result<Picture, Failure> {
-    let Arguments { a, operator, b, output, .. } = arguments;
+fn by_depth(arguments: &Arguments, destination: &Destination) -> Result<Picture, Failure> {
+    let Arguments { a, operator, b, .. } = arguments;
     let wrong = |message: String| Failure::new(Exit::Usage, anyhow::anyhow!(message));
     if *operator != Operator::Over {
         return Err(wrong("--depth is for the operator over".into()));
@@ -74,9 +75,9 @@ fn by_depth(arguments: &Arguments) -> Result<Picture, Failure> {
     let (first, second) = (Deep::read(a)?, Deep::read(b)?);
     warn_of_background(arguments, [(true, first.picture()), (true, second.picture())]);
     let both = picture::compose_by_depth(&first, &second)?;
-    match Picture::is_exr(output) {
-        true => both.write(output)?,
-        false => both.picture().write(output)?,
+    match Picture::is_exr(destination.path()) {
+        true => both.write(destination)?,
+        false => both.picture().write(destination)?,
     }
     Ok(both.picture().clone())
 }

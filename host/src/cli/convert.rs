@@ -7,8 +7,10 @@ use crate::scene::{Object, Prepared, Scene, Shape};
 use crate::script;
 use crate::workstation::{Drawing, Lines, structure};
 use clap::{Args, FromArgMatches};
+use files::Destination;
 use glam::{DAffine3, DMat4, DVec3};
 use protocol::command::print;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 pub(super) const ROW: Row = Row {
@@ -52,12 +54,13 @@ struct Arguments {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { input, output, triangles: most, json, .. } = arguments;
     let to_commands = output.extension().is_some_and(|e| e.eq_ignore_ascii_case("ps300"));
-    if most.is_some() && (to_commands || Picture::check_name(output).is_ok()) {
+    if most.is_some() && (to_commands || Picture::is_picture(output)) {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--triangles is for a mesh that is written")));
     }
-    if Picture::check_name(input).is_ok() {
+    if Picture::is_picture(input) {
+        let destination = Picture::destination(output)?;
         let picture = Picture::read(input)?;
-        picture.write(output)?;
+        picture.write(&destination)?;
         if *json {
             let known = serde_json::json!({ "file": output, "width": picture.width(), "height": picture.height() });
             say!("{known:#}");
@@ -69,6 +72,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if to_commands {
         return commands(arguments);
     }
+    let destination = mesh::destination(output)?;
     let mut grouped = triangles(input, &arguments.definitions)?;
     if let Some(most) = most.filter(|most| *most < grouped.mesh.triangles.len()) {
         grouped = grouped.mesh.simplified(most).into();
@@ -76,7 +80,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.scale != 1.0 {
         grouped.mesh = grouped.mesh.transformed(&DAffine3::from_scale(DVec3::splat(arguments.scale)));
     }
-    mesh::write_grouped(&grouped, output)?;
+    mesh::write_grouped(&grouped, &destination)?;
     let mesh = grouped.mesh;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     if *json {
@@ -90,6 +94,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Writes the commands that build a scene on a PS 340.
 fn commands(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { input, definitions, output, json, lines, tolerance, .. } = arguments;
+    let destination = Destination::of(output)?;
     let scene = input_scene(input, definitions)?;
     let prepared = Prepared::new(&scene)?;
     let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
@@ -100,7 +105,7 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
         print(command, &mut text);
         text.push(b'\n');
     }
-    std::fs::write(output, &text).map_err(|e| anyhow::anyhow!("{}: {e}", output.display()))?;
+    destination.write_or_keep(|file| file.write_all(&text))?;
     let polygons = shown.points / 3;
     if *json {
         say!("{:#}", serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));

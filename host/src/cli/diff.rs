@@ -37,18 +37,16 @@ struct Arguments {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { picture, reference, tolerance, map, ppd, json } = arguments;
-    if let Some(path) = map {
-        Picture::check_name(path)?;
-    }
+    let map = map.as_deref().map(Picture::destination).transpose()?;
     let (a, b) = (Picture::read_finite(picture)?, Picture::read_finite(reference)?);
     let found = picture::difference(&a, &b)?;
     let flip = picture::flip(&a, &b, *ppd)?;
-    if let Some(path) = map {
-        let shown = match Picture::is_exr(path) {
+    if let Some(map) = map {
+        let shown = match Picture::is_exr(map.path()) {
             true => numbers(&a, &flip)?,
             false => picture::error_map(a.width(), a.height(), &flip.map)?,
         };
-        shown.write(path)?;
+        shown.write(&map)?;
     }
     let Difference { rmse, relative_mse, largest, percentile_99, coverage, silhouette } = found;
     let is_within = tolerance.is_none_or(|tolerance| rmse <= tolerance);

@@ -24,13 +24,16 @@ pub enum Exit {
     Scene = 3,
     /// The line to the workstation, or the other process, failed.
     Line = 4,
+    /// There is a picture, but the error that was asked for is not reached everywhere; or time ran out before there was one.
+    Missed = 5,
     /// Interrupted; what was finished is kept.
     Interrupted = 130,
 }
 
 impl Exit {
     /// Every exit code.
-    pub const ALL: [Exit; 6] = [Exit::Done, Exit::Failed, Exit::Usage, Exit::Scene, Exit::Line, Exit::Interrupted];
+    pub const ALL: [Exit; 7] =
+        [Exit::Done, Exit::Failed, Exit::Usage, Exit::Scene, Exit::Line, Exit::Missed, Exit::Interrupted];
 
     /// What it means.
     pub fn meaning(self) -> &'static str {
@@ -40,6 +43,7 @@ impl Exit {
             Exit::Usage => "the command line is wrong",
             Exit::Scene => "the script or the scene is wrong",
             Exit::Line => "the line to the workstation, or the other process, failed",
+            Exit::Missed => "the error or the time that was asked for was not enough for every pixel",
             Exit::Interrupted => "interrupted; what was finished is kept",
         }
     }
@@ -87,6 +91,7 @@ failures! {
     anyhow::Error => Failed,
     clap::Error => Usage,
     std::io::Error => Failed,
+    files::WriteError => Failed,
     serde_json::Error => Failed,
     crate::octree::OctreeError => Failed,
     crate::octree::FileError => Failed,

@@ -4,7 +4,9 @@ use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load};
 use crate::intersection::{Branch, Intersection, Mark, Precision, csv, obj};
 use crate::scene::meetings;
 use clap::{Args, FromArgMatches};
+use files::Destination;
 use serde_json::{Value, json};
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -40,6 +42,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = arguments.output.iter().find(is_unknown) {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!("{} ends neither in .csv nor in .obj", path.display())));
     }
+    let destinations: Vec<Destination> = arguments.output.iter().map(Destination::of).collect::<Result<_, _>>()?;
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let precision = Precision { newton: arguments.newton, chord: arguments.chord };
     let start = Instant::now();
@@ -50,9 +53,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map(|meeting| (meeting.objects.map(|object| scene.objects[object].name.clone()), &meeting.intersection))
         .filter(|(_, intersection)| intersection.points().next().is_some() || intersection.work.coincident > 0)
         .collect();
-    for path in &arguments.output {
-        let is_table = path.extension().is_some_and(|extension| extension == "csv");
-        std::fs::write(path, if is_table { csv(&named) } else { obj(&named) })?;
+    for destination in &destinations {
+        let is_table = destination.path().extension().is_some_and(|extension| extension == "csv");
+        let text = if is_table { csv(&named) } else { obj(&named) };
+        destination.write_or_keep(|file| file.write_all(text.as_bytes()))?;
     }
     if arguments.json {
         let all: Vec<Value> = named.iter().map(|(names, intersection)| described(names, intersection)).collect();

@@ -1,24 +1,19 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
-use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, load, progress};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
-    render::{Order, Watch},
+    render::Order,
     scene::Scene,
     study::{Options, Technique, renderers},
     workstation::{Drawing, Emulator},
 };
 use clap::{Args, FromArgMatches};
+use files::{Folder, WriteError};
 use protocol::address::Address;
 use serde_json::{Map, Value, json};
-use std::{
-    fmt::Write as _,
-    num::NonZeroUsize,
-    path::{Path, PathBuf},
-    str::FromStr,
-    time::Instant,
-};
+use std::{fmt::Write as _, io::Write as _, num::NonZeroUsize, path::PathBuf, str::FromStr, time::Instant};
 
 pub(super) const RUN: Row = Row {
     name: "run",
@@ -144,27 +139,30 @@ fn demo(arguments: &DemoArguments) -> Result<(), Failure> {
 
 /// The files that were made, with what they are.
 struct Contents<'a> {
-    folder: &'a Path,
+    folder: &'a Folder,
     lines: String,
     names: Vec<String>,
 }
 
 impl Contents<'_> {
     /// The path of a file in the folder, which is noted with what it is.
-    fn file(&mut self, name: &str, what: &str) -> String {
+    fn file(&mut self, name: &str, what: &str) -> PathBuf {
         let _ = writeln!(self.lines, "{name:<24} {what}");
         self.names.push(name.into());
-        self.folder.join(name).display().to_string()
+        self.folder.path().join(name)
+    }
+
+    /// Writes a text into a file, which is noted with what it is.
+    fn write(&mut self, name: &str, what: &str, text: &str) -> Result<(), WriteError> {
+        self.file(name, what);
+        self.folder.write_or_keep(name, |file| file.write_all(text.as_bytes())).map(drop)
     }
 }
 
 impl Job<'_> {
     fn perform(mut self) -> Result<(), Failure> {
-        watch_interrupts();
         let folder = self.common.output.clone().unwrap_or_else(|| self.folder.into());
-        std::fs::create_dir_all(&folder)
-            .map_err(|e| Failure::new(Exit::Failed, anyhow::anyhow!("{}: {e}", folder.display())))?;
-        let folder = std::path::absolute(&folder)?;
+        let folder = Folder::make(std::path::absolute(&folder)?)?;
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
         super::warn_of_darkness(&self.scene);
@@ -191,24 +189,23 @@ impl Job<'_> {
         if let Some(emulator) = &mut emulator {
             self.turn(emulator, &mut contents)?;
         }
-        stop_if_interrupted()?;
         let picture = self.image(&mut production, &mut contents)?;
         production.show_image(&picture)?;
         if let Some(emulator) = &mut emulator {
             let file = contents.file("raster.png", "the raster screen of the PS 340 with that image");
-            emulator.order(&format!("picture raster {file}"))?;
+            emulator.order(&format!("picture raster {}", file.display()))?;
         }
         if self.study {
             self.study(&mut contents)?;
         }
-        let path = contents.folder.join("CONTENTS.txt");
-        std::fs::write(&path, &contents.lines)?;
+        let list = contents.lines.clone();
+        folder.write_or_keep("CONTENTS.txt", |file| file.write_all(list.as_bytes()))?;
         if self.common.json {
-            self.report.insert("folder".into(), json!(contents.folder));
+            self.report.insert("folder".into(), json!(folder.path()));
             self.report.insert("files".into(), json!(contents.names));
             say!("{}", serde_json::to_string_pretty(&self.report)?);
         } else {
-            say!("\n{}", contents.folder.display());
+            say!("\n{}", folder.path().display());
             say_on!("{}", contents.lines);
         }
         Ok(())
@@ -227,13 +224,13 @@ impl Job<'_> {
     fn turn(&self, emulator: &mut Emulator, contents: &mut Contents<'_>) -> Result<(), Failure> {
         emulator.order("idle")?;
         let file = contents.file("vector-before.png", "the vector screen of the PS 340 before a dial was turned");
-        emulator.order(&format!("picture vector {file}"))?;
+        emulator.order(&format!("picture vector {}", file.display()))?;
         for turn in self.dials {
             emulator.order(&format!("dial {} {}", turn.dial, turn.turns))?;
         }
         emulator.order("idle")?;
         let file = contents.file("vector-after.png", "the vector screen after the dials were turned");
-        emulator.order(&format!("picture vector {file}"))?;
+        emulator.order(&format!("picture vector {}", file.display()))?;
         Ok(())
     }
 
@@ -251,11 +248,8 @@ impl Job<'_> {
             }
         }
         let order = Order { threads: self.common.threads, ..Order::of(&self.scene.settings) };
-        let progress = Progress::new("rendering", self.common.json);
-        let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
-        let shot = production.render(&matrix, &order, &watch);
-        progress.finish();
-        let shot = shot?;
+        let shot = production.render(&matrix, &order, &progress::watch())?;
+        progress::clear();
         let rendering = &shot.rendering;
         if let Some(bytes) = shot.octree_bytes {
             let seconds = shot.build_seconds;
@@ -272,39 +266,30 @@ impl Job<'_> {
         let what = "the ray-traced image of that view";
         for name in ["raytraced.png", "raytraced.exr"] {
             let form = if name.ends_with("exr") { " (linear light, coverage as alpha)" } else { "" };
-            rendering.picture.write(Path::new(&contents.file(name, &format!("{what}{form}"))))?;
+            let path = contents.file(name, &format!("{what}{form}"));
+            rendering.picture.write(&Picture::destination(&path)?)?;
         }
-        stop_if_interrupted()?;
         Ok(shot.rendering.picture)
     }
 
     fn study(&mut self, contents: &mut Contents<'_>) -> Result<(), Failure> {
         let options = Options { width: 160, samples: 256, settings: 6, threads: self.common.threads };
-        let progress = Progress::new("studying", self.common.json);
-        let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
+        progress::stage("while studying");
         let start = Instant::now();
-        let study = renderers(&self.scene, &[Technique::RayTracing], &["samples"], &options, &watch);
-        progress.finish();
-        let study = study?;
+        let study = renderers(&self.scene, &[Technique::RayTracing], &["samples"], &options, &progress::watch())?;
+        progress::clear();
         let (seconds, table) = (start.elapsed().as_secs_f64(), study.table());
         let text = format!("\nerror against run time (studied in {seconds:.1} s)\n{}", table.trim_end());
         self.note("study", serde_json::to_value(&study)?, format_args!("{text}"));
-        std::fs::write(contents.file("study-render.txt", "error against run time, as a table"), table)?;
-        std::fs::write(contents.file("study-render.csv", "the same for programs"), study.csv())?;
-        contents.file("study-render.svg", "the same as a plot");
-        contents.file("study-render.png", "the same plot in pixels");
+        contents.write("study-render.txt", "error against run time, as a table", &table)?;
+        contents.write("study-render.csv", "error against run time, for programs", &study.csv())?;
+        contents.file("study-render.svg", "error against run time, as a plot");
+        contents.file("study-render.png", "the plot in pixels");
         for (_, plot) in study.plots(self.title) {
             plot.write(contents.folder, "study-render")?;
         }
         Ok(())
     }
-}
-
-fn stop_if_interrupted() -> Result<(), Failure> {
-    if interrupted() {
-        return Err(Failure::new(Exit::Interrupted, anyhow::anyhow!("interrupted; what was finished is kept")));
-    }
-    Ok(())
 }
 
 #[cfg(test)]

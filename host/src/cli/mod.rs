@@ -12,6 +12,7 @@ mod diff;
 mod exit;
 mod formula;
 mod functions;
+mod interrupts;
 mod intersect;
 mod job;
 mod measure;
@@ -26,7 +27,6 @@ mod study_render;
 mod tessellate;
 
 pub use exit::{Exit, Failure};
-pub use progress::{Progress, interrupted, watch_interrupts};
 pub use source::{Definitions, SCRIPT_HELP, load};
 
 use crate::illumination::Bands;
@@ -99,7 +99,11 @@ pub fn main() -> ExitCode {
     };
     let Some((name, arguments)) = matches.subcommand() else { return Exit::Usage.into() };
     let Some(row) = COMMANDS.iter().find(|row| row.name == name) else { return Exit::Usage.into() };
-    match (row.run)(arguments) {
+    progress::begin(matches!(arguments.try_get_one("json"), Ok(Some(true))));
+    interrupts::begin(name);
+    let ended = (row.run)(arguments);
+    progress::clear();
+    match ended {
         Ok(()) => Exit::Done.into(),
         Err(failure) => {
             eprintln!("peris {name}: {}", story(&failure.error));
@@ -116,12 +120,18 @@ fn story(error: &anyhow::Error) -> String {
     })
 }
 
+/// Says on standard error what is probably not meant.
+fn warn(text: &str) {
+    progress::clear();
+    eprintln!("warning: {text}");
+}
+
 /// Says on standard error what makes a picture empty or black.
 fn warn_of_darkness(scene: &Scene) {
     if scene.objects.is_empty() {
-        eprintln!("warning: the scene has no objects; only its background will be seen");
+        warn("the scene has no objects; only its background will be seen");
     } else if scene.lights.is_empty() && scene.ambient == Bands::ZERO {
-        eprintln!("warning: the scene has neither lights nor ambient light; its objects will be black");
+        warn("the scene has neither lights nor ambient light; its objects will be black");
     }
 }
 

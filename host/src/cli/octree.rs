@@ -4,6 +4,8 @@ use super::{Definitions, Exit, Failure, Row, load};
 use crate::octree::{MAX_DEPTH, Octree, Settings, Statistics};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
+use files::Destination;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -45,11 +47,13 @@ struct Arguments {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let destination = arguments.output.as_deref().map(destination).transpose()?;
     let path = Path::new(&arguments.scene);
-    let kept = path.extension().is_some_and(|ending| ending == ENDING);
+    let kept = is_octree(path);
     let (octree, seconds) = if kept { read(path, arguments)? } else { build(arguments)? };
-    if let Some(path) = &arguments.output {
-        std::fs::write(path, octree.to_bytes()?).map_err(|error| failed(path, &error))?;
+    if let Some(destination) = destination {
+        let bytes = octree.to_bytes()?;
+        destination.write_or_keep(|file| file.write_all(&bytes))?;
     }
     let statistics = octree.statistics();
     if arguments.json {
@@ -69,6 +73,20 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Whether a name is that of an octree that was kept.
+fn is_octree(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == ENDING)
+}
+
+/// Where the octree will be kept, under a name by which it is known again.
+fn destination(path: &Path) -> Result<Destination, Failure> {
+    if !is_octree(path) {
+        let why = format!("{}: the name of an octree ends in .{ENDING}", path.display());
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
+    }
+    Ok(Destination::of(path)?)
 }
 
 /// Builds the octree of a scene; also says how long it took, seconds.

@@ -1,60 +1,73 @@
-//! Progress on a terminal, and Ctrl-C.
+//! What is being done, on a terminal: the stage, and how much of it is done.
 
+use super::interrupts;
+use crate::render::Watch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
-/// Set by Ctrl-C.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// How often the time is told.
+const TICK: Duration = Duration::from_millis(200);
 
-/// From now on, the first Ctrl-C asks the work to stop and keep what it has; the second ends the process.
-pub fn watch_interrupts() -> &'static AtomicBool {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let handler = || {
-            if INTERRUPTED.swap(true, Ordering::Relaxed) {
-                std::process::exit(super::Exit::Interrupted as i32);
-            }
-        };
-        if let Err(error) = ctrlc::set_handler(handler) {
-            tracing::warn!("Ctrl-C will end the process at once: {error}");
+/// Whether stages are shown.
+static SHOWN: AtomicBool = AtomicBool::new(false);
+/// The stage, and its line on the terminal.
+static STAGE: Mutex<(&str, Option<ProgressBar>)> = Mutex::new(("at the beginning", None));
+
+fn state() -> MutexGuard<'static, (&'static str, Option<ProgressBar>)> {
+    STAGE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From now on, stages are shown on standard error if that is a terminal.
+///
+/// - `quiet`: not even then.
+pub(super) fn begin(quiet: bool) {
+    SHOWN.store(!quiet && std::io::stderr().is_terminal(), Ordering::Relaxed);
+}
+
+/// A stage begins: what is done, such as `while rendering`.
+pub(super) fn stage(name: &'static str) {
+    clear();
+    let bar = SHOWN.load(Ordering::Relaxed).then(|| {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{msg} {elapsed}") {
+            bar.set_style(style);
         }
+        bar.set_message(name.trim_start_matches("while "));
+        bar.enable_steady_tick(TICK);
+        bar
     });
-    &INTERRUPTED
+    *state() = (name, bar);
 }
 
-/// Whether Ctrl-C was pressed.
-pub fn interrupted() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
-}
-
-/// A bar on standard error; nothing where that is no terminal.
-pub struct Progress {
-    bar: ProgressBar,
-}
-
-impl Progress {
-    /// A bar with a word before it; none if `quiet`.
-    pub fn new(word: &'static str, quiet: bool) -> Progress {
-        let shown = !quiet && std::io::stderr().is_terminal();
-        let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(None, target);
-        if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len} {eta}") {
+/// So much of the stage is done.
+pub(super) fn update(done: u64, all: u64) {
+    if let (_, Some(bar)) = &*state() {
+        if bar.length().is_none()
+            && let Ok(style) = ProgressStyle::with_template("{msg} [{bar:40}] {pos}/{len}, {eta} to go")
+        {
             bar.set_style(style.progress_chars("=> "));
         }
-        bar.set_message(word);
-        Progress { bar }
+        bar.set_length(all);
+        bar.set_position(done);
     }
+}
 
-    /// So much is done.
-    pub fn update(&self, done: u64, all: u64) {
-        self.bar.set_length(all);
-        self.bar.set_position(done);
+/// Takes the line off the terminal, before something else is said.
+pub(super) fn clear() {
+    if let Some(bar) = state().1.take() {
+        bar.finish_and_clear();
     }
+}
 
-    /// Takes the bar away.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
-    }
+/// The stage, in words that follow `interrupted`.
+pub(super) fn current() -> &'static str {
+    state().0
+}
+
+/// One who watches work for the person at the terminal, and stops it after a signal.
+pub(super) fn watch() -> Watch<'static> {
+    Watch { cancelled: interrupts::flag(), progress: &update, stage: &stage }
 }

@@ -1,10 +1,11 @@
 //! Text for standard output that nobody may be reading any more.
 
-use super::Exit;
+use super::{Exit, progress};
 use std::{fmt::Arguments, io::Write};
 
 /// Writes to standard output. When the reader has gone, as in `peris ... | head`, the program ends quietly.
 pub(super) fn write(text: Arguments<'_>) {
+    progress::clear();
     let mut out = std::io::stdout().lock();
     if out.write_fmt(text).and_then(|()| out.flush()).is_err() {
         std::process::exit(Exit::Done as i32);

@@ -1,9 +1,9 @@
 //! `peris show`: a scene on a workstation, with dials and keys, until someone ends it.
 
-use super::{Definitions, Exit, Failure, Progress, Row, SCRIPT_HELP, interrupted, load, watch_interrupts};
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load, progress};
 use crate::{
     production::{Production, ProductionError, Sent, tiling},
-    render::{Order, Watch, tiles::Tiling},
+    render::{Order, tiles::Tiling},
     scene::Scene,
     workstation::{
         Drawing, Emulator, Lines, WorkstationError,
@@ -63,7 +63,6 @@ struct Arguments {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    watch_interrupts();
     if !(0.0..=180.0).contains(&arguments.crease) {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--crease is an angle of 0 to 180 degrees")));
     }
@@ -97,11 +96,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Solves for the light of all surfaces.
 fn solve(scene: &Scene, arguments: &Arguments) -> Result<Tiling, Failure> {
     super::warn_of_darkness(scene);
-    let progress = Progress::new("radiosity", arguments.json);
-    let watch = Watch { cancelled: watch_interrupts(), progress: &|done, all| progress.update(done, all) };
-    let light = tiling(scene, arguments.threads, &watch);
-    progress.finish();
-    Ok(light?)
+    let light = tiling(scene, arguments.threads, &progress::watch())?;
+    progress::clear();
+    Ok(light)
 }
 
 /// Says what was sent.
@@ -136,9 +133,6 @@ fn serve(
     let orders = emulator.as_ref().map(|_| read_orders());
     let mut unanswered = 0_u64;
     loop {
-        if interrupted() {
-            return Err(Failure::new(Exit::Interrupted, anyhow::anyhow!("interrupted")));
-        }
         if let (Some(orders), Some(emulator)) = (&orders, emulator.as_mut()) {
             match orders.try_recv() {
                 Ok(order) if order == "quit" => return Ok(()),
@@ -176,8 +170,9 @@ fn serve(
 fn render(production: &mut Production, scene: &Scene, threads: Option<NonZeroUsize>) -> Result<(), Failure> {
     let matrix = production.view()?;
     let order = Order { threads, ..Order::of(&scene.settings) };
-    let watch = Watch { cancelled: watch_interrupts(), progress: &|_, _| {} };
-    match production.render(&matrix, &order, &watch) {
+    let shot = production.render(&matrix, &order, &progress::watch());
+    progress::clear();
+    match shot {
         Ok(shot) => {
             production.show_image(&shot.rendering.picture)?;
             say!("rendered in {:.3} s", shot.rendering.seconds);

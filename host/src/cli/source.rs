@@ -1,6 +1,6 @@
 //! Where a scene comes from: a script file, or a name.
 
-use super::Failure;
+use super::{Failure, progress};
 use crate::script::{self, Definition, Evaluated};
 use clap::Args;
 use std::path::Path;
@@ -29,7 +29,9 @@ impl Definitions {
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`].
 pub fn load(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
+    progress::stage("while evaluating the script");
     let evaluated = script::load(name, &definitions.given)?;
+    progress::clear();
     for line in &evaluated.printed {
         eprintln!("{line}");
     }

@@ -1,10 +1,11 @@
 //! `peris study`: error against run time.
 
 use super::source::stem;
-use super::{Definitions, Failure, Progress, Row, SCRIPT_HELP, load, study_render, watch_interrupts};
-use crate::render::Watch;
+use super::{Definitions, Failure, Row, SCRIPT_HELP, load, progress, study_render};
 use crate::study::{KNOBS, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use files::Folder;
+use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -86,18 +87,15 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
 }
 
 fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
-    let cancelled = watch_interrupts();
-    std::fs::create_dir_all(&arguments.output)?;
-    let progress = Progress::new("studying", arguments.json);
-    let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
-    let study = illumination(&arguments.roughness, &watch);
-    progress.finish();
-    let study = study?;
-    let csv = arguments.output.join(format!("{ILLUMINATION}.csv"));
-    std::fs::write(&csv, study.csv())?;
+    let folder = Folder::make(&arguments.output)?;
+    progress::stage("while studying");
+    let study = illumination(&arguments.roughness, &progress::watch())?;
+    progress::clear();
+    let table = study.csv();
+    let csv = folder.write_or_keep(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
     let mut written = vec![csv];
     for (roughness, plot) in study.plots() {
-        written.extend(plot.write(&arguments.output, &format!("{ILLUMINATION}-{roughness}"))?);
+        written.extend(plot.write(&folder, &format!("{ILLUMINATION}-{roughness}"))?);
     }
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&study)?);
@@ -110,24 +108,21 @@ fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
 }
 
 fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
-    let cancelled = watch_interrupts();
+    let folder = Folder::make(&arguments.output)?;
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let mut options = knob.options;
     options.width = arguments.width.unwrap_or(options.width);
     options.samples = arguments.samples.unwrap_or(options.samples);
     options.settings = arguments.settings.unwrap_or(options.settings);
     options.threads = arguments.threads;
-    std::fs::create_dir_all(&arguments.output)?;
-    let progress = Progress::new("studying", arguments.json);
-    let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
-    let study = (knob.run)(&scene, &options, &watch);
-    progress.finish();
-    let study = study?;
+    progress::stage("while studying");
+    let study = (knob.run)(&scene, &options, &progress::watch())?;
+    progress::clear();
     let script = stem(&arguments.script);
     let name = format!("{script}-{}", knob.name);
-    let csv = arguments.output.join(format!("{name}.csv"));
-    std::fs::write(&csv, study.csv())?;
-    let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&arguments.output, &name)?;
+    let table = study.csv();
+    let csv = folder.write_or_keep(&format!("{name}.csv"), |file| file.write_all(table.as_bytes()))?;
+    let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&folder, &name)?;
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&study)?);
     } else {

@@ -1,11 +1,12 @@
 //! `peris study render`: error against run time of every knob of every renderer.
 
 use super::source::stem;
-use super::{Definitions, Exit, Failure, Progress, SCRIPT_HELP, load, watch_interrupts};
-use crate::render::Watch;
+use super::{Definitions, Exit, Failure, SCRIPT_HELP, load, progress};
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, Technique, renderers};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use files::Folder;
+use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -59,7 +60,7 @@ pub(super) fn command() -> Command {
 /// Runs it; what was finished before an interruption is kept.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let arguments = Arguments::from_arg_matches(matches)?;
-    let cancelled = watch_interrupts();
+    let folder = Folder::make(&arguments.output)?;
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let Arguments { width, samples, settings, threads, .. } = arguments;
     let options = Options { width, samples, settings, threads };
@@ -73,18 +74,15 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
         .map(|knob| knob.name)
         .filter(|name| arguments.knob.is_empty() || arguments.knob.iter().any(|knob| knob == name));
     let (techniques, names): (Vec<Technique>, Vec<&str>) = (techniques.collect(), names.collect());
-    std::fs::create_dir_all(&arguments.output)?;
-    let progress = Progress::new("studying", arguments.json);
-    let watch = Watch { cancelled, progress: &|done, all| progress.update(done, all) };
-    let study = renderers(&scene, &techniques, &names, &options, &watch);
-    progress.finish();
-    let study = study?;
+    progress::stage("while studying");
+    let study = renderers(&scene, &techniques, &names, &options, &progress::watch())?;
+    progress::clear();
     let script = stem(&arguments.script);
-    let csv = arguments.output.join(format!("{script}-{NAME}.csv"));
-    std::fs::write(&csv, study.csv())?;
+    let table = study.csv();
+    let csv = folder.write_or_keep(&format!("{script}-{NAME}.csv"), |file| file.write_all(table.as_bytes()))?;
     let mut written = vec![csv];
     for (name, plot) in study.plots(script) {
-        written.extend(plot.write(&arguments.output, &format!("{script}-{NAME}{name}"))?);
+        written.extend(plot.write(&folder, &format!("{script}-{NAME}{name}"))?);
     }
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&study)?);

@@ -1,8 +1,8 @@
 //! `peris tessellate`: the triangles of a scene, to a tolerance.
 
 use super::convert::input_scene;
-use super::{Definitions, Exit, Failure, Row};
-use crate::mesh::{self, Format, MeshError};
+use super::{Definitions, Failure, Row};
+use crate::mesh;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -37,14 +37,12 @@ struct Arguments {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { input, definitions, output, chord, angle, json } = arguments;
-    if Format::of(output).is_none() {
-        return Err(Failure::new(Exit::Usage, MeshError::Format { path: output.clone() }));
-    }
+    let destination = mesh::destination(output)?;
     let scene = input_scene(input, definitions)?.within(*chord, *angle);
     let start = Instant::now();
     let grouped = scene.tessellated()?;
     let seconds = start.elapsed().as_secs_f64();
-    mesh::write_grouped(&grouped, output)?;
+    mesh::write_grouped(&grouped, &destination)?;
     let mesh = grouped.mesh;
     let error = scene.chord_error()?;
     let mut used = mesh.surfaces.clone();

@@ -16,6 +16,9 @@ pub enum DatabaseError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A file of a record cannot be written.
+    #[error(transparent)]
+    Write(#[from] files::WriteError),
     /// Another process writes to it.
     #[error("{}: another process writes to this database; try again when it has ended", path.display())]
     Busy {

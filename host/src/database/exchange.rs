@@ -10,8 +10,9 @@ use crate::color::{Beyond, Origin, Spectrum, columns};
 use crate::illumination::{Light, Material};
 use crate::mesh;
 use crate::picture::Picture;
+use files::Destination;
 use serde::{Deserialize, Serialize};
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// The longest text that is read, bytes.
@@ -93,15 +94,16 @@ pub fn read(path: &Path, name: Option<&str>, quantity: Option<Quantity>) -> Resu
 /// Writes a record into a file, whose ending names the format.
 ///
 /// # Errors
-/// [`DatabaseError`] if the format cannot hold it, or the file cannot be written.
-pub fn write(record: &Record, path: &Path) -> Result<(), DatabaseError> {
+/// [`DatabaseError`] if the format cannot hold it, or the file cannot be written; it may be kept elsewhere then.
+pub fn write(record: &Record, destination: &Destination) -> Result<(), DatabaseError> {
+    let path = destination.path();
     let failed = |problem: &str| DatabaseError::Exchange { path: path.into(), problem: problem.into() };
     let text = match (&record.content, ending(path).as_str()) {
         (Content::Geometry(grouped), _) if mesh::Format::of(path).is_some() => {
-            return Ok(mesh::write_grouped(grouped, path)?);
+            return Ok(mesh::write_grouped(grouped, destination)?);
         }
         (Content::Geometry(_), _) => return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh")),
-        (Content::Texture(picture), "png" | "exr") => return Ok(picture.write(path)?),
+        (Content::Texture(picture), "png" | "exr") => return Ok(picture.write(destination)?),
         (Content::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
         (Content::CaughtLight(_), _) => return Err(failed("caught light is of use in its database only")),
         (Content::Spectrum(curves), "txt") => {
@@ -119,7 +121,7 @@ pub fn write(record: &Record, path: &Path) -> Result<(), DatabaseError> {
         (Content::Spectrum(_), _) => return Err(failed("a spectrum goes into .txt or .json")),
         _ => return Err(failed("a material or a light goes into .json")),
     };
-    std::fs::write(path, text).map_err(|source| DatabaseError::File { path: path.into(), source })
+    Ok(destination.write_or_keep(|file| file.write_all(text.as_bytes()))?)
 }
 
 fn ending(path: &Path) -> String {

@@ -436,11 +436,14 @@ fn files_that_are_exported_come_back_to_the_last_bit() {
             _ => &["json"],
         };
         if endings.is_empty() {
-            assert!(write(&record, &folder.path().join("a.json")).is_err(), "it is of use in its database only");
+            assert!(
+                write(&record, &files::Destination::of(folder.path().join("a.json")).expect("a destination")).is_err(),
+                "it is of use in its database only"
+            );
         }
         for ending in endings {
             let path = folder.path().join(format!("{}.{ending}", record.name));
-            write(&record, &path).expect("written");
+            write(&record, &files::Destination::of(&path).expect("a destination")).expect("written");
             let quantity = matches!(record.content, Content::Spectrum(Curves::Light(_))).then_some(Quantity::Light);
             let back = read(&path, None, quantity).expect("read").pop().expect("a record");
             let mut expected = record.content.clone();
@@ -487,6 +490,6 @@ fn files_that_give_no_record_are_told_with_the_place() {
     let brass = read(&metal, None, None).expect("a metal").pop().expect("one");
     assert!(matches!(brass.content, Content::Spectrum(Curves::Metal(Metal { .. }))) && brass.name == "brass");
     let mesh = folder.path().join("square.ply");
-    mesh::write_grouped(&square(), &mesh).expect("written");
+    mesh::write_grouped(&square(), &mesh::destination(&mesh).expect("a destination")).expect("written");
     assert_eq!(read(&mesh, Some("tile"), None).expect("a mesh")[0].name, "tile");
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// A failure to read, write or accept a mesh.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {
-    /// The file system refused.
+    /// The file cannot be read.
     #[error("{}: {source}", path.display())]
     File {
         /// The file.
@@ -29,6 +29,9 @@ pub enum MeshError {
         /// What is wrong, and where.
         fault: Fault,
     },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] files::WriteError),
 }
 
 /// One thing wrong, and its place in the text, in the bytes or in the mesh.

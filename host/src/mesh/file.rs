@@ -2,8 +2,10 @@
 
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
+
+use files::Destination;
 
 use super::{Fault, Grouped, Mesh, MeshError, Place, Problem, compact, gltf, obj, ply, stl};
 
@@ -86,27 +88,38 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a mesh; the extension of `path` names the format.
+/// Where a mesh will be written, tested before a long computation.
+///
+/// # Errors
+/// [`MeshError::Format`] for a name whose extension is not known, [`MeshError::Write`] where no file can be written.
+pub fn destination(path: impl AsRef<Path>) -> Result<Destination, MeshError> {
+    let path = path.as_ref();
+    Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
+    Ok(Destination::of(path)?)
+}
+
+/// Writes a mesh; the extension of the file names the format.
 ///
 /// OBJ keeps positions to the last bit, corner normals, parameters and surfaces; PLY keeps positions to the last bit and
 /// surfaces; glTF keeps all of them but in single precision; STL rounds positions to single precision; the compact form
 /// rounds them to 1/65535 of the longest side.
 ///
 /// # Errors
-/// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written.
-pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
-    write_grouped(&Grouped::from(mesh.clone()), path)
+/// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written; it may be kept elsewhere
+/// then.
+pub fn write(mesh: &Mesh, destination: &Destination) -> Result<(), MeshError> {
+    write_grouped(&Grouped::from(mesh.clone()), destination)
 }
 
 /// Writes a mesh with names for its surfaces, as [`write()`] does; glTF keeps what they look like, too.
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_grouped(grouped: &Grouped, path: impl AsRef<Path>) -> Result<(), MeshError> {
-    let path = path.as_ref();
+pub fn write_grouped(grouped: &Grouped, destination: &Destination) -> Result<(), MeshError> {
+    let path = destination.path();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
     let bytes = print_grouped(grouped, format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
-    std::fs::write(path, bytes).map_err(|source| MeshError::File { path: path.to_owned(), source })
+    Ok(destination.write_or_keep(|file| file.write_all(&bytes))?)
 }
 
 /// Understands the bytes of a mesh file.

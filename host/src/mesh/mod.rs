@@ -26,7 +26,9 @@ mod subdivide;
 pub use check::EdgeReport;
 pub use edges::{Eye, Interior, Selection, wire};
 pub use error::{Fault, MeshError, Place, Problem};
-pub use file::{Format, parse, parse_grouped, print, print_grouped, read, read_grouped, write, write_grouped};
+pub use file::{
+    Format, destination, parse, parse_grouped, print, print_grouped, read, read_grouped, write, write_grouped,
+};
 pub use groups::{Grouped, Look};
 pub use json_path::JsonPath;
 pub(crate) use measure::bits;

@@ -39,7 +39,7 @@ fn files_come_back_as_they_were_written() {
     let mesh = ball();
     for (format, extension) in FORMATS {
         let path = folder.path().join(format!("ball.{extension}"));
-        write(&mesh, &path).unwrap();
+        write(&mesh, &destination(&path).unwrap()).unwrap();
         let back = read(&path).unwrap();
         assert!(back.is_closed(), "{extension}");
         assert_eq!((back.vertices.len(), back.triangles.len()), (mesh.vertices.len(), mesh.triangles.len()));
@@ -109,7 +109,7 @@ fn unknown_extensions_missing_files_and_faults_are_told_with_the_path() {
     let message = read(path("a.OBJ")).unwrap_err().to_string();
     assert!(message.ends_with("a.OBJ: line 2: index 2 is outside the 1 vertices"), "{message}");
     let broken = Mesh { vertices: vec![DVec3::NAN], ..Mesh::default() };
-    assert!(matches!(write(&broken, path("b.obj")), Err(MeshError::Content { .. })));
+    assert!(matches!(write(&broken, &destination(path("b.obj")).unwrap()), Err(MeshError::Content { .. })));
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Pictures with a depth for each pixel, as EXR files with a layer Z.
 
-use super::{Picture, PictureError, Pixel};
+use super::{Picture, PictureError, Pixel, encoder};
 use exr::meta::MetaData;
 use exr::prelude::{
     AnyChannel, AnyChannels, FlatSamples, Image, ReadChannels, ReadLayers, ReadSpecificChannel, WritableImage, read,
 };
+use files::Destination;
 use std::path::Path;
 
 /// A picture with the depth of what its pixels show.
@@ -83,16 +84,16 @@ impl Deep {
     /// Writes an EXR file with layers R, G, B, A and Z.
     ///
     /// # Errors
-    /// [`PictureError::Layers`].
-    pub fn write(&self, path: &Path) -> Result<(), PictureError> {
+    /// [`PictureError::Write`]; the file may be kept elsewhere then.
+    pub fn write(&self, destination: &Destination) -> Result<(), PictureError> {
         let Picture { width, height, pixels } = &self.picture;
         let layer = |name: &str, values: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(values));
         let band = |name: &str, band: usize| layer(name, pixels.iter().map(|p| p.radiance[band]).collect());
         let coverage = layer("A", pixels.iter().map(|p| p.coverage).collect());
         let layers = [band("R", 0), band("G", 1), band("B", 2), coverage, layer("Z", self.depth.clone())];
         let channels = AnyChannels::sort(layers.into_iter().collect());
-        let written = Image::from_channels((*width as usize, *height as usize), channels).write().to_file(path);
-        written.map_err(|error| PictureError::Layers { path: path.into(), problem: error.to_string() })
+        let image = Image::from_channels((*width as usize, *height as usize), channels);
+        Ok(destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
     }
 }
 
@@ -113,7 +114,7 @@ mod tests {
     fn a_file_with_depth_reads_back_bit_for_bit() {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");
-        sample().write(&path).expect("written");
+        sample().write(&Picture::destination(&path).expect("a destination")).expect("written");
         assert_eq!(Deep::read(&path).expect("read"), sample());
         assert_eq!(Picture::read(&path).expect("also a picture"), sample().picture);
     }
@@ -122,11 +123,11 @@ mod tests {
     fn files_without_depth_or_with_wrong_numbers_are_errors() {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");
-        sample().picture.write(&path).expect("written");
+        sample().picture.write(&Picture::destination(&path).expect("a destination")).expect("written");
         assert!(Deep::read(&path).is_err_and(|error| error.to_string().contains("no layer Z")));
         let mut wrong = sample();
         wrong.depth[4] = f32::NAN;
-        wrong.write(&path).expect("written");
+        wrong.write(&Picture::destination(&path).expect("a destination")).expect("written");
         assert!(Deep::read(&path).is_err_and(|error| error.to_string().contains("pixel 1,1")));
         std::fs::write(&path, b"no picture").expect("written");
         assert!(Deep::read(&path).is_err() && Deep::read(&folder.path().join("none.exr")).is_err());

@@ -1,6 +1,7 @@
 //! Pictures as files: PNG with eight bits sRGB, OpenEXR with linear 32-bit floats.
 
-use super::{Picture, Pixel};
+use super::{Picture, Pixel, encoder};
+use files::{Destination, WriteError};
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 use protocol::raster::linear_from_srgb;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,7 @@ pub enum PictureError {
         /// Rows asked for.
         height: u32,
     },
-    /// The file with layers cannot be read or written.
+    /// The file with layers cannot be read.
     #[error("{}: {problem}", path.display())]
     Layers {
         /// The file.
@@ -46,7 +47,7 @@ pub enum PictureError {
         /// The file.
         path: PathBuf,
     },
-    /// The file cannot be read or written.
+    /// The file cannot be read.
     #[error("{}: {source}", path.display())]
     File {
         /// The file.
@@ -62,6 +63,9 @@ pub enum PictureError {
         /// Why.
         source: std::io::Error,
     },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
@@ -78,39 +82,37 @@ impl Picture {
         matches!(format_of(path), Ok(ImageFormat::OpenExr))
     }
 
-    /// Whether [`Picture::write`] knows the format that the name ends in; asked before a long computation.
+    /// Whether a name ends as that of a picture.
+    pub fn is_picture(path: &Path) -> bool {
+        format_of(path).is_ok()
+    }
+
+    /// Where a picture will be written, tested before a long computation.
     ///
     /// # Errors
-    /// [`PictureError::Format`].
-    pub fn check_name(path: &Path) -> Result<(), PictureError> {
-        format_of(path).map(|_| ())
+    /// [`PictureError::Format`] for a name that does not end in .png or .exr, [`PictureError::Write`] where no file can be
+    /// written.
+    pub fn destination(path: &Path) -> Result<Destination, PictureError> {
+        format_of(path)?;
+        Ok(Destination::of(path)?)
     }
 
     /// Writes the picture: `.png` as opaque eight-bit sRGB, `.exr` as linear 32-bit RGB with the coverage as alpha.
     ///
     /// # Errors
-    /// [`PictureError::Format`] for another name, [`PictureError::File`] if the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), PictureError> {
-        let failed = |source| PictureError::File { path: path.into(), source };
-        match format_of(path)? {
-            ImageFormat::Png => image::save_buffer_with_format(
-                path,
-                &self.to_srgb8(),
-                self.width,
-                self.height,
-                image::ColorType::Rgb8,
-                ImageFormat::Png,
-            ),
-            _ => image::save_buffer_with_format(
-                path,
-                bytemuck::cast_slice(&self.pixels),
-                self.width,
-                self.height,
-                image::ColorType::Rgba32F,
-                ImageFormat::OpenExr,
-            ),
-        }
-        .map_err(failed)
+    /// [`PictureError::Format`] for another name, [`PictureError::Write`] if the file cannot be written; it may be kept
+    /// elsewhere then.
+    pub fn write(&self, destination: &Destination) -> Result<(), PictureError> {
+        let format = format_of(destination.path())?;
+        let srgb = if format == ImageFormat::Png { self.to_srgb8() } else { Vec::new() };
+        let (bytes, kind) = match format {
+            ImageFormat::Png => (&*srgb, image::ColorType::Rgb8),
+            _ => (bytemuck::cast_slice(&self.pixels), image::ColorType::Rgba32F),
+        };
+        Ok(destination.write_or_keep(|file| {
+            image::write_buffer_with_format(file, bytes, self.width, self.height, kind, format)
+                .map_err(encoder::image_error)
+        })?)
     }
 
     /// Reads a PNG or EXR file back into linear light. Without an alpha channel, everything counts as covered.
@@ -183,7 +185,7 @@ mod tests {
     fn an_exr_file_reads_back_bit_for_bit() {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");
-        sample().write(&path).expect("written");
+        sample().write(&Picture::destination(&path).expect("a destination")).expect("written");
         assert_eq!(Picture::read(&path).expect("read"), sample());
     }
 
@@ -191,7 +193,7 @@ mod tests {
     fn a_png_file_reads_back_within_half_a_step() {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.png");
-        sample().write(&path).expect("written");
+        sample().write(&Picture::destination(&path).expect("a destination")).expect("written");
         let back = Picture::read(&path).expect("read");
         assert_eq!(back.to_srgb8(), sample().to_srgb8());
         assert!(back.pixels().iter().all(|p| p.coverage == 1.0));
@@ -213,14 +215,15 @@ mod tests {
         let path = folder.path().join("a.exr");
         let mut picture = sample();
         picture.pixels_mut()[7].radiance[1] = f32::NAN;
-        picture.write(&path).expect("written");
+        picture.write(&Picture::destination(&path).expect("a destination")).expect("written");
         assert!(matches!(Picture::read_finite(&path), Err(PictureError::Number { x: 2, y: 1, .. })));
     }
 
     #[test]
     fn other_names_and_broken_files_are_errors() {
         let folder = tempfile::tempdir().expect("folder");
-        assert!(matches!(sample().write(&folder.path().join("a.gif")), Err(PictureError::Format { .. })));
+        assert!(matches!(Picture::destination(&folder.path().join("a.gif")), Err(PictureError::Format { .. })));
+        assert!(matches!(Picture::destination(&folder.path().join("none/a.png")), Err(PictureError::Write(_))));
         let path = folder.path().join("broken.png");
         std::fs::write(&path, b"no picture").expect("written");
         assert!(matches!(Picture::read(&path), Err(PictureError::File { .. })));

@@ -3,6 +3,7 @@
 mod compose;
 mod depth;
 mod difference;
+pub(crate) mod encoder;
 mod file;
 mod flip;
 

@@ -25,6 +25,40 @@ pub struct Film {
     classes: Vec<ByClass>,
     /// Whether the samples of a pixel come one by one, so that halves of them tell the error of all.
     in_turn: bool,
+    /// How far pixels have come that get as many samples as their errors ask for.
+    adaptive: Option<Adaptive>,
+}
+
+/// Adaptive sampling: how far it has come. Each pass decides by the errors before it which pixels get more samples.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Adaptive {
+    /// The relative error at which a pixel has samples enough.
+    pub(super) target: f64,
+    /// Samples at the end of the last pass that was finished.
+    pub(super) passed: u32,
+    /// How many samples each pixel is to have after the pass that has begun; none between passes.
+    pub(super) goals: Vec<u32>,
+}
+
+impl Adaptive {
+    /// Begins a pass, unless one has begun already: pixels that are uncertain get more samples.
+    ///
+    /// - `samples`: of a pixel after the pass. `most`: of them in this pass.
+    pub(super) fn aim(&mut self, film: &Film, samples: u32, most: u32) {
+        if self.goals.is_empty() {
+            let goal = |(tally, is_uncertain): (&Tally, bool)| match is_uncertain {
+                true => tally.count.max(samples.min(tally.count.saturating_add(most))),
+                false => tally.count,
+            };
+            self.goals = film.tallies.iter().zip(film.uncertain(self.target)).map(goal).collect();
+        }
+    }
+
+    /// Ends a pass.
+    pub(super) fn pass(&mut self, samples: u32) {
+        self.passed = samples;
+        self.goals.clear();
+    }
 }
 
 /// Light by the ways on which it comes to the eye: each way is in one class.
@@ -196,7 +230,7 @@ impl Film {
     pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
         let mut tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
         prefer_large_pages(&mut tallies);
-        Ok(Film { width, height, tallies, classes: Vec::new(), in_turn: false })
+        Ok(Film { width, height, tallies, classes: Vec::new(), in_turn: false, adaptive: None })
     }
 
     /// The same that keeps the classes of light apart, from now on.
@@ -208,7 +242,30 @@ impl Film {
     /// A film of pixels that are known; none if there are not as many as that.
     pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>) -> Option<Film> {
         let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
-        possible.then_some(Film { width, height, tallies, classes: Vec::new(), in_turn: true })
+        possible.then_some(Film { width, height, tallies, classes: Vec::new(), in_turn: true, adaptive: None })
+    }
+
+    /// How far adaptive sampling has come that goes on towards a target: where it stopped, if that was the target before.
+    pub(super) fn adaptive(&self, target: Option<f64>) -> Option<Adaptive> {
+        let target = target?;
+        let before = self.adaptive.clone().filter(|before| before.target == target);
+        Some(before.unwrap_or(Adaptive { target, passed: 0, goals: Vec::new() }))
+    }
+
+    /// How far adaptive sampling has come; none if all pixels get as many samples.
+    pub(super) fn progress(&self) -> Option<&Adaptive> {
+        self.adaptive.as_ref()
+    }
+
+    /// Takes up how far adaptive sampling has come.
+    pub(super) fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
+        self.adaptive = adaptive;
+    }
+
+    /// The part of the pixels that have a greater relative error than a target, 0..=1.
+    pub fn missing(&self, target: f64) -> f64 {
+        let missing = self.tallies.iter().filter(|tally| tally.relative_error() > target).count();
+        missing as f64 / self.tallies.len() as f64
     }
 
     /// Columns.

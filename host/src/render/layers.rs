@@ -1,10 +1,10 @@
 //! Films as EXR files with layers: what is known of each pixel beside its radiance.
 
 use super::film::{Class, Film, Tally};
-use crate::picture::PictureError;
+use crate::picture::{PictureError, encoder};
 use crate::scene::Prepared;
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
-use std::path::Path;
+use files::Destination;
 
 /// A layer: its name, and its value of a pixel.
 struct Layer {
@@ -36,8 +36,8 @@ impl Film {
     /// [`Class`] of light, if these were kept apart: together they are R, G and B.
     ///
     /// # Errors
-    /// [`PictureError::Layers`].
-    pub fn write_layers(&self, path: &Path, prepared: &Prepared) -> Result<(), PictureError> {
+    /// [`PictureError::Write`]; the file may be kept elsewhere then.
+    pub fn write_layers(&self, destination: &Destination, prepared: &Prepared) -> Result<(), PictureError> {
         let tallies = self.tallies();
         let floats = LAYERS.iter().map(|layer| {
             let values = tallies.iter().map(|tally| (layer.value)(tally) as f32).collect();
@@ -80,8 +80,8 @@ impl Film {
         ];
         let channels = AnyChannels::sort(floats.chain(classes).chain(numbers).collect());
         let size = (self.width() as usize, self.height() as usize);
-        let written = Image::from_channels(size, channels).write().to_file(path);
-        written.map_err(|error| PictureError::Layers { path: path.into(), problem: error.to_string() })
+        let image = Image::from_channels(size, channels);
+        Ok(destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
     }
 }
 
@@ -106,7 +106,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");
         let prepared = Prepared::new(&Scene::default()).expect("nothing");
-        film.write_layers(&path, &prepared).expect("written");
+        film.write_layers(&Destination::of(&path).expect("a destination"), &prepared).expect("written");
         let read = read_first_flat_layer_from_file(&path).expect("layers");
         let value = |name: &str, pixel: usize| {
             let channel = read.layer_data.channel_data.list.iter().find(|c| c.name.to_string() == name).expect("there");

@@ -14,7 +14,7 @@ pub mod tiles;
 mod state;
 
 pub use film::{ByClass, Class, Film, LUMINANCE, Sample, Tally};
-pub use state::{Fingerprint, StateError};
+pub use state::{Fingerprint, State, StateError};
 
 use crate::illumination::material::MaterialError;
 use crate::octree::OctreeError;
@@ -48,6 +48,9 @@ pub struct Order {
     pub height: u32,
     /// Samples in each pixel, 1 and more; one samples the centre. With a target or a budget, the most of them.
     pub samples: u32,
+    /// So many samples of a pixel share the footprint in which textures are filtered, 1 and more: as many as there are, or
+    /// are thought to become.
+    pub footprints: u32,
     /// Relative error of the luminance at which a pixel has samples enough; none for all samples everywhere.
     pub target: Option<f64>,
     /// Seconds after which no sample is begun.
@@ -65,7 +68,17 @@ impl Order {
     /// What the scene's settings ask for, on every core.
     pub fn of(settings: &crate::scene::Settings) -> Order {
         let crate::scene::Settings { width, height, samples, seed, .. } = *settings;
-        Order { width, height, samples, target: None, seconds: None, matte: false, seed, threads: None }
+        Order {
+            width,
+            height,
+            samples,
+            footprints: samples,
+            target: None,
+            seconds: None,
+            matte: false,
+            seed,
+            threads: None,
+        }
     }
 }
 
@@ -76,6 +89,8 @@ pub struct Watch<'a> {
     pub cancelled: &'a AtomicBool,
     /// Called after each row with the rows that are done and all rows; from any thread.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
+    /// Called when another stage of the work begins, with words such as `while rendering`.
+    pub stage: &'a (dyn Fn(&'static str) + Sync),
 }
 
 /// Is never set.
@@ -83,7 +98,12 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Watch<'_> {
     /// Nobody watches.
-    pub const NOBODY: Watch<'static> = Watch { cancelled: &NEVER, progress: &|_, _| {} };
+    pub const NOBODY: Watch<'static> = Watch { cancelled: &NEVER, progress: &|_, _| {}, stage: &|_| {} };
+
+    /// One who may stop what another watches, and sees nothing of it.
+    pub fn quiet(&self) -> Watch<'_> {
+        Watch { cancelled: self.cancelled, ..Watch::NOBODY }
+    }
 
     fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)

@@ -1,22 +1,25 @@
 //! The state of a rendering in a file, so that an interrupted one goes on where it stopped.
+//!
+//! Layout: eight bytes of name and version; a [`Head`]; the [`Tally`] of each pixel; where adaptive sampling is in the middle
+//! of a pass, the goal of each pixel (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
 use super::Order;
-use super::film::{Film, Tally};
+use super::film::{Adaptive, Film, Tally};
+use crate::picture::PictureError;
 use crate::scene::{Prepared, Scene};
 use bincode::config::{Configuration, Fixint, LittleEndian, standard};
+use bincode::serde::{decode_from_std_read, encode_into_std_write};
 use crc32fast::Hasher;
+use files::{Destination, WriteError};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fs;
-use std::io::{Read, Write};
+use std::fs::File;
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// What such a file begins with; the last byte is the version.
-const MAGIC: [u8; 8] = *b"PERISF\x00\x02";
+const MAGIC: [u8; 8] = *b"PERISF\x00\x03";
 const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
-/// Bytes beside those of the pixels, at most.
-const MOST_HEAD: u64 = 256;
-/// Bytes of a pixel.
-const PIXEL: u64 = 96;
 
 /// A scene and an order, as far as samples depend on them: where it is the same, samples can be added to others.
 ///
@@ -32,7 +35,7 @@ pub struct Fingerprint {
 /// Why a state cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum StateError {
-    /// The file cannot be read or written.
+    /// The file cannot be read.
     #[error("{path}: {source}")]
     File {
         /// The file.
@@ -56,14 +59,33 @@ pub enum StateError {
         /// What differs.
         what: &'static str,
     },
+    /// It cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// There is no film of that size.
+    #[error(transparent)]
+    Size(#[from] PictureError),
 }
 
+/// What stands before the pixels.
 #[derive(Serialize, Deserialize)]
-struct Stored {
+struct Head {
     fingerprint: Fingerprint,
+    /// Views of a sequence that are finished; the pixels are those of the next one.
+    views: u32,
     width: u32,
     height: u32,
-    tallies: Vec<Tally>,
+    /// Target of adaptive sampling, samples of its last pass, and whether the goals of another are there.
+    adaptive: Option<(f64, u32, bool)>,
+}
+
+/// A rendering that was stopped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Views of a sequence that were finished.
+    pub views: u32,
+    /// The next one, as far as it came.
+    pub film: Film,
 }
 
 impl Fingerprint {
@@ -82,6 +104,11 @@ impl Fingerprint {
         Fingerprint { scene: checksum(&words), geometry: geometry.finalize(), order: checksum(order.as_bytes()) }
     }
 
+    /// The same rendering in another way: it differs if that does.
+    pub fn with(self, way: &str) -> Fingerprint {
+        Fingerprint { order: crc32fast::hash(format!("{} {way}", self.order).as_bytes()), ..self }
+    }
+
     /// What of it differs from another.
     fn difference(&self, other: &Fingerprint) -> Option<&'static str> {
         let parts = [
@@ -93,71 +120,138 @@ impl Fingerprint {
     }
 }
 
+/// Passes bytes on, and adds them to a checksum.
+struct Summed<T> {
+    inner: T,
+    sum: Hasher,
+}
+
+impl<T> Summed<T> {
+    fn new(inner: T) -> Summed<T> {
+        Summed { inner, sum: Hasher::new() }
+    }
+}
+
+impl<T: Write> Write for Summed<T> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+impl<T: Read> Read for Summed<T> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let read = self.inner.read(bytes)?;
+        self.sum.update(&bytes[..read]);
+        Ok(read)
+    }
+}
+
 impl Film {
     /// Writes what is known of all pixels; a file of that name is only replaced when all is written.
     ///
+    /// - `views`: of a sequence, that were finished before this one.
+    ///
     /// # Errors
-    /// [`StateError::File`].
-    pub fn write_state(&self, path: &Path, fingerprint: Fingerprint) -> Result<(), StateError> {
-        let failed = |source| StateError::File { path: path.into(), source };
-        let (width, height) = (self.width(), self.height());
-        let stored = Stored { fingerprint, width, height, tallies: self.tallies().to_vec() };
-        let payload = bincode::serde::encode_to_vec(&stored, ENCODING)
-            .map_err(|error| failed(std::io::Error::other(error.to_string())))?;
-        let mut name = path.as_os_str().to_owned();
-        name.push(".new");
-        let beside = PathBuf::from(name);
-        let write = || {
-            let mut file = fs::File::create(&beside)?;
-            file.write_all(&MAGIC)?;
-            file.write_all(&crc32fast::hash(&payload).to_le_bytes())?;
-            file.write_all(&payload)?;
-            file.sync_all()?;
-            fs::rename(&beside, path)
+    /// [`StateError::Write`]; the state may be kept elsewhere then.
+    pub fn write_state(
+        &self,
+        destination: &Destination,
+        fingerprint: Fingerprint,
+        views: u32,
+    ) -> Result<(), StateError> {
+        let adaptive = self.progress();
+        let goals = adaptive.map_or(&[][..], |adaptive| &adaptive.goals);
+        let head = Head {
+            fingerprint,
+            views,
+            width: self.width(),
+            height: self.height(),
+            adaptive: adaptive.map(|adaptive| (adaptive.target, adaptive.passed, !goals.is_empty())),
         };
-        write().map_err(|error| {
-            // What was written of it is of no use; that the writing failed is what counts.
-            let _ = fs::remove_file(&beside);
-            failed(error)
-        })
+        Ok(destination.write_or_keep(|file| {
+            let mut file = Summed::new(file);
+            file.write_all(&MAGIC)?;
+            encode(&head, &mut file)?;
+            self.tallies().iter().try_for_each(|tally| encode(tally, &mut file))?;
+            goals.iter().try_for_each(|goal| encode(goal, &mut file))?;
+            let sum = file.sum.finalize();
+            file.inner.write_all(&sum.to_le_bytes())
+        })?)
     }
+}
 
+impl State {
     /// Reads what was written by [`Film::write_state`] for the same fingerprint.
     ///
     /// # Errors
     /// [`StateError`].
-    pub fn read_state(path: &Path, order: &Order, fingerprint: Fingerprint) -> Result<Film, StateError> {
-        let damaged = |problem: &str| StateError::Damaged { path: path.into(), problem: problem.into() };
+    pub fn read(path: &Path, order: &Order, fingerprint: Fingerprint) -> Result<State, StateError> {
         let failed = |source| StateError::File { path: path.into(), source };
-        let largest = MOST_HEAD + PIXEL * u64::from(order.width) * u64::from(order.height);
-        let mut bytes = Vec::new();
-        fs::File::open(path).map_err(failed)?.take(largest + 1).read_to_end(&mut bytes).map_err(failed)?;
-        let rest = bytes.strip_prefix(&MAGIC).ok_or_else(|| match bytes.strip_prefix(&MAGIC[..7]) {
-            Some([version, ..]) => damaged(&format!("version {version} is not known; {} is", MAGIC[7])),
-            _ => damaged("it is no state of a rendering"),
-        })?;
-        let (sum, payload) = rest.split_first_chunk::<4>().ok_or_else(|| damaged("it is cut off"))?;
-        let stored = bincode::serde::decode_from_slice::<Stored, _>(payload, ENCODING);
-        // A picture of another size may be longer than what was read of it: its head tells.
-        let head = bincode::serde::decode_from_slice::<Fingerprint, _>(payload, ENCODING);
-        if let Some(what) = head.ok().and_then(|(found, _)| found.difference(&fingerprint)) {
+        let damaged = |problem: &str| StateError::Damaged { path: path.into(), problem: problem.into() };
+        let file = File::open(path).map_err(failed)?;
+        if !file.metadata().map_err(failed)?.is_file() {
+            return Err(damaged("it is no ordinary file"));
+        }
+        let mut file = Summed::new(BufReader::new(file));
+        let mut magic = [0; 8];
+        file.read_exact(&mut magic).map_err(|_| damaged("it is no state of a rendering"))?;
+        match magic.strip_prefix(&MAGIC[..7]) {
+            Some([version]) if *version == MAGIC[7] => {}
+            Some([version]) => return Err(damaged(&format!("version {version} is not known; {} is", MAGIC[7]))),
+            _ => return Err(damaged("it is no state of a rendering")),
+        }
+        let head: Head = decode(&mut file).map_err(|problem| damaged(&problem))?;
+        if let Some(what) = head.fingerprint.difference(&fingerprint) {
             return Err(StateError::Other { path: path.into(), what });
         }
-        let (stored, used) = stored.map_err(|error| damaged(&error.to_string()))?;
-        if used != payload.len() || crc32fast::hash(payload) != u32::from_le_bytes(*sum) {
-            return Err(damaged("its checksum is wrong"));
+        if (head.width, head.height) != (order.width, order.height) {
+            return Err(damaged("it has another size than it says"));
         }
-        let Stored { width, height, tallies, .. } = stored;
-        Film::of_tallies(width, height, tallies)
-            .filter(|film| (film.width(), film.height()) == (order.width, order.height))
-            .ok_or_else(|| damaged("it has another number of pixels than it says"))
+        let pixels = head.width as usize * head.height as usize;
+        let mut all = || -> Result<Film, String> {
+            let tallies = (0..pixels).map(|_| decode(&mut file)).collect::<Result<Vec<Tally>, _>>()?;
+            let mut film = Film::of_tallies(head.width, head.height, tallies).ok_or("its size is wrong")?;
+            if let Some((target, passed, has_goals)) = head.adaptive {
+                let goals = (0..if has_goals { pixels } else { 0 }).map(|_| decode(&mut file));
+                let goals = goals.collect::<Result<Vec<u32>, _>>()?;
+                film.set_adaptive(Some(Adaptive { target, passed, goals }));
+            }
+            let sum = file.sum.clone().finalize();
+            let mut rest = Vec::new();
+            file.inner.by_ref().take(5).read_to_end(&mut rest).map_err(|error| error.to_string())?;
+            if rest == sum.to_le_bytes() { Ok(film) } else { Err("its checksum is wrong".into()) }
+        };
+        Ok(State { views: head.views, film: all().map_err(|problem| damaged(&problem))? })
     }
+}
+
+fn encode(value: &impl Serialize, file: &mut impl Write) -> io::Result<()> {
+    encode_into_std_write(value, file, ENCODING).map(drop).map_err(|error| match error {
+        bincode::error::EncodeError::Io { inner, .. } => inner,
+        other => io::Error::other(other),
+    })
+}
+
+fn decode<T: DeserializeOwned>(file: &mut impl Read) -> Result<T, String> {
+    decode_from_std_read(file, ENCODING).map_err(|error| match error {
+        bincode::error::DecodeError::Io { inner, .. } if inner.kind() == io::ErrorKind::UnexpectedEof => {
+            "it is cut off".into()
+        }
+        other => other.to_string(),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::DVec3;
+    use std::fs;
 
     fn order() -> Order {
         Order::of(&crate::scene::Settings { width: 3, height: 2, ..Default::default() })
@@ -172,7 +266,9 @@ mod tests {
 
     fn film() -> Film {
         let tally = |k: u32| Tally { sum: DVec3::new(0.1, 1.0 / 3.0, f64::from(k)), count: k, ..Tally::default() };
-        Film::of_tallies(3, 2, (0..6).map(tally).collect()).expect("six pixels")
+        let mut film = Film::of_tallies(3, 2, (0..6).map(tally).collect()).expect("six pixels");
+        film.set_adaptive(Some(Adaptive { target: 0.01, passed: 8, goals: (8..14).collect() }));
+        film
     }
 
     #[test]
@@ -180,11 +276,11 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.state");
         let own = fingerprint(16, 1, 0.5);
-        film().write_state(&path, own).expect("written");
-        assert_eq!(Film::read_state(&path, &order(), own).expect("read"), film());
+        film().write_state(&Destination::of(&path).expect("a destination"), own, 3).expect("written");
+        assert_eq!(State::read(&path, &order(), own).expect("read"), State { views: 3, film: film() });
         assert_eq!(own, fingerprint(64, 1, 0.5), "more samples may be added");
         for (other, what) in [(fingerprint(16, 2, 0.5), "seed"), (fingerprint(16, 1, 0.6), "scene")] {
-            let error = Film::read_state(&path, &order(), other).expect_err("another rendering").to_string();
+            let error = State::read(&path, &order(), other).expect_err("another rendering").to_string();
             assert!(error.contains(what), "{error}");
         }
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left beside it");
@@ -195,17 +291,17 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.state");
         let own = fingerprint(16, 1, 0.5);
-        film().write_state(&path, own).expect("written");
+        film().write_state(&Destination::of(&path).expect("a destination"), own, 3).expect("written");
         let whole = fs::read(&path).expect("read");
         for at in 0..whole.len() {
             let mut bytes = whole.clone();
             bytes[at] ^= 0x40;
             fs::write(&path, &bytes).expect("written");
-            assert!(Film::read_state(&path, &order(), own).is_err(), "byte {at}");
+            assert!(State::read(&path, &order(), own).is_err(), "byte {at}");
             fs::write(&path, &whole[..at]).expect("written");
-            assert!(Film::read_state(&path, &order(), own).is_err(), "{at} bytes");
+            assert!(State::read(&path, &order(), own).is_err(), "{at} bytes");
         }
         fs::write(&path, [whole, vec![0]].concat()).expect("written");
-        assert!(Film::read_state(&path, &order(), own).is_err(), "one byte too many");
+        assert!(State::read(&path, &order(), own).is_err(), "one byte too many");
     }
 }

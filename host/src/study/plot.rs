@@ -1,11 +1,14 @@
 //! Plots over logarithmic and linear axes, as SVG and PNG, with a font of their own: nothing needs to be installed.
 
+use crate::picture::encoder;
+use files::{Folder, Writer};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
+use std::io::Write;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Once;
 
 /// Size of a plot in points; the PNG has [`PNG_SCALE`] pixels for each.
@@ -137,21 +140,8 @@ pub enum PlotError {
     #[error("plot: {0}")]
     Draw(String),
     /// The file cannot be written.
-    #[error("{}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The picture cannot be written.
-    #[error("{}: {source}", path.display())]
-    Image {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: image::ImageError,
-    },
+    #[error(transparent)]
+    Write(#[from] files::WriteError),
 }
 
 impl Plot {
@@ -180,14 +170,15 @@ impl Plot {
     ///
     /// # Errors
     /// [`PlotError`].
-    pub fn write(&self, folder: &Path, name: &str) -> Result<[PathBuf; 2], PlotError> {
-        let svg = folder.join(format!("{name}.svg"));
-        std::fs::write(&svg, self.svg()?).map_err(|source| PlotError::Write { path: svg.clone(), source })?;
-        let png = folder.join(format!("{name}.png"));
+    pub fn write(&self, folder: &Folder, name: &str) -> Result<[PathBuf; 2], PlotError> {
+        let text = self.svg()?;
+        let svg = folder.write_or_keep(&format!("{name}.svg"), |file| file.write_all(text.as_bytes()))?;
         let (bytes, width, height) = self.pixels()?;
-        let kind = image::ColorType::Rgb8;
-        image::save_buffer_with_format(&png, &bytes, width, height, kind, image::ImageFormat::Png)
-            .map_err(|source| PlotError::Image { path: png.clone(), source })?;
+        let encode = |file: &mut Writer<'_>| {
+            let (kind, format) = (image::ColorType::Rgb8, image::ImageFormat::Png);
+            image::write_buffer_with_format(file, &bytes, width, height, kind, format).map_err(encoder::image_error)
+        };
+        let png = folder.write_or_keep(&format!("{name}.png"), encode)?;
         Ok([svg, png])
     }
 

@@ -84,7 +84,7 @@ pub struct Row {
 pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let (settings, finest) = knob.settings();
     let steps = settings.len() as u64 + 1;
-    let quiet = Watch { cancelled: watch.cancelled, progress: &|_, _| {} };
+    let quiet = watch.quiet();
     let run = |setting| {
         let trial = knob.run(setting, &quiet)?;
         if watch.cancelled.load(Ordering::Relaxed) { Err(StudyError::Interrupted) } else { Ok(trial) }

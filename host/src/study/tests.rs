@@ -50,7 +50,7 @@ fn a_scene_without_curved_surfaces_has_no_tolerance_to_study() {
 #[test]
 fn a_cancelled_study_says_so() {
     let cancelled = std::sync::atomic::AtomicBool::new(true);
-    let watch = Watch { cancelled: &cancelled, progress: &|_, _| {} };
+    let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
     let result = (row("tessellate").run)(&sphere(), &row("tessellate").options, &watch);
     assert!(matches!(result, Err(StudyError::Interrupted)));
 }
@@ -174,7 +174,7 @@ fn the_family_of_distributions_is_measured_and_plotted() {
     let plots = study.plots();
     assert!(plots.len() == 1 && plots[0].1.svg().expect("a plot").contains("incidence (degrees)"));
     let cancelled = std::sync::atomic::AtomicBool::new(true);
-    let watch = Watch { cancelled: &cancelled, progress: &|_, _| {} };
+    let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
     assert!(matches!(illumination(&[0.5], &watch), Err(StudyError::Interrupted)));
     assert!(matches!(illumination(&[-1.0], &Watch::NOBODY), Err(StudyError::Distribution(_))));
 }

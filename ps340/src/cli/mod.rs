@@ -53,6 +53,9 @@ enum Trouble {
     /// A picture cannot be written.
     #[error(transparent)]
     Picture(#[from] crate::picture::PictureError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] files::WriteError),
     /// The arguments do not go together, or name something unknown.
     #[error("{0}")]
     Usage(String),

@@ -3,10 +3,11 @@
 use super::{Trouble, read, say};
 use crate::{
     machine::Settings,
+    picture::Picture,
     play::{EXAMPLES, End, Patience, Player, Script, Watcher, example},
 };
+use files::{Destination, Growing};
 use std::{
-    fs::File,
     io::{self, BufWriter, IsTerminal, Write},
     path::PathBuf,
     process::ExitCode,
@@ -95,12 +96,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
     if !readable {
         return Ok(ExitCode::from(2));
     }
+    let picture = arguments.picture.as_deref().map(Picture::destination).transpose()?;
     let patience = Patience { frames: arguments.patience, keep_going: arguments.keep_going };
     let mut player = Player::new(Settings::default(), patience);
     let mut screen = Screen::new(arguments, &scripts)?;
     let end = play(&mut player, &scripts, arguments.frames, &mut screen);
     screen.clear();
-    finish(&mut player, end, arguments, screen)
+    finish(&mut player, end, arguments, picture.as_ref(), screen)
 }
 
 fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Screen) -> End {
@@ -116,8 +118,14 @@ fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Scree
 }
 
 /// Writes what is to be left at the end, and judges.
-fn finish(player: &mut Player, end: End, arguments: &Arguments, screen: Screen) -> Result<ExitCode, Trouble> {
-    if let Some(file) = &arguments.picture {
+fn finish(
+    player: &mut Player,
+    end: End,
+    arguments: &Arguments,
+    picture: Option<&Destination>,
+    screen: Screen,
+) -> Result<ExitCode, Trouble> {
+    if let Some(file) = picture {
         player.machine().vector_picture(None).write(file)?;
     }
     screen.close()?;
@@ -142,7 +150,7 @@ fn finish(player: &mut Player, end: End, arguments: &Arguments, screen: Screen) 
 
 /// Where what is heard goes: standard output, the transcript, progress on a terminal.
 struct Screen {
-    transcript: Option<(String, BufWriter<File>)>,
+    transcript: Option<BufWriter<Growing>>,
     /// The first error of the transcript; it is reported at the end.
     broken: Option<io::Error>,
     quiet: bool,
@@ -154,18 +162,12 @@ struct Screen {
 
 impl Screen {
     fn new(arguments: &Arguments, scripts: &[Script]) -> Result<Screen, Trouble> {
-        let transcript = arguments.transcript.as_ref().map(|path| {
-            let file = path.display().to_string();
-            match File::create(path) {
-                Ok(opened) => Ok((file, BufWriter::new(opened))),
-                Err(error) => Err(Trouble::File { file, error }),
-            }
-        });
+        let transcript = arguments.transcript.as_ref().map(|path| Growing::create(Destination::of(path)?));
         let lines = scripts.iter().map(|script| script.lines.len()).sum();
         let interrupted = Arc::new(AtomicBool::new(false));
         watch_interrupt(interrupted.clone());
         Ok(Screen {
-            transcript: transcript.transpose()?,
+            transcript: transcript.transpose()?.map(BufWriter::new),
             broken: None,
             quiet: arguments.quiet,
             progress: (!arguments.quiet && io::stderr().is_terminal()).then_some(lines),
@@ -182,17 +184,19 @@ impl Screen {
     }
 
     fn close(mut self) -> Result<(), Trouble> {
-        let Some((file, mut transcript)) = self.transcript.take() else { return Ok(()) };
-        match self.broken.map_or_else(|| transcript.flush(), Err) {
-            Ok(()) => Ok(()),
-            Err(error) => Err(Trouble::File { file, error }),
-        }
+        let Some(transcript) = self.transcript.take() else { return Ok(()) };
+        let file = transcript.get_ref().part().display().to_string();
+        let whole = match self.broken {
+            Some(error) => Err(error),
+            None => transcript.into_inner().map_err(io::IntoInnerError::into_error),
+        };
+        Ok(whole.map_err(|error| Trouble::File { file, error })?.finish()?)
     }
 }
 
 impl Watcher for Screen {
     fn heard(&mut self, sign: char, text: &[u8]) {
-        if let Some((_, transcript)) = &mut self.transcript
+        if let Some(transcript) = &mut self.transcript
             && self.broken.is_none()
         {
             let written = write!(transcript, "{sign} ").and_then(|()| transcript.write_all(text));

@@ -1,12 +1,12 @@
 //! Capture of what passes on the host lines, and of what the operator does, to a file.
 
 use super::LineId;
+use files::{Destination, Growing};
 use protocol::capture::{Event, HEADER, Record};
 use std::{
-    fs::File,
     io::{self, Write},
     path::Path,
-    sync::{Arc, Mutex},
+    sync::{Arc, Mutex, MutexGuard},
     time::Instant,
 };
 
@@ -18,22 +18,34 @@ pub struct Capture {
 
 #[derive(Debug)]
 struct Tape {
-    /// None after the file could not be written.
-    file: Option<File>,
+    /// None after the file was finished or could not be written.
+    file: Option<Growing>,
     begin: Instant,
     text: String,
 }
 
 impl Capture {
-    /// Begins a capture; a file that is there is replaced.
+    /// Begins a capture, which grows under its name with `.part` behind it until it is finished.
     ///
     /// # Errors
     /// Those of the file.
     pub fn create(path: &Path) -> io::Result<Capture> {
-        let mut file = File::create(path)?;
+        let mut file = Destination::of(path).and_then(Growing::create).map_err(io::Error::other)?;
         writeln!(file, "{HEADER}")?;
         let tape = Tape { file: Some(file), begin: Instant::now(), text: String::new() };
         Ok(Capture { shared: Arc::new(Mutex::new(tape)) })
+    }
+
+    /// Ends the capture, which gets its name now, in place of a file that had it.
+    pub fn finish(&self) {
+        if let Some(Err(error)) = self.tape().file.take().map(Growing::finish) {
+            tracing::error!("the capture is not whole: {error}");
+        }
+    }
+
+    fn tape(&self) -> MutexGuard<'_, Tape> {
+        // A thread that panicked while it wrote leaves at worst half a record.
+        self.shared.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
     /// Writes down that the operator did something now.
@@ -43,8 +55,7 @@ impl Capture {
 
     /// Writes down what happened on a line now.
     pub(super) fn record(&self, line: LineId, event: Event) {
-        // A thread that panicked while it wrote leaves at worst half a record.
-        let mut tape = self.shared.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut tape = self.tape();
         let Tape { file, begin, text } = &mut *tape;
         let micros = u64::try_from(begin.elapsed().as_micros()).unwrap_or(u64::MAX);
         text.clear();

@@ -10,8 +10,10 @@ use crate::{
     network::{Activity, Outcome, Trace, Traced},
     port::ObjectId,
 };
+use files::Destination;
 use protocol::{Kind, Value};
 use std::collections::BTreeSet;
+use std::io::Write;
 
 /// Functions that `top` lists if the order does not say.
 const TOP: usize = 10;
@@ -183,7 +185,8 @@ pub(super) fn inspect(what: &Inspection, machine: &mut Machine) -> Result<String
             match file {
                 None => Ok(text),
                 Some(file) => {
-                    std::fs::write(file, &text).map_err(|error| format!("{file}: {error}"))?;
+                    let destination = Destination::of(file).map_err(|error| error.to_string())?;
+                    destination.write(|file| file.write_all(text.as_bytes())).map_err(|error| error.to_string())?;
                     Ok(file.clone())
                 }
             }

@@ -4,7 +4,10 @@ use super::order::{Order, OrderError, OrderRow, Screen, Words};
 use crate::{
     calligraphic::{self, Controls, KNOBS, Knob, MAX_SIZE, PHOSPHORS, Phosphor, SCREENS},
     machine::Machine,
+    picture::Picture,
 };
+use files::Destination;
+use std::io::Write;
 use std::path::Path;
 
 /// Something that a person sets at the display, or wants of it.
@@ -194,16 +197,19 @@ fn write(machine: &mut Machine, screen: Screen, file: &str, size: Option<[u32; 2
         (Screen::Vector, Some("svg")) => calligraphic::svg,
         (Screen::Vector, Some("txt")) => |strokes: &_| calligraphic::text(strokes, usize::MAX) + "\n",
         _ => {
+            let destination = Picture::destination(path).map_err(|e| e.to_string())?;
             let picture = match screen {
                 Screen::Vector => machine.vector_picture(size),
                 Screen::Raster => machine.raster_picture(),
             };
-            picture.write(path).map_err(|e| e.to_string())?;
+            picture.write(&destination).map_err(|e| e.to_string())?;
             return Ok(format!("{file} {}x{}", picture.width(), picture.height()));
         }
     };
+    let destination = Destination::of(path).map_err(|e| e.to_string())?;
     machine.renew_picture();
     let strokes = machine.visible_strokes();
-    std::fs::write(path, drawing(&strokes)).map_err(|e| format!("cannot write {file}: {e}"))?;
+    let text = drawing(&strokes);
+    destination.write(|file| file.write_all(text.as_bytes())).map_err(|e| e.to_string())?;
     Ok(format!("{file} {} strokes", strokes.len()))
 }

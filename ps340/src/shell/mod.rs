@@ -94,7 +94,7 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
             true => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is to be played")),
             false => Capture::create(path),
         };
-        created.map_err(|e| io::Error::new(e.kind(), format!("cannot write {}: {e}", path.display())))
+        created.map_err(|e| io::Error::new(e.kind(), format!("capture {}: {e}", path.display())))
     });
     let capture = capture.transpose()?;
     let around = Surroundings { events: events.clone(), capture: capture.clone() };
@@ -132,9 +132,12 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
         io_runtime.shutdown_background();
     });
     ready("ready");
-    let end = Turns::new(options, mirror, capture, inbox)?.run();
+    let end = Turns::new(options, mirror, capture.clone(), inbox)?.run();
     let _ = stop.send(());
     let _ = lines.join();
+    if let Some(capture) = capture {
+        capture.finish();
+    }
     Ok(end)
 }
 

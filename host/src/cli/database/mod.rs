@@ -9,6 +9,7 @@ use crate::database::{
 };
 use crate::scene::{Object, Scene, Shape};
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use files::{Destination, Folder};
 use std::path::{Path, PathBuf};
 
 pub(super) const ROW: Row = Row {
@@ -146,7 +147,10 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
     match Commands::from_arg_matches(matches)? {
         Commands::List { database, kind, json } => list(database.as_deref(), kind, json),
         Commands::Show { place, json } => show::show(&place.record()?, json),
-        Commands::Plot { place, output } => plot::plot(&place.record()?, &place, &output),
+        Commands::Plot { place, output } => {
+            let folder = Folder::make(&output)?;
+            plot::plot(&place.record()?, &place, &folder)
+        }
         Commands::Add(addition) => add(&addition),
         Commands::Remove { database, name, kind } => {
             let kind = kind_of(&Place { database: database.clone(), name: name.clone(), kind })?;
@@ -155,7 +159,8 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
             Ok(())
         }
         Commands::Export { place, file } => {
-            database::write(&place.record()?, &file)?;
+            let destination = Destination::of(&file)?;
+            database::write(&place.record()?, &destination)?;
             say!("{}", file.display());
             Ok(())
         }
@@ -259,6 +264,7 @@ fn sources(entries: &[Entry]) -> String {
 }
 
 fn add(addition: &Addition) -> Result<(), Failure> {
+    Destination::of(&addition.database)?;
     let file = &addition.file;
     let is_script = file.extension().is_some_and(|ending| ending == "rhai");
     let mut records = if is_script {

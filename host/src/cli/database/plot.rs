@@ -1,26 +1,27 @@
 //! Records drawn: spectra as curves, materials and geometry as pictures.
 
 use super::{Failure, Place};
-use crate::cli::watch_interrupts;
+use crate::cli::progress;
 use crate::color::Color;
 use crate::database::{Content, Curves, Record};
 use crate::illumination::light::{Light, Patch};
 use crate::illumination::material::{Body, Classic, Material};
+use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::ray_tracing::RayTracer;
-use crate::render::{Order, Renderer, Watch};
+use crate::render::{Order, Renderer};
 use crate::scene::{Camera, Object, Prepared, Scene, Shape};
 use crate::solid::Primitive;
 use crate::study::{Axis, Plot, Point, Series};
+use files::{Destination, Folder};
 use glam::{DMat4, DVec3};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The range of wavelengths in a plot, nm.
 const SEEN: (f64, f64) = (360.0, 830.0);
 
 /// Writes the files of a record, and says which.
-pub(super) fn plot(record: &Record, place: &Place, folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder)?;
+pub(super) fn plot(record: &Record, place: &Place, folder: &Folder) -> Result<(), Failure> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     let name: String = record.name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
     let written = match &record.content {
@@ -35,9 +36,9 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Path) -> Result<(), 
             return Err(anyhow::anyhow!("caught light is seen in its scene only: render that with --light").into());
         }
         Content::Texture(picture) => {
-            let path = folder.join(format!("{name}.png"));
-            picture.write(&path)?;
-            vec![path]
+            let file = picture_file(folder, &name)?;
+            picture.write(&file)?;
+            vec![file.path().into()]
         }
         Content::Material(material) => {
             let ball = Object {
@@ -47,7 +48,7 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Path) -> Result<(), 
                 material: Some((**material).clone()),
                 tolerance: None,
             };
-            vec![render(ball, &folder.join(format!("{name}.png")))?]
+            vec![render(ball, &picture_file(folder, &name)?)?]
         }
         Content::Geometry(grouped) => {
             let bounds = grouped.mesh.bounds().ok_or_else(|| anyhow::anyhow!("the mesh is empty"))?;
@@ -61,12 +62,17 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Path) -> Result<(), 
                 material: Some(Material::default()),
                 tolerance: None,
             };
-            vec![render(object, &folder.join(format!("{name}.png")))?]
+            vec![render(object, &picture_file(folder, &name)?)?]
         }
     };
     let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     say!("{}", names.join(", "));
     Ok(())
+}
+
+/// Where the picture of a record will be.
+fn picture_file(folder: &Folder, name: &str) -> Result<Destination, Failure> {
+    Ok(Picture::destination(&folder.path().join(format!("{name}.png")))?)
 }
 
 /// Curves over the wavelengths that are seen.
@@ -96,7 +102,7 @@ fn curve(record: &Record, curves: &Curves) -> Plot {
 }
 
 /// A picture of an object about two units high: on a grey ground under a pale sky, a window of daylight and a lamp.
-fn render(object: Object, path: &Path) -> Result<PathBuf, Failure> {
+fn render(object: Object, file: &Destination) -> Result<PathBuf, Failure> {
     let grey = Body::Classic(Classic { diffuse: Color::grey(0.4).into(), ..Classic::default() });
     let ground = Object {
         name: "ground".into(),
@@ -129,8 +135,8 @@ fn render(object: Object, path: &Path) -> Result<PathBuf, Failure> {
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let watch = Watch { cancelled: watch_interrupts(), progress: &|_, _| {} };
-    let rendering = RayTracer::new(&prepared, &plan)?.render(&view, &Order::of(&prepared.settings), &watch)?;
-    rendering.picture.write(path)?;
-    Ok(path.to_owned())
+    let order = Order::of(&prepared.settings);
+    let rendering = RayTracer::new(&prepared, &plan)?.render(&view, &order, &progress::watch())?;
+    rendering.picture.write(file)?;
+    Ok(file.path().to_owned())
 }

@@ -326,7 +326,7 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
         told.store(done, Ordering::Relaxed);
         cancelled.store(true, Ordering::Relaxed);
     };
-    let watch = Watch { cancelled: &cancelled, progress: &progress };
+    let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
     let stopped = Radiosity::new(&room, &plan, &coarse(), None, &watch).expect("a solution");
     assert!(told.load(Ordering::Relaxed) > 0);
     let whole = solved(&room, &coarse(), None);
@@ -344,7 +344,7 @@ fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
     let links = |cancelled: bool| {
         let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
         let progress = |done: u64, _: u64| told.store(done, Ordering::Relaxed);
-        let watch = Watch { cancelled: &cancelled, progress: &progress };
+        let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
         let tracer = RayTracer::watched(&room, &plan, None, &watch).expect("a tracer");
         assert!(told.load(Ordering::Relaxed) > 0);
         tracer.radiosity().expect("a solution").report.links

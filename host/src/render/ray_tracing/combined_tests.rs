@@ -60,7 +60,7 @@ fn classes(scene: &Scene) -> [f64; 5] {
     let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
     let order = Order::of(&scene.settings);
     let film = Film::new(order.width, order.height).expect("small").with_classes();
-    let rendering = tracer.go_on(film, &to_the_left(), &order, &Watch::NOBODY).expect("a picture");
+    let rendering = tracer.go_on(film, &to_the_left(), &order, &Watch::NOBODY, None).expect("a picture");
     let film = &rendering.film;
     let count = f64::from(order.samples) * film.tallies().len() as f64;
     let of = |class: usize| film.classes().iter().map(|classes| classes[class].x).sum::<f64>() / count;

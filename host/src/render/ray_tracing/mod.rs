@@ -7,6 +7,7 @@
 mod direct;
 mod draws;
 mod explain;
+mod exposure;
 mod light_buffer;
 mod media;
 mod tracer;
@@ -37,13 +38,14 @@ mod two_way_tests;
 mod tests;
 
 pub use explain::Note;
+pub use exposure::{Checkpoints, Exposed};
 pub use tracer::ENERGY_CUTOFF;
 pub use two_way::{Balance, Shelf, widest_disc};
 
 use super::eye::Eye;
-use super::film::{ByClass, Film, SHARING, Sample, Tally};
+use super::film::{ByClass, Film, SHARING, Sample};
 use super::radiosity::{Exitance, Radiosity};
-use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
+use super::{Order, RenderError, Renderer, Rendering, Watch};
 use crate::octree::Octree;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
@@ -51,15 +53,9 @@ use draws::{Draws, Purpose};
 use explain::Log;
 use glam::DVec3;
 use media::Media;
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 use tracer::{First, Tracer, Work};
 use two_way::{CaughtLight, TwoWay};
 use world::World;
-
-/// Samples of the first pass, where errors or the clock decide about more.
-const FIRST_PASS: u32 = 8;
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
@@ -104,10 +100,13 @@ impl<'a> RayTracer<'a> {
         shelf: Option<&'a Shelf>,
         watch: &Watch<'_>,
     ) -> Result<RayTracer<'a>, RenderError> {
+        (watch.stage)("while building the octree");
         let mut world = World::new(prepared, plan)?;
+        (watch.stage)("while looking where light goes");
         let keeps = |object| plan.keeps_object(object);
         let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps, shelf)).flatten();
         if plan.needs(Stage::Radiosity) {
+            (watch.stage)("while solving for radiosity");
             let caught = two_way.as_ref().and_then(|two_way| two_way.caught(&world, 0, watch));
             let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
             let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
@@ -147,141 +146,7 @@ impl<'a> RayTracer<'a> {
         }
         // The samples of a pixel share it. The slope of a relief is taken over something, at least.
         let filter = prepared.settings.texture_filter.max(1e-3);
-        Ok(eye.with_cones(filter / f64::from(order.samples).sqrt()))
-    }
-
-    /// Adds samples to a film until each pixel has what the order asks for.
-    ///
-    /// The film may hold samples of the same order already, as after an interruption: it is then as if there had been none.
-    ///
-    /// # Errors
-    /// [`RenderError`].
-    pub fn expose(
-        &self,
-        film: &mut Film,
-        view: &View,
-        order: &Order,
-        watch: &Watch<'_>,
-    ) -> Result<Exposed, RenderError> {
-        let start = Instant::now();
-        let eye = self.eye(view, order)?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
-        let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
-        let stopped = || watch.is_cancelled() || late();
-        let width = order.width as usize;
-        let passes = self.passes(order);
-        let done = AtomicU64::new(0);
-        let mut rays = RayCounts::default();
-        let mut balance = None;
-        let mut complete = true;
-        for samples in &passes {
-            let wanted = order.target.map(|target| film.uncertain(target));
-            let is_wanted = |pixel: usize| wanted.as_ref().is_none_or(|wanted| wanted[pixel]);
-            let mut counts = film.tallies().iter().map(|tally| tally.count).enumerate();
-            let is_needed = counts.any(|(pixel, count)| count < *samples && is_wanted(pixel));
-            let caught = match &self.two_way {
-                Some(two_way) if is_needed => {
-                    let pass = (samples - 1) / SHARING;
-                    let caught = pool.install(|| two_way.caught(&self.world, pass, watch));
-                    if caught.is_none() {
-                        complete = false;
-                        break;
-                    }
-                    caught
-                }
-                _ => None,
-            };
-            balance = balance.or(caught.as_ref().map(CaughtLight::balance));
-            let tracer = self.tracer(caught.as_ref(), &eye);
-            let counted: Vec<Option<RayCounts>> = pool.install(|| {
-                let rows = film.rows_mut().into_par_iter().enumerate();
-                rows.map(|(y, (row, mut classes))| {
-                    if stopped() {
-                        return None;
-                    }
-                    let mut work = Work::default();
-                    for (x, tally) in row.iter_mut().enumerate() {
-                        if is_wanted(y * width + x) {
-                            let classes = classes.as_mut().map(|row| &mut row[x]);
-                            // Where errors seemed small for a while, no more samples see this light than elsewhere.
-                            let most = if caught.is_some() { tally.count.saturating_add(SHARING) } else { *samples };
-                            let pixel = ([x as u32, y as u32], most.min(*samples));
-                            self.add_samples((&tracer, &eye, order), pixel, (tally, classes), &mut work);
-                        }
-                    }
-                    let all = passes.len() as u64 * u64::from(order.height);
-                    (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-                    Some(work.counts)
-                })
-                .collect()
-            });
-            complete &= counted.iter().all(Option::is_some);
-            rays = counted.into_iter().flatten().fold(rays, |a, b| a + b);
-            if stopped() {
-                break;
-            }
-        }
-        // Time that ran out as it was asked for is no interruption.
-        complete |= order.seconds.is_some() && !watch.is_cancelled();
-        Ok(Exposed {
-            rays,
-            balance,
-            complete,
-            seconds: start.elapsed().as_secs_f64(),
-            threads: pool.current_num_threads(),
-        })
-    }
-
-    /// Makes a picture of a film to which samples are added, as [`RayTracer::expose`] does it.
-    ///
-    /// # Errors
-    /// [`RenderError`].
-    pub fn go_on(
-        &self,
-        mut film: Film,
-        view: &View,
-        order: &Order,
-        watch: &Watch<'_>,
-    ) -> Result<Rendering, RenderError> {
-        let Exposed { rays, balance, complete, seconds, threads } = self.expose(&mut film, view, order, watch)?;
-        let (picture, spans) = (film.picture()?, SpanCounts::default());
-        Ok(Rendering { picture, film, complete, rays, spans, balance, seconds, threads })
-    }
-
-    /// How many samples pixels have after each pass: one pass, unless errors or the clock decide, or light is caught anew.
-    fn passes(&self, order: &Order) -> Vec<u32> {
-        let mut passes = vec![order.samples];
-        if order.target.is_some() || order.seconds.is_some() {
-            let doubled = std::iter::successors(Some(FIRST_PASS), |samples| samples.checked_mul(2));
-            passes.extend(doubled.take_while(|samples| *samples < order.samples));
-        }
-        if self.two_way.is_some() {
-            passes.extend((SHARING..order.samples).step_by(SHARING as usize));
-        }
-        passes.sort_unstable();
-        passes.dedup();
-        passes
-    }
-
-    /// Adds samples to a pixel until it has `samples`.
-    fn add_samples(
-        &self,
-        (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
-        (pixel, samples): ([u32; 2], u32),
-        (tally, mut sums): (&mut Tally, Option<&mut ByClass>),
-        work: &mut Work,
-    ) {
-        while tally.count < samples {
-            let index = tally.count;
-            let (sample, classes, _) = self.sample((tracer, eye, order), pixel, index, work, Log::SILENT);
-            tally.add(&sample);
-            if let Some(sums) = &mut sums {
-                sums.iter_mut()
-                    .zip(classes)
-                    .filter(|(_, light)| light.is_finite())
-                    .for_each(|(sum, light)| *sum += light);
-            }
-        }
+        Ok(eye.with_cones(filter / f64::from(order.footprints).sqrt()))
     }
 
     /// One sample, its light by classes, and the comb of wavelengths that it carries.
@@ -345,27 +210,12 @@ impl<'a> RayTracer<'a> {
     }
 }
 
-/// What an exposure took.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exposed {
-    /// How many rays were traced.
-    pub rays: RayCounts,
-    /// What became of the light of lamps that was followed first, if any was.
-    pub balance: Option<Balance>,
-    /// Whether it was not stopped from outside.
-    pub complete: bool,
-    /// Wall-clock time, seconds.
-    pub seconds: f64,
-    /// Threads that worked.
-    pub threads: usize,
-}
-
 impl Renderer for RayTracer<'_> {
     fn name(&self) -> &'static str {
         "ray tracing"
     }
 
     fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
-        self.go_on(Film::new(order.width, order.height)?, view, order, watch)
+        self.go_on(Film::new(order.width, order.height)?, view, order, watch, None)
     }
 }

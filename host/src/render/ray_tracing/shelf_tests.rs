@@ -9,6 +9,7 @@ use crate::picture::Picture;
 use crate::scene::Scene;
 use glam::DVec3;
 use std::path::Path;
+use std::time::Duration;
 
 /// Two lamps over a mirror.
 fn two_lamps() -> Scene {
@@ -22,7 +23,7 @@ fn two_lamps() -> Scene {
 fn picture(scene: &Scene, path: Option<&Path>) -> (Picture, Balance) {
     let prepared = Prepared::new(scene).expect("sound");
     let plan = Plan::new(&prepared, &from_below());
-    let shelf = path.map(|path| Shelf::new(path, scene, &prepared).expect("a database"));
+    let shelf = path.map(|path| Shelf::new(path, scene, &prepared, Duration::from_secs(60), true).expect("a database"));
     let tracer = RayTracer::watched(&prepared, &plan, shelf.as_ref(), &Watch::NOBODY).expect("a tracer");
     let rendering = tracer.render(&from_below(), &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture");
     (rendering.picture, rendering.balance.expect("light was caught"))
@@ -98,5 +99,5 @@ fn what_is_no_database_is_an_error_before_anything_is_rendered() {
     std::fs::write(&path, "no database").expect("written");
     let scene = two_lamps();
     let prepared = Prepared::new(&scene).expect("sound");
-    assert!(Shelf::new(&path, &scene, &prepared).is_err());
+    assert!(Shelf::new(&path, &scene, &prepared, Duration::from_secs(60), true).is_err());
 }

@@ -11,7 +11,7 @@ use crate::solid::Primitive;
 use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 pub(super) fn object(shape: Shape, transform: DMat4, material: impl Into<Material>) -> Object {
     Object { name: shape.word().into(), shape, transform, material: Some(material.into()), tolerance: None }
@@ -392,7 +392,11 @@ fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
     let plan = Plan::new(&prepared, &prepared.view());
     let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
     let cancelled = AtomicBool::new(false);
-    let watch = Watch { cancelled: &cancelled, progress: &|done, _| cancelled.store(done >= 5, Ordering::Relaxed) };
+    let watch = Watch {
+        cancelled: &cancelled,
+        progress: &|done, _| cancelled.store(done >= 5, Ordering::Relaxed),
+        ..Watch::NOBODY
+    };
     let order = Order { threads: NonZeroUsize::new(1), ..Order::of(&scene.settings) };
     let part = tracer.render(&prepared.view(), &order, &watch).expect("a part");
     let begun = part.film.tallies().iter().filter(|tally| tally.count > 0).count();
@@ -403,7 +407,7 @@ fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
     }
     // What is missing can be added later, and nothing tells that it was.
     let mut film = part.film;
-    let exposed = tracer.expose(&mut film, &prepared.view(), &order, &Watch::NOBODY).expect("the rest");
+    let exposed = tracer.expose(&mut film, &prepared.view(), &order, &Watch::NOBODY, None).expect("the rest");
     assert!(exposed.complete && film == whole.film);
 }
 

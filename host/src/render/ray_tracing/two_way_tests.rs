@@ -181,7 +181,7 @@ fn classes_of_light_add_up_and_are_the_same_by_both_ways_of_finding_it() {
         let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
         let order = Order::of(&scene.settings);
         let film = Film::new(16, 16).expect("small").with_classes();
-        let film = tracer.go_on(film, &prepared.view(), &order, &Watch::NOBODY).expect("a picture").film;
+        let film = tracer.go_on(film, &prepared.view(), &order, &Watch::NOBODY, None).expect("a picture").film;
         for (tally, classes) in film.tallies().iter().zip(film.classes()) {
             assert!((tally.sum - classes.iter().copied().sum::<DVec3>()).length() <= 1e-9 * tally.sum.length());
         }

@@ -210,7 +210,7 @@ impl Base {
             vary(shots.len() as u64, &mut order);
             order
         };
-        let quiet = Watch { cancelled: watch.cancelled, progress: &|_, _| {} };
+        let quiet = watch.quiet();
         let is_followed = setup.technique == Technique::TwoWay;
         let mut shots = Vec::new();
         while !is_enough(&shots) {

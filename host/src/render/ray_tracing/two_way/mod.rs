@@ -44,7 +44,9 @@ use lamps::{Aim, Lamp};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 use surfaces::Surfaces;
 
 /// Ways that one thread follows before it takes others.
@@ -163,7 +165,7 @@ impl<'s> TwoWay<'s> {
         (!two_way.lamps.is_empty()).then_some(two_way)
     }
 
-    /// Follows all ways of a pass; none if it was cancelled.
+    /// Follows all ways of a pass; none if it was cancelled. What was followed until then is on the shelf, if there is one.
     ///
     /// - `pass`: counts from 0. The more of them, the smaller the discs over which light is spread.
     pub(super) fn caught<'a>(&'a self, world: &'a World<'a>, pass: u32, watch: &Watch<'_>) -> Option<CaughtLight<'a>> {
@@ -197,16 +199,34 @@ impl<'s> TwoWay<'s> {
             let count = self.lamps[chunk.lamp].aims[chunk.aim].count;
             chunk.number * CHUNK..((chunk.number + 1) * CHUNK).min(count)
         };
-        let follow = |chunk: &Chunk| {
-            let ways = ways(chunk);
-            let known = before.get(chunk).filter(|_| ways.len() == CHUNK as usize);
-            let followed = || known.cloned().unwrap_or_else(|| self.follow(world, u64::from(pass), chunk, ways));
-            (!watch.is_cancelled()).then(followed)
-        };
-        let blocks: Option<Vec<Block>> = wanted.par_iter().map(follow).collect();
-        let blocks = blocks?;
-        let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| ways(chunk).len() == CHUNK as usize);
-        self.keep(world, pass, whole.map(|(chunk, block)| (*chunk, block)).collect(), &before);
+        let is_whole = |chunk: &Chunk| ways(chunk).len() == CHUNK as usize;
+        let known = |chunk: &Chunk| before.get(chunk).filter(|_| is_whole(chunk)).cloned();
+        let mut blocks: Vec<Option<Block>> = wanted.iter().map(known).collect();
+        let all = wanted.len() as u64;
+        loop {
+            let due = self.shelf.map(|shelf| Instant::now() + shelf.every);
+            let pauses = || watch.is_cancelled() || due.is_some_and(|due| Instant::now() >= due);
+            let done = AtomicU64::new(blocks.iter().flatten().count() as u64);
+            blocks.par_iter_mut().zip(&wanted).filter(|(block, _)| block.is_none()).for_each(|(block, chunk)| {
+                if !pauses() {
+                    *block = Some(self.follow(world, u64::from(pass), chunk, ways(chunk)));
+                    (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+                }
+            });
+            let is_finished = blocks.iter().all(Option::is_some);
+            if !is_finished || self.shelf.is_some_and(|shelf| shelf.lasts) {
+                let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| is_whole(chunk));
+                let whole = whole.filter_map(|(chunk, block)| Some((*chunk, block.as_ref()?)));
+                self.keep(world, pass, whole.collect(), &before);
+            }
+            if is_finished {
+                break;
+            }
+            if watch.is_cancelled() {
+                return None;
+            }
+        }
+        let blocks = blocks.into_iter().flatten();
         let scaled = |(chunk, block): (&Chunk, Block)| {
             let Aim { count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
             block.scaled(part / f64::from(count))

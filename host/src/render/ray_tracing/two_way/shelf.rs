@@ -19,6 +19,7 @@ use siphasher::sip128::{Hasher128, SipHasher13};
 use std::collections::HashMap;
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Caught light that a database holds, bytes: beyond that, what belongs to other scenes gives way, and nothing is added if
 /// that is not enough.
@@ -34,6 +35,10 @@ pub struct Shelf {
     path: PathBuf,
     /// A hash of the scene without lamps.
     scene: u128,
+    /// Time after which light of an unfinished pass is kept.
+    pub(super) every: Duration,
+    /// Whether light of finished passes is kept, too.
+    pub(super) lasts: bool,
 }
 
 /// Hashes what is written to it.
@@ -69,9 +74,18 @@ impl Sum {
 impl Shelf {
     /// A database for the light of a scene; it is made if there is none.
     ///
+    /// - `every`: light of a pass that takes longer is kept after each such time. `lasts`: whether light is kept when its pass
+    ///   is finished; otherwise the database serves only one who goes on with an interrupted pass.
+    ///
     /// # Errors
     /// [`DatabaseError`] if the file is no database or cannot be written.
-    pub fn new(path: &Path, scene: &Scene, prepared: &Prepared) -> Result<Shelf, DatabaseError> {
+    pub fn new(
+        path: &Path,
+        scene: &Scene,
+        prepared: &Prepared,
+        every: Duration,
+        lasts: bool,
+    ) -> Result<Shelf, DatabaseError> {
         Store::open_to_write(path)?;
         let mut dark = scene.clone();
         dark.camera = None;
@@ -100,7 +114,7 @@ impl Shelf {
         sum.add(&(FORM, &dark));
         sum.0.write(bytemuck::cast_slice(&prepared.triangles));
         sum.0.write(bytemuck::cast_slice(&prepared.vertices));
-        Ok(Shelf { path: path.into(), scene: sum.value() })
+        Ok(Shelf { path: path.into(), scene: sum.value(), every, lasts })
     }
 
     /// The name of the light of a lamp, less the pass.

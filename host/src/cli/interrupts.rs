@@ -1,0 +1,96 @@
+//! Signals that ask the program to end: Ctrl-C, a request to terminate, a terminal that is closed.
+//!
+//! Files are written whole or not at all, databases keep their last transaction, and a PS 340 of our own ends when its
+//! orders do. So the program may end at any time, and does so at once, unless there is work in memory that is worth
+//! keeping: whoever holds such work says so by [`Keeping`], and is then asked to stop and to write it.
+
+use super::{Exit, progress};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+use signal_hook::iterator::Signals;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Set by the first signal, while something is to be kept.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static STATE: Mutex<State> = Mutex::new(State { keepers: 0, kept: String::new() });
+
+struct State {
+    /// How many hold work that is worth keeping.
+    keepers: usize,
+    /// What is kept already, in words.
+    kept: String,
+}
+
+fn state() -> MutexGuard<'static, State> {
+    STATE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From now on, signals end the program as this module says.
+///
+/// - `name`: of the sub-command, for messages.
+pub(super) fn begin(name: &str) {
+    // A file that grows beyond a limit is an error of its writer, and no reason to end without a word.
+    let is_refused = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).err();
+    let wanted = [Some(SIGINT), Some(SIGTERM), (!hangups_are_ignored()).then_some(SIGHUP)];
+    let signals = match (Signals::new(wanted.into_iter().flatten()), is_refused) {
+        (Ok(signals), None) => signals,
+        (Err(error), _) | (_, Some(error)) => {
+            return tracing::warn!("Ctrl-C will end the process at once: {error}");
+        }
+    };
+    let name = name.to_owned();
+    std::thread::spawn(move || serve(signals, &name));
+}
+
+fn serve(mut signals: Signals, name: &str) {
+    for _ in signals.forever() {
+        // Who begins to keep something now must wait, and find out that it is too late.
+        let state = state();
+        if state.keepers == 0 || INTERRUPTED.swap(true, Ordering::Relaxed) {
+            let stage = progress::current();
+            progress::clear();
+            let kept = match (state.keepers, state.kept.as_str()) {
+                (0, "") => "nothing is written",
+                (0, kept) => kept,
+                _ => "not waiting for what is being written",
+            };
+            eprintln!("peris {name}: interrupted {stage}; {kept}");
+            std::process::exit(Exit::Interrupted as i32);
+        }
+    }
+}
+
+/// Whether the process was started so that it outlives its terminal, as `nohup` does.
+fn hangups_are_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> (SIGHUP - 1) & 1 == 1)
+}
+
+/// What an interruption says from now on of what is kept already.
+pub(super) fn say_kept(what: impl Into<String>) {
+    state().kept = what.into();
+}
+
+/// Work in memory that is worth keeping: as long as this lives, the first signal asks to stop, and only the second ends the
+/// program.
+pub(super) struct Keeping(());
+
+impl Keeping {
+    /// From now on there is something to keep.
+    pub(super) fn begin() -> Keeping {
+        state().keepers += 1;
+        Keeping(())
+    }
+}
+
+impl Drop for Keeping {
+    fn drop(&mut self) {
+        state().keepers -= 1;
+    }
+}
+
+/// Set when work that is worth keeping is to stop.
+pub(super) fn flag() -> &'static AtomicBool {
+    &INTERRUPTED
+}

@@ -1,0 +1,317 @@
+//! `peris render`: a scene to a picture file.
+
+mod pixel;
+mod saved;
+mod views;
+
+use super::source::stem;
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load, progress, warn};
+use crate::picture::Picture;
+use crate::plan::{Plan, Stage};
+use crate::render::radiosity::Radiosity;
+use crate::render::ray_tracing::{RayTracer, Shelf};
+use crate::render::scan_line::ScanLine;
+use crate::render::{Film, Order, RenderError, Renderer};
+use crate::scene::{Camera, MAX_SAMPLES, Prepared, View};
+use clap::{Args, FromArgMatches, ValueEnum};
+use files::Destination;
+use saved::Saved;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use views::Views;
+
+/// Most views at once.
+const MOST_VIEWS: i64 = 10_000;
+
+pub(super) const ROW: Row = Row {
+    name: "render",
+    summary: "Renders a scene by ray tracing, scan line or radiosity into a PNG or EXR file.",
+    arguments: Arguments::augment_args,
+    run: |matches| run(&Arguments::from_arg_matches(matches)?),
+};
+
+/// Who makes the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// All light: mirrors, glass, rough surfaces, soft shadows
+    RayTracing,
+    /// The same, with light that is followed from lamps through mirrors and glass first: caustics
+    TwoWay,
+    /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show
+    /// lights and ambient light only, and glass bends nothing
+    ScanLine,
+    /// Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are
+    /// not seen
+    Radiosity,
+}
+
+#[derive(Args, Debug)]
+struct Arguments {
+    #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
+    script: String,
+    #[command(flatten)]
+    definitions: Definitions,
+    /// Picture file, .png (sRGB) or .exr (linear, coverage as alpha); may be given more than once [default: NAME.png]
+    #[arg(short, long, value_name = "FILE")]
+    output: Vec<PathBuf>,
+    /// Who makes the picture
+    #[arg(long, value_name = "RENDERER", value_enum, default_value_t = Kind::RayTracing)]
+    renderer: Kind,
+    /// Columns, instead of those of the scene; alone, the rows follow
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+    width: Option<u32>,
+    /// Rows, instead of those of the scene; alone, the columns follow
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+    height: Option<u32>,
+    /// Samples in each pixel, instead of those of the scene
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
+    samples: Option<u32>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    threads: Option<NonZeroUsize>,
+    /// Seed of the sample positions, instead of that of the scene
+    #[arg(long, value_name = "NUMBER")]
+    seed: Option<u64>,
+    /// Tessellation tolerance in scene units, instead of that of the scene
+    #[arg(long, value_name = "LENGTH")]
+    tolerance: Option<f64>,
+    /// Relative error of the luminance at which a pixel has samples enough; --samples, if given, is then the most of them. If
+    /// pixels miss it, the picture is written all the same, and the exit code tells
+    #[arg(long, value_name = "PART", value_parser = super::length)]
+    error: Option<f64>,
+    /// Begins no sample after so many seconds; --samples, if given, is then the most of them
+    #[arg(long, value_name = "SECONDS", value_parser = super::length)]
+    seconds: Option<f64>,
+    /// Goes on with what is in this file, and writes there what is known: every minute, when interrupted, and in the end;
+    /// more samples can be added at any time. Of several views, those that are finished are not made again
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    /// How often the file of --resume is written; what was done since then is lost if the process is killed
+    #[arg(long, value_name = "SECONDS", value_parser = super::length, default_value_t = 60.0, requires = "resume")]
+    checkpoint: f64,
+    /// Renders so many views: the camera goes round what it looks at, and the files are numbered; what does not depend on
+    /// the view is done once
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=MOST_VIEWS), conflicts_with = "pixel")]
+    views: Option<u32>,
+    /// How far the camera goes from one view to the next [default: a full turn in all]
+    #[arg(long, value_name = "DEGREES", requires = "views", allow_negative_numbers = true)]
+    turn: Option<f64>,
+    /// Keeps the light that two-way ray tracing catches in this database (.redb), which is made if need be, and takes from
+    /// there what was caught before, for as long as geometry, materials and lamps are the same
+    #[arg(long, value_name = "DATABASE")]
+    light: Option<PathBuf>,
+    /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too; by ray tracing
+    /// without --resume also emitted, direct, caustic and indirect light, which together are the picture
+    #[arg(long)]
+    layers: bool,
+    /// Leaves the background out where nothing stands before it, so that `peris compose` can put another one there; it
+    /// stays behind glass and in mirrors
+    #[arg(long)]
+    matte: bool,
+    /// Renders one pixel only, counted from the upper left corner, and prints its radiance; writes no file
+    #[arg(long, value_name = "X,Y", value_parser = pixel::place)]
+    pixel: Option<[u32; 2]>,
+    /// Prints the ways of the first samples of the pixel, and every term that they add
+    #[arg(long, requires = "pixel")]
+    explain: bool,
+    /// Leaves nothing out; the picture is the same
+    #[arg(long)]
+    everything: bool,
+    /// Reports as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.check()?;
+    let outputs = arguments.destinations()?;
+    let state = arguments.resume.as_ref().map(Destination::of).transpose()?;
+    arguments.light.as_ref().map(Destination::of).transpose()?;
+    let mut scene = load(&arguments.script, &arguments.definitions)?.scene;
+    super::warn_of_darkness(&scene);
+    let settings = &mut scene.settings;
+    (settings.width, settings.height) = size(settings.width, settings.height, arguments.width, arguments.height);
+    settings.samples = arguments.samples.unwrap_or(settings.samples);
+    settings.seed = arguments.seed.unwrap_or(settings.seed);
+    settings.tolerance = arguments.tolerance.or(settings.tolerance);
+    settings.two_way |= arguments.renderer == Kind::TwoWay;
+    // Surfaces out of view send light, too.
+    settings.interreflection |= arguments.renderer == Kind::Radiosity;
+    let start = Instant::now();
+    progress::stage("while building the geometry");
+    let prepared = Prepared::new(&scene)?;
+    let views = arguments.views_of(&prepared)?;
+    let plan = Plan::of_views(&prepared, &views, arguments.everything);
+    let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
+    let is_followed = plan.needs(Stage::CaughtLight);
+    let light = match (&arguments.light, &arguments.resume) {
+        (Some(path), _) => Some((path.clone(), true)),
+        // Light that is followed for a long time has a state of its own.
+        (None, Some(path)) if is_followed => Some((with_ending(path, ".light"), false)),
+        _ => None,
+    };
+    let shelf = light.as_ref().map(|(path, lasts)| Shelf::new(path, &scene, &prepared, every, *lasts)).transpose()?;
+    let is_open = arguments.error.is_some() || arguments.seconds.is_some();
+    let most = if is_open { MAX_SAMPLES } else { prepared.settings.samples };
+    let order = Order {
+        samples: arguments.samples.unwrap_or(most),
+        threads: arguments.threads,
+        target: arguments.error,
+        seconds: arguments.seconds,
+        matte: arguments.matte,
+        ..Order::of(&prepared.settings)
+    };
+    let watch = progress::watch();
+    let mut all = Views {
+        arguments,
+        views: &views,
+        outputs: &outputs,
+        prepared: &prepared,
+        start,
+        radiosity: None,
+        saved: None,
+        comes_bit_by_bit: false,
+    };
+    match arguments.renderer {
+        Kind::Radiosity => {
+            progress::stage("while solving for radiosity");
+            let settings = prepared.settings.into();
+            let solution = in_pool(arguments, || Radiosity::new(&prepared, &plan, &settings, None, &watch))?;
+            all.radiosity = Some(solution.report);
+            let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
+            scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by radiosity, {what}")));
+            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
+        }
+        Kind::ScanLine => {
+            let scan_line = ScanLine::new(&prepared, &plan)?;
+            scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by scan line, {what}")));
+            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
+        }
+        Kind::RayTracing | Kind::TwoWay => {
+            if let Some(state) = &state {
+                all.saved = Some(Saved::read(arguments, every, state, &scene, &prepared, &order)?);
+            }
+            let tracer = in_pool(arguments, || RayTracer::watched(&prepared, &plan, shelf.as_ref(), &watch))?;
+            all.radiosity = tracer.radiosity().map(|solution| solution.report);
+            if let Some(pixel) = arguments.pixel {
+                progress::stage("while sampling the pixel");
+                return pixel::explain(arguments, &tracer, &views[0], &order, pixel);
+            }
+            all.comes_bit_by_bit = true;
+            let ended = all.render(&mut |view, film, checkpoints| {
+                let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
+                let film = if arguments.layers && state.is_none() { film.with_classes() } else { film };
+                Ok(tracer.go_on(film, view, &order, &watch, checkpoints)?)
+            });
+            if let (Ok(()), Some((path, false))) = (&ended, light) {
+                // It is of no use any more; that it cannot be removed harms nobody.
+                let _ = std::fs::remove_file(path);
+            }
+            ended
+        }
+    }
+}
+
+impl Arguments {
+    /// The files of each view, tested; none for a single pixel.
+    fn destinations(&self) -> Result<Vec<Vec<Destination>>, Failure> {
+        if self.pixel.is_some() {
+            return Ok(Vec::new());
+        }
+        let mut names = self.output.clone();
+        if names.is_empty() {
+            names.push(PathBuf::from(format!("{}.png", stem(&self.script))));
+        }
+        let of_view = |number: u32| {
+            let files = names.iter().map(|name| Picture::destination(&self.numbered(name, number)));
+            Ok(files.collect::<Result<_, _>>()?)
+        };
+        (1..=self.views.unwrap_or(1)).map(of_view).collect()
+    }
+
+    /// The name of the file of a view.
+    fn numbered(&self, name: &Path, number: u32) -> PathBuf {
+        let Some(count) = self.views else { return name.into() };
+        let digits = count.ilog10() as usize + 1;
+        let stem = name.file_stem().unwrap_or_default().to_string_lossy();
+        let ending = name.extension().unwrap_or_default().to_string_lossy();
+        name.with_file_name(format!("{stem}-{number:0digits$}.{ending}"))
+    }
+
+    /// From where the scene is seen.
+    fn views_of(&self, prepared: &Prepared) -> Result<Vec<View>, Failure> {
+        let count = self.views.unwrap_or(1);
+        let step = self.turn.unwrap_or(360.0 / f64::from(count)).to_radians();
+        let camera = prepared.camera;
+        let views = (0..count).map(|number| camera.turned(step * f64::from(number)));
+        let sound = |camera: Camera| camera.check().map(|()| View::Camera(camera));
+        Ok(views.map(sound).collect::<Result<_, _>>()?)
+    }
+
+    /// Refuses what a renderer does not know.
+    fn check(&self) -> Result<(), Failure> {
+        let given = [
+            ("--error", self.error.is_some()),
+            ("--seconds", self.seconds.is_some()),
+            ("--resume", self.resume.is_some()),
+            ("--pixel", self.pixel.is_some()),
+        ];
+        if self.light.is_some() && matches!(self.renderer, Kind::ScanLine | Kind::Radiosity) {
+            let message = "--light is of two-way ray tracing only";
+            return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        }
+        let word = match self.renderer {
+            Kind::RayTracing | Kind::TwoWay => return Ok(()),
+            Kind::ScanLine => "scan line",
+            Kind::Radiosity => "radiosity",
+        };
+        match given.iter().find(|(_, given)| *given) {
+            Some((name, _)) => {
+                let message = format!("{word} has no {name}: it takes all samples at once");
+                Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Makes something on as many threads as are asked for.
+fn in_pool<T: Send>(arguments: &Arguments, make: impl FnOnce() -> Result<T, RenderError> + Send) -> Result<T, Failure> {
+    let threads = arguments.threads.map_or(0, |n| n.get());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
+    Ok(pool.install(make)?)
+}
+
+/// A path with something behind its name.
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+/// The size of the picture, when the command line gives one side or both.
+fn size(width: u32, height: u32, new_width: Option<u32>, new_height: Option<u32>) -> (u32, u32) {
+    let scaled = |side: u32, new: u32, old: u32| {
+        (f64::from(side) * f64::from(new) / f64::from(old)).round().clamp(1.0, f64::from(u32::MAX)) as u32
+    };
+    match (new_width, new_height) {
+        (None, None) => (width, height),
+        (Some(w), None) => (w, scaled(height, w, width)),
+        (None, Some(h)) => (scaled(width, h, height), h),
+        (Some(w), Some(h)) => (w, h),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_side_of_the_picture_takes_the_other_with_it() {
+        assert_eq!(size(640, 480, None, None), (640, 480));
+        assert_eq!(size(640, 480, Some(320), None), (320, 240));
+        assert_eq!(size(640, 480, None, Some(1)), (1, 1));
+        assert_eq!(size(640, 480, Some(10), Some(20)), (10, 20));
+    }
+}

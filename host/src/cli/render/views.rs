@@ -1,0 +1,183 @@
+//! Views that are rendered one after the other, each written and reported on.
+
+use super::saved::Saved;
+use super::{Arguments, Kind};
+use crate::cli::interrupts::{self, Keeping};
+use crate::cli::{Exit, Failure, progress};
+use crate::picture::Picture;
+use crate::render::radiosity::Report;
+use crate::render::ray_tracing::Checkpoints;
+use crate::render::{Film, Rendering};
+use crate::scene::{Prepared, View};
+use files::Destination;
+use serde_json::Value;
+use std::path::Path;
+use std::time::Instant;
+
+/// Renders a view: on a film that was begun before, if there is one, and keeping it from time to time.
+pub(super) type Render<'a> = dyn FnMut(&View, Option<Film>, Option<Checkpoints<'_>>) -> Result<Rendering, Failure> + 'a;
+
+/// Views of a scene, and their files.
+pub(super) struct Views<'a> {
+    pub(super) arguments: &'a Arguments,
+    pub(super) views: &'a [View],
+    /// The files of each view.
+    pub(super) outputs: &'a [Vec<Destination>],
+    pub(super) prepared: &'a Prepared,
+    /// When the work began.
+    pub(super) start: Instant,
+    /// What radiosity took.
+    pub(super) radiosity: Option<Report>,
+    /// Where films are kept, and what was there.
+    pub(super) saved: Option<Saved<'a>>,
+    /// Whether all of a picture is there before it has all its samples.
+    pub(super) comes_bit_by_bit: bool,
+}
+
+impl Views<'_> {
+    /// Renders the views, writes them and reports on them.
+    ///
+    /// # Errors
+    /// [`Failure`], also for a picture that was interrupted, or has pixels that miss the error that was asked for.
+    pub(super) fn render(mut self, render: &mut Render<'_>) -> Result<(), Failure> {
+        let mut reports = Vec::new();
+        let ended = self.render_all(render, &mut reports);
+        match self.arguments.views {
+            _ if !self.arguments.json || reports.is_empty() => {}
+            Some(_) => say!("{}", serde_json::to_string_pretty(&reports)?),
+            None => say!("{}", serde_json::to_string_pretty(&reports.pop())?),
+        }
+        ended
+    }
+
+    fn render_all(&mut self, render: &mut Render<'_>, reports: &mut Vec<Value>) -> Result<(), Failure> {
+        let build_seconds = self.start.elapsed().as_secs_f64();
+        let mut missing: f64 = 0.0;
+        for (number, (view, outputs)) in self.views.iter().zip(self.outputs).enumerate() {
+            if self.saved.as_ref().is_some_and(|saved| saved.has_finished(number, outputs)) {
+                continue;
+            }
+            let keeping = self.comes_bit_by_bit.then(Keeping::begin);
+            let film = self.saved.as_mut().and_then(|saved| saved.take(number));
+            let saved = self.saved.as_ref();
+            let mut keep = |film: &Film| saved.map_or(Ok(()), |saved| saved.write(number, film));
+            let checkpoints = saved.map(|saved| Checkpoints { every: saved.every, keep: &mut keep });
+            let rendering = render(view, film, checkpoints)?;
+            let [least, most] = rendering.film.samples();
+            let is_whole = least > 0;
+            let written = if is_whole { self.write(outputs, &rendering) } else { Ok(()) };
+            // The state comes after the picture, and does not depend on it.
+            let is_followed = rendering.complete && number + 1 < self.views.len();
+            let kept = saved.map_or(Ok(()), |saved| match is_followed {
+                true => saved.write_next(number + 1, &rendering.film),
+                false => saved.write(number, &rendering.film),
+            });
+            drop(keeping);
+            progress::clear();
+            written?;
+            if is_whole {
+                let outputs: Vec<&Path> = outputs.iter().map(Destination::path).collect();
+                match self.arguments.json {
+                    true => reports.push(self.json(&outputs, &rendering, build_seconds)),
+                    false => self.report(&outputs, &rendering, build_seconds),
+                }
+            }
+            kept?;
+            let failed = |exit, message: String| Err(Failure::new(exit, anyhow::anyhow!(message)));
+            match (is_whole, rendering.complete) {
+                (true, true) => {}
+                (true, false) => {
+                    let message = format!("interrupted; pixels have {least} to {most} samples, which are kept");
+                    return failed(Exit::Interrupted, message);
+                }
+                (false, false) => {
+                    let message = "interrupted before every pixel had a sample; no picture is written";
+                    return failed(Exit::Interrupted, message.into());
+                }
+                (false, true) => {
+                    let message = "time ran out before every pixel had a sample; no picture is written";
+                    return failed(Exit::Missed, message.into());
+                }
+            }
+            interrupts::say_kept("pictures of finished views are written");
+            missing = missing.max(self.arguments.error.map_or(0.0, |target| rendering.film.missing(target)));
+        }
+        match self.arguments.error {
+            Some(target) if missing > 0.0 => {
+                let message = format!(
+                    "{:.2}% of the pixels have a relative error above {target}; the picture is written all the same",
+                    100.0 * missing
+                );
+                Err(Failure::new(Exit::Missed, anyhow::anyhow!(message)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn write(&self, outputs: &[Destination], rendering: &Rendering) -> Result<(), Failure> {
+        let write = |file: &Destination| match self.arguments.layers && Picture::is_exr(file.path()) {
+            true => rendering.film.write_layers(file, self.prepared),
+            false => rendering.picture.write(file),
+        };
+        // One that fails is no reason not to write the others.
+        let written: Vec<_> = outputs.iter().map(write).collect();
+        Ok(written.into_iter().collect::<Result<_, _>>()?)
+    }
+
+    fn json(&self, outputs: &[&Path], rendering: &Rendering, build_seconds: f64) -> serde_json::Value {
+        let picture = &rendering.picture;
+        serde_json::json!({
+            "files": outputs,
+            "width": picture.width(),
+            "height": picture.height(),
+            "samples": rendering.film.samples(),
+            "standard_error": Some(rendering.film.standard_error()).filter(|error| error.is_finite()),
+            "seed": self.prepared.settings.seed,
+            "triangles": self.prepared.triangles.len(),
+            "build_seconds": build_seconds,
+            "render_seconds": rendering.seconds,
+            "threads": rendering.threads,
+            "rays": rendering.rays,
+            "caught_light": rendering.balance,
+            "spans": rendering.spans,
+            "radiosity": self.radiosity,
+            "complete": rendering.complete,
+            "pixels_over_error": self.arguments.error.map(|target| rendering.film.missing(target)),
+        })
+    }
+
+    fn report(&self, outputs: &[&Path], rendering: &Rendering, build_seconds: f64) {
+        let picture = &rendering.picture;
+        let [least, most] = rendering.film.samples();
+        let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
+        say!(
+            "{}: {} x {} pixels, {} to {} samples each; standard error of luminance {:.2e}",
+            names.join(", "),
+            picture.width(),
+            picture.height(),
+            least,
+            most,
+            rendering.film.standard_error()
+        );
+        say!("{} triangles, built in {build_seconds:.3} s", self.prepared.triangles.len());
+        if let Some(balance) = &rendering.balance {
+            say!("{balance}");
+        }
+        self.radiosity.iter().flat_map(Report::lines).for_each(|line| say!("{line}"));
+        let Rendering { rays, spans, seconds, threads, .. } = rendering;
+        if matches!(self.arguments.renderer, Kind::ScanLine | Kind::Radiosity) {
+            let (all, shadows) = (spans.surfaces, spans.shadows);
+            say!("{all} spans of surfaces, {shadows} of shadow polygons in {seconds:.3} s on {threads} threads");
+            return;
+        }
+        say!(
+            "{} rays (primary {}, shadow {}, reflected {}; {} spared) in {seconds:.3} s on {threads} threads: {:.2} million a second",
+            rays.total(),
+            rays.primary,
+            rays.shadow,
+            rays.reflected,
+            rays.spared,
+            rendering.mega_rays_per_second()
+        );
+    }
+}

@@ -1,0 +1,221 @@
+//! Exposure of a film: passes over all pixels, each of which adds samples, that can be stopped and taken up again anywhere.
+
+use super::tracer::{Tracer, Work};
+use super::two_way::{Balance, CaughtLight};
+use super::{Eye, Log, RayTracer};
+use crate::render::film::{ByClass, Film, SHARING, Tally};
+use crate::render::{Order, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch};
+use crate::scene::View;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Samples of the first pass, where errors or the clock decide about more.
+const FIRST_PASS: u32 = 8;
+
+/// Keeps a film from time to time while samples are added.
+pub struct Checkpoints<'a> {
+    /// Time from one to the next.
+    pub every: Duration,
+    /// Keeps the film as it is. What goes wrong is told of, and the work goes on.
+    pub keep: &'a mut dyn FnMut(&Film) -> Result<(), StateError>,
+}
+
+/// What an exposure took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exposed {
+    /// How many rays were traced.
+    pub rays: RayCounts,
+    /// What became of the light of lamps that was followed first, if any was.
+    pub balance: Option<Balance>,
+    /// Whether it was not stopped from outside.
+    pub complete: bool,
+    /// Wall-clock time, seconds.
+    pub seconds: f64,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+impl RayTracer<'_> {
+    /// Adds samples to a film until each pixel has what the order asks for.
+    ///
+    /// The film may hold samples of the same order already, as after an interruption, also one in the middle of a pass: the
+    /// same samples are then added as if there had been none.
+    ///
+    /// - `checkpoints`: keeps the film while it is exposed.
+    ///
+    /// # Errors
+    /// [`RenderError`].
+    pub fn expose(
+        &self,
+        film: &mut Film,
+        view: &View,
+        order: &Order,
+        watch: &Watch<'_>,
+        mut checkpoints: Option<Checkpoints<'_>>,
+    ) -> Result<Exposed, RenderError> {
+        let start = Instant::now();
+        let eye = self.eye(view, order)?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
+        let is_late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
+        let next = |checkpoints: &Option<Checkpoints<'_>>| checkpoints.as_ref().map(|c| Instant::now() + c.every);
+        let mut due = next(&checkpoints);
+        let mut adaptive = film.adaptive(order.target);
+        let passes = self.passes(order);
+        let all_rows = passes.len() as u64 * u64::from(order.height);
+        let mut rays = RayCounts::default();
+        let mut balance = None;
+        let mut is_finished = true;
+        'passes: for (number, samples) in passes.iter().enumerate() {
+            if adaptive.as_ref().is_some_and(|adaptive| *samples <= adaptive.passed) {
+                continue;
+            }
+            if let Some(adaptive) = &mut adaptive {
+                adaptive.aim(film, *samples, if self.two_way.is_some() { SHARING } else { u32::MAX });
+            }
+            let goal = |pixel: usize| match &adaptive {
+                Some(adaptive) => adaptive.goals[pixel].min(order.samples),
+                None => *samples,
+            };
+            let is_needed = film.tallies().iter().enumerate().any(|(pixel, tally)| tally.count < goal(pixel));
+            let caught = match &self.two_way {
+                Some(two_way) if is_needed => {
+                    (watch.stage)("while following light from lamps");
+                    let pass = (samples - 1) / SHARING;
+                    let caught = pool.install(|| two_way.caught(&self.world, pass, watch));
+                    if caught.is_none() {
+                        is_finished = false;
+                        break;
+                    }
+                    (watch.stage)("while rendering");
+                    caught
+                }
+                _ => None,
+            };
+            balance = balance.or(caught.as_ref().map(CaughtLight::balance));
+            let tracer = self.tracer(caught.as_ref(), &eye);
+            loop {
+                let done = AtomicU64::new(number as u64 * u64::from(order.height));
+                let pauses = || {
+                    let now = Instant::now();
+                    watch.is_cancelled() || due.is_some_and(|due| now >= due) || is_late()
+                };
+                let row = |(y, (row, mut classes)): (usize, (&mut [Tally], Option<&mut [ByClass]>))| {
+                    let mut work = Work::default();
+                    for (x, tally) in row.iter_mut().enumerate() {
+                        let goal = goal(y * order.width as usize + x);
+                        if tally.count < goal {
+                            let classes = classes.as_mut().map(|row| &mut row[x]);
+                            let pixel = [x as u32, y as u32];
+                            if pauses()
+                                || !self.sample_to(
+                                    goal,
+                                    (&tracer, &eye, order),
+                                    pixel,
+                                    (tally, classes),
+                                    watch,
+                                    &mut work,
+                                )
+                            {
+                                return (work.counts, false);
+                            }
+                        }
+                    }
+                    (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all_rows);
+                    (work.counts, true)
+                };
+                let rows: Vec<(RayCounts, bool)> =
+                    pool.install(|| film.rows_mut().into_par_iter().enumerate().map(row).collect());
+                rays = rows.iter().fold(rays, |sum, (counts, _)| sum + *counts);
+                if rows.iter().all(|(_, is_whole)| *is_whole) {
+                    break;
+                }
+                if watch.is_cancelled() || is_late() {
+                    is_finished = false;
+                    break 'passes;
+                }
+                if let Some(checkpoints) = &mut checkpoints {
+                    film.set_adaptive(adaptive.clone());
+                    if let Err(error) = (checkpoints.keep)(film) {
+                        tracing::warn!("{error}");
+                    }
+                }
+                due = next(&checkpoints);
+            }
+            if let Some(adaptive) = &mut adaptive {
+                adaptive.pass(*samples);
+            }
+            if watch.is_cancelled() || is_late() {
+                is_finished = number + 1 == passes.len();
+                break;
+            }
+        }
+        film.set_adaptive(adaptive);
+        Ok(Exposed {
+            rays,
+            balance,
+            // Time that ran out as it was asked for is no interruption.
+            complete: is_finished || (order.seconds.is_some() && !watch.is_cancelled()),
+            seconds: start.elapsed().as_secs_f64(),
+            threads: pool.current_num_threads(),
+        })
+    }
+
+    /// Makes a picture of a film to which samples are added, as [`RayTracer::expose`] does it.
+    ///
+    /// # Errors
+    /// [`RenderError`].
+    pub fn go_on(
+        &self,
+        mut film: Film,
+        view: &View,
+        order: &Order,
+        watch: &Watch<'_>,
+        checkpoints: Option<Checkpoints<'_>>,
+    ) -> Result<Rendering, RenderError> {
+        (watch.stage)("while rendering");
+        let Exposed { rays, balance, complete, seconds, threads } =
+            self.expose(&mut film, view, order, watch, checkpoints)?;
+        let (picture, spans) = (film.picture()?, SpanCounts::default());
+        Ok(Rendering { picture, film, complete, rays, spans, balance, seconds, threads })
+    }
+
+    /// How many samples pixels have after each pass: one pass, unless errors or the clock decide, or light is caught anew.
+    fn passes(&self, order: &Order) -> Vec<u32> {
+        let mut passes = vec![order.samples];
+        if order.target.is_some() || order.seconds.is_some() {
+            let doubled = std::iter::successors(Some(FIRST_PASS), |samples| samples.checked_mul(2));
+            passes.extend(doubled.take_while(|samples| *samples < order.samples));
+        }
+        if self.two_way.is_some() {
+            passes.extend((SHARING..order.samples).step_by(SHARING as usize));
+        }
+        passes.sort_unstable();
+        passes.dedup();
+        passes
+    }
+
+    /// Adds samples to a pixel until it has `samples`; whether that was not cancelled.
+    fn sample_to(
+        &self,
+        samples: u32,
+        (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
+        pixel: [u32; 2],
+        (tally, mut sums): (&mut Tally, Option<&mut ByClass>),
+        watch: &Watch<'_>,
+        work: &mut Work,
+    ) -> bool {
+        while tally.count < samples && !watch.is_cancelled() {
+            let index = tally.count;
+            let (sample, classes, _) = self.sample((tracer, eye, order), pixel, index, work, Log::SILENT);
+            tally.add(&sample);
+            if let Some(sums) = &mut sums {
+                sums.iter_mut()
+                    .zip(classes)
+                    .filter(|(_, light)| light.is_finite())
+                    .for_each(|(sum, light)| *sum += light);
+            }
+        }
+        tally.count >= samples
+    }
+}

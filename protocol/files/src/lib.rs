@@ -1,0 +1,13 @@
+//! How both programs write files: whole or not at all.
+//!
+//! A file is written under no name, or another name in the same folder, synchronised, and only then given its own name.
+//! Whoever reads the name finds the older file or the whole new one, whatever happens in between.
+
+mod error;
+mod draft;
+mod destination;
+mod growing;
+
+pub use destination::{Destination, Folder, Writer};
+pub use error::{Problem, WriteError};
+pub use growing::Growing;
