@@ -96,6 +96,7 @@ failures! {
     crate::octree::OctreeError => Failed,
     crate::octree::FileError => Failed,
     PlotError => Failed,
+    crate::study::KeptError => Usage,
     RenderError => Failed,
     SceneError => Scene,
     ScriptError => Scene,

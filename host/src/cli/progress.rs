@@ -69,5 +69,5 @@ pub(super) fn current() -> &'static str {
 
 /// One who watches work for the person at the terminal, and stops it after a signal.
 pub(super) fn watch() -> Watch<'static> {
-    Watch { cancelled: interrupts::flag(), progress: &update, stage: &stage }
+    Watch { cancelled: interrupts::flag(), progress: &update, stage: &stage, memo: None }
 }

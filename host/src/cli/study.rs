@@ -1,10 +1,12 @@
 //! `peris study`: error against run time.
 
 use super::source::stem;
-use super::{Definitions, Failure, Row, SCRIPT_HELP, load, progress, study_render};
-use crate::study::{KNOBS, KnobRow, illumination};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load, progress, study_render};
+use crate::study::{KNOBS, Kept, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use files::Folder;
+use files::{Destination, Folder};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -37,6 +39,9 @@ struct Arguments {
     /// Threads [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
+    /// Goes on with a study that was interrupted: what it has done is kept in the folder, in a file that ends in .state
+    #[arg(long)]
+    resume: bool,
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
@@ -53,9 +58,26 @@ struct IlluminationArguments {
     /// Folder for the table (.csv) and the plots (.svg and .png); it is made if need be
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     output: PathBuf,
+    /// Goes on with a study that was interrupted: what it has done is kept in the folder, in a file that ends in .state
+    #[arg(long)]
+    resume: bool,
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
+}
+
+/// What was done of a study before, if that is asked for; and where it is kept.
+///
+/// - `name`: of the study and its files. `study`: whatever it depends on, in words.
+pub(super) fn kept<T: Clone + Serialize + DeserializeOwned>(
+    folder: &Folder,
+    name: &str,
+    study: &str,
+    resume: bool,
+) -> Result<Kept<T>, Failure> {
+    let destination = Destination::of(folder.path().join(format!("{name}.state")))?;
+    interrupts::say_kept(format!("what is finished is kept in {}; --resume goes on", destination.path().display()));
+    Ok(if resume { Kept::resume(destination, study)? } else { Kept::begin(destination, study) })
 }
 
 fn arguments(command: Command) -> Command {
@@ -89,7 +111,8 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
 fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
     let folder = Folder::make(&arguments.output)?;
     progress::stage("while studying");
-    let study = illumination(&arguments.roughness, &progress::watch())?;
+    let kept = kept(&folder, ILLUMINATION, &format!("{:?}", arguments.roughness), arguments.resume)?;
+    let study = illumination(&arguments.roughness, &progress::watch(), &kept)?;
     progress::clear();
     let table = study.csv();
     let csv = folder.write_or_keep(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
@@ -97,6 +120,7 @@ fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
     for (roughness, plot) in study.plots() {
         written.extend(plot.write(&folder, &format!("{ILLUMINATION}-{roughness}"))?);
     }
+    kept.finish();
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&study)?);
     } else {
@@ -116,13 +140,16 @@ fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
     options.settings = arguments.settings.unwrap_or(options.settings);
     options.threads = arguments.threads;
     progress::stage("while studying");
-    let study = (knob.run)(&scene, &options, &progress::watch())?;
-    progress::clear();
     let script = stem(&arguments.script);
     let name = format!("{script}-{}", knob.name);
+    let words = format!("{name} {options:?} {}", serde_json::to_string(&scene)?);
+    let kept = kept(&folder, &name, &words, arguments.resume)?;
+    let study = (knob.run)(&scene, &options, &progress::watch(), &kept)?;
+    progress::clear();
     let table = study.csv();
     let csv = folder.write_or_keep(&format!("{name}.csv"), |file| file.write_all(table.as_bytes()))?;
     let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&folder, &name)?;
+    kept.finish();
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&study)?);
     } else {

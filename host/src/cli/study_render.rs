@@ -1,7 +1,8 @@
 //! `peris study render`: error against run time of every knob of every renderer.
 
 use super::source::stem;
-use super::{Definitions, Exit, Failure, SCRIPT_HELP, load, progress};
+use super::study::kept;
+use super::{Definitions, Failure, SCRIPT_HELP, load, progress};
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, Technique, renderers};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -40,6 +41,9 @@ struct Arguments {
     /// Threads [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
+    /// Goes on with a study that was interrupted: what it has done is kept in the folder, in a file that ends in .state
+    #[arg(long)]
+    resume: bool,
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
@@ -57,7 +61,7 @@ pub(super) fn command() -> Command {
         .after_help(format!("Knobs:{knobs}\n\n{}", super::exit::table()))
 }
 
-/// Runs it; what was finished before an interruption is kept.
+/// Runs it.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let arguments = Arguments::from_arg_matches(matches)?;
     let folder = Folder::make(&arguments.output)?;
@@ -75,9 +79,11 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
         .filter(|name| arguments.knob.is_empty() || arguments.knob.iter().any(|knob| knob == name));
     let (techniques, names): (Vec<Technique>, Vec<&str>) = (techniques.collect(), names.collect());
     progress::stage("while studying");
-    let study = renderers(&scene, &techniques, &names, &options, &progress::watch())?;
-    progress::clear();
     let script = stem(&arguments.script);
+    let words = format!("{techniques:?} {names:?} {options:?} {}", serde_json::to_string(&scene)?);
+    let kept = kept(&folder, &format!("{script}-{NAME}"), &words, arguments.resume)?;
+    let study = renderers(&scene, &techniques, &names, &options, &progress::watch(), &kept)?;
+    progress::clear();
     let table = study.csv();
     let csv = folder.write_or_keep(&format!("{script}-{NAME}.csv"), |file| file.write_all(table.as_bytes()))?;
     let mut written = vec![csv];
@@ -91,8 +97,6 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
         let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
         say!("{}", names.join(", "));
     }
-    match study.complete {
-        true => Ok(()),
-        false => Err(Failure::new(Exit::Interrupted, anyhow::anyhow!("interrupted; what was finished is kept"))),
-    }
+    kept.finish();
+    Ok(())
 }

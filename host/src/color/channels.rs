@@ -1,5 +1,6 @@
 //! The numbers that one ray carries side by side.
 
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub};
 
 /// How many numbers a ray carries: wavelengths, or three bands and unused ones.
@@ -8,7 +9,7 @@ pub const LANES: usize = 8;
 /// A quantity at the wavelengths, or in the bands, that a ray carries.
 ///
 /// Which wavelengths they are, [`super::Wavelengths`] tells. Lanes that are not used are 0 in every light.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Channels(pub [f64; LANES]);
 
 impl Channels {

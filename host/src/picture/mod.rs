@@ -15,6 +15,7 @@ pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip
 
 use crate::memory::prefer_large_pages;
 use protocol::raster::srgb_from_linear;
+use serde::{Deserialize, Serialize};
 
 /// Most pixels that a picture may have (16384 x 16384).
 pub const MAX_PIXELS: u64 = 1 << 28;
@@ -24,7 +25,7 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 /// Row 0 is the *top* row. The radiance of a pixel already includes the background behind and beside the objects, unless
 /// the picture is a *matte*: then only covered samples have radiance, which is thus premultiplied by the coverage, as
 /// [`compose`] needs it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
     width: u32,
     height: u32,
@@ -32,7 +33,7 @@ pub struct Picture {
 }
 
 /// What one pixel holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Pixel {
     /// Mean radiance over the pixel, W/(m² sr) in the red, green and blue band.

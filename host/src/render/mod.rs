@@ -6,6 +6,7 @@ mod extreme_tests;
 mod eye;
 mod film;
 mod layers;
+mod memo;
 mod ready;
 pub mod radiosity;
 pub mod ray_tracing;
@@ -14,6 +15,7 @@ pub mod tiles;
 mod state;
 
 pub use film::{ByClass, Class, Film, LUMINANCE, Sample, Tally};
+pub use memo::Memo;
 pub use state::{Fingerprint, State, StateError};
 
 use crate::illumination::material::MaterialError;
@@ -91,6 +93,8 @@ pub struct Watch<'a> {
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
     /// Called when another stage of the work begins, with words such as `while rendering`.
     pub stage: &'a (dyn Fn(&'static str) + Sync),
+    /// Where results of long computations are kept, if anywhere.
+    pub memo: Option<&'a Memo>,
 }
 
 /// Is never set.
@@ -98,7 +102,7 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Watch<'_> {
     /// Nobody watches.
-    pub const NOBODY: Watch<'static> = Watch { cancelled: &NEVER, progress: &|_, _| {}, stage: &|_| {} };
+    pub const NOBODY: Watch<'static> = Watch { cancelled: &NEVER, progress: &|_, _| {}, stage: &|_| {}, memo: None };
 
     /// One who may stop what another watches, and sees nothing of it.
     pub fn quiet(&self) -> Watch<'_> {

@@ -109,6 +109,11 @@ impl Fingerprint {
         Fingerprint { order: crc32fast::hash(format!("{} {way}", self.order).as_bytes()), ..self }
     }
 
+    /// Of the scene alone, and what else is told: the size of the picture, its seed and background are not in it.
+    pub fn of_scene(&self, more: &str) -> u32 {
+        crc32fast::hash(format!("{} {} {more}", self.scene, self.geometry).as_bytes())
+    }
+
     /// What of it differs from another.
     fn difference(&self, other: &Fingerprint) -> Option<&'static str> {
         let parts = [

@@ -1,6 +1,6 @@
 //! The knob of subdivision: how many steps bring a polyhedron how near to its limit surface.
 
-use super::{Knob, Options, Study, StudyError, Trial, sweep};
+use super::{Kept, Knob, Options, Study, StudyError, Trial, Tried, sweep};
 use crate::mesh::Mesh;
 use crate::octree::{Sorted, hausdorff};
 use crate::render::Watch;
@@ -26,7 +26,12 @@ struct Steps {
 }
 
 /// Makes the study of a scene.
-pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+pub(super) fn study(
+    scene: &Scene,
+    options: &Options,
+    watch: &Watch<'_>,
+    kept: &Kept<Tried>,
+) -> Result<Study, StudyError> {
     let mut scene = scene.clone();
     scene.settings.tolerance = Some(Prepared::new(&scene)?.bounds.diagonal() * COARSE);
     scene.objects.iter_mut().for_each(|object| object.tolerance = None);
@@ -40,7 +45,7 @@ pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Resu
     if polyhedra.is_empty() {
         return Err(StudyError::Nothing("no object of the scene is a polyhedron"));
     }
-    sweep(&Steps { polyhedra, most: options.settings.clamp(1, MOST_STEPS) }, watch)
+    sweep(&Steps { polyhedra, most: options.settings.clamp(1, MOST_STEPS) }, watch, kept)
 }
 
 impl Knob for Steps {

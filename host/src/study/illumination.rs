@@ -2,14 +2,14 @@
 //!
 //! It needs no scene. It walks the table of the family and knows no member by name.
 
-use super::StudyError;
 use super::plot::{Axis, Plot, Point, Series};
 use super::sweep::short;
+use super::{Kept, StudyError};
 use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual};
 use crate::illumination::distribution::{Distribution, FAMILY};
 use crate::numeric::sampling::{Stream, even};
 use crate::render::Watch;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -35,7 +35,7 @@ pub struct IlluminationStudy {
 }
 
 /// One member of the family at one roughness.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IlluminationRow {
     /// The member.
     pub name: String,
@@ -55,11 +55,15 @@ pub struct IlluminationRow {
 
 /// Measures every member of the family.
 ///
-/// - `roughness`: the values of m to try, 1e-8..=1000.
+/// - `roughness`: the values of m to try, 1e-8..=1000. `kept`: rows that were made before.
 ///
 /// # Errors
 /// [`StudyError::Distribution`] for a roughness that is not provided for, or [`StudyError::Interrupted`].
-pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<IlluminationStudy, StudyError> {
+pub fn illumination(
+    roughness: &[f64],
+    watch: &Watch<'_>,
+    kept: &Kept<IlluminationRow>,
+) -> Result<IlluminationStudy, StudyError> {
     let steps = (roughness.len() * FAMILY.len()) as u64;
     let mut rows = Vec::new();
     for &m in roughness {
@@ -67,7 +71,7 @@ pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<Illumination
             if watch.cancelled.load(Ordering::Relaxed) {
                 return Err(StudyError::Interrupted);
             }
-            rows.push(row(member.name, m, (member.make)(m)?.as_ref()));
+            rows.push(kept.next(|| Ok(row(member.name, m, (member.make)(m)?.as_ref())))?);
             (watch.progress)(rows.len() as u64, steps);
         }
     }

@@ -1,9 +1,10 @@
 //! One knob through all its settings: run time, errors, table, CSV and plot.
 
 use super::StudyError;
+use super::kept::Kept;
 use super::plot::{Axis, Plot, Point, Series};
 use crate::render::Watch;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
 /// A setting is tried again, for its shortest time, while it took less than this many seconds in all.
@@ -65,7 +66,7 @@ pub struct Study {
 }
 
 /// One setting of a study.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The setting.
     pub setting: f64,
@@ -77,11 +78,20 @@ pub struct Row {
     pub counts: Vec<f64>,
 }
 
+/// A setting that was tried.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Tried {
+    row: Row,
+    count_names: Vec<String>,
+}
+
 /// Sweeps a knob.
+///
+/// - `kept`: rows that were made before.
 ///
 /// # Errors
 /// The first [`StudyError`], or [`StudyError::Interrupted`].
-pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> {
+pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>, kept: &Kept<Tried>) -> Result<Study, StudyError> {
     let (settings, finest) = knob.settings();
     let steps = settings.len() as u64 + 1;
     let quiet = watch.quiet();
@@ -93,8 +103,7 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
     // The first run warms the machine; its time is not kept.
     let reference = run(finest)?;
     (watch.progress)(1, steps);
-    let mut count_names = Vec::new();
-    for (index, &setting) in settings.iter().enumerate() {
+    let tried = |setting| {
         let mut trial = run(setting)?;
         let mut spent = trial.seconds;
         for _ in 1..MOST_TRIALS {
@@ -109,9 +118,15 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
             }
         }
         let errors = knob.errors(&trial, &reference)?;
-        count_names = trial.counts.iter().map(|c| c.0.to_owned()).collect();
+        let count_names = trial.counts.iter().map(|c| c.0.to_owned()).collect();
         let counts = trial.counts.iter().map(|c| c.1).collect();
-        rows.push(Row { setting, seconds: trial.seconds, errors, counts });
+        Ok(Tried { row: Row { setting, seconds: trial.seconds, errors, counts }, count_names })
+    };
+    let mut count_names = Vec::new();
+    for (index, &setting) in settings.iter().enumerate() {
+        let tried = kept.next(|| tried(setting))?;
+        count_names = tried.count_names;
+        rows.push(tried.row);
         (watch.progress)(index as u64 + 2, steps);
     }
     Ok(Study {

@@ -7,15 +7,15 @@ mod views;
 use super::source::stem;
 use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load, progress, warn};
 use crate::picture::Picture;
-use crate::plan::{Plan, Stage};
+use crate::plan::Plan;
 use crate::render::radiosity::Radiosity;
 use crate::render::ray_tracing::{RayTracer, Shelf};
 use crate::render::scan_line::ScanLine;
-use crate::render::{Film, Order, RenderError, Renderer};
+use crate::render::{Film, Fingerprint, Order, RenderError, Renderer, Watch};
 use crate::scene::{Camera, MAX_SAMPLES, Prepared, View};
 use clap::{Args, FromArgMatches, ValueEnum};
 use files::Destination;
-use saved::Saved;
+use saved::{Intermediate, Saved};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -143,15 +143,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let prepared = Prepared::new(&scene)?;
     let views = arguments.views_of(&prepared)?;
     let plan = Plan::of_views(&prepared, &views, arguments.everything);
-    let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
-    let is_followed = plan.needs(Stage::CaughtLight);
-    let light = match (&arguments.light, &arguments.resume) {
-        (Some(path), _) => Some((path.clone(), true)),
-        // Light that is followed for a long time has a state of its own.
-        (None, Some(path)) if is_followed => Some((with_ending(path, ".light"), false)),
-        _ => None,
-    };
-    let shelf = light.as_ref().map(|(path, lasts)| Shelf::new(path, &scene, &prepared, every, *lasts)).transpose()?;
     let is_open = arguments.error.is_some() || arguments.seconds.is_some();
     let most = if is_open { MAX_SAMPLES } else { prepared.settings.samples };
     let order = Order {
@@ -162,7 +153,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         matte: arguments.matte,
         ..Order::of(&prepared.settings)
     };
-    let watch = progress::watch();
+    let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
+    let intermediate = Intermediate::of(arguments, &plan);
+    let keeps = |(path, lasts): (&Path, bool)| Shelf::new(path, &scene, &prepared, every, lasts);
+    let shelf = intermediate.light(arguments).map(keeps).transpose()?;
+    let fingerprint = Fingerprint::of(&scene, &prepared, &order);
+    let memo = intermediate.memo(arguments, &fingerprint)?;
+    let watch = Watch { memo: memo.as_ref(), ..progress::watch() };
     let mut all = Views {
         arguments,
         views: &views,
@@ -181,16 +178,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             all.radiosity = Some(solution.report);
             let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
             scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by radiosity, {what}")));
-            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
+            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))?;
         }
         Kind::ScanLine => {
             let scan_line = ScanLine::new(&prepared, &plan)?;
             scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by scan line, {what}")));
-            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
+            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))?;
         }
         Kind::RayTracing | Kind::TwoWay => {
             if let Some(state) = &state {
-                all.saved = Some(Saved::read(arguments, every, state, &scene, &prepared, &order)?);
+                all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
             }
             let tracer = in_pool(arguments, || RayTracer::watched(&prepared, &plan, shelf.as_ref(), &watch))?;
             all.radiosity = tracer.radiosity().map(|solution| solution.report);
@@ -199,18 +196,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
                 return pixel::explain(arguments, &tracer, &views[0], &order, pixel);
             }
             all.comes_bit_by_bit = true;
-            let ended = all.render(&mut |view, film, checkpoints| {
+            all.render(&mut |view, film, checkpoints| {
                 let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
                 let film = if arguments.layers && state.is_none() { film.with_classes() } else { film };
                 Ok(tracer.go_on(film, view, &order, &watch, checkpoints)?)
-            });
-            if let (Ok(()), Some((path, false))) = (&ended, light) {
-                // It is of no use any more; that it cannot be removed harms nobody.
-                let _ = std::fs::remove_file(path);
-            }
-            ended
+            })?;
         }
     }
+    intermediate.remove();
+    Ok(())
 }
 
 impl Arguments {
@@ -254,7 +248,8 @@ impl Arguments {
         let given = [
             ("--error", self.error.is_some()),
             ("--seconds", self.seconds.is_some()),
-            ("--resume", self.resume.is_some()),
+            // The light that surfaces send each other takes long, and can be gone on with.
+            ("--resume", self.resume.is_some() && self.renderer != Kind::Radiosity),
             ("--pixel", self.pixel.is_some()),
         ];
         if self.light.is_some() && matches!(self.renderer, Kind::ScanLine | Kind::Radiosity) {
@@ -281,13 +276,6 @@ fn in_pool<T: Send>(arguments: &Arguments, make: impl FnOnce() -> Result<T, Rend
     let threads = arguments.threads.map_or(0, |n| n.get());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
     Ok(pool.install(make)?)
-}
-
-/// A path with something behind its name.
-fn with_ending(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(ending);
-    name.into()
 }
 
 /// The size of the picture, when the command line gives one side or both.

@@ -1,10 +1,11 @@
-//! Films in a file, from which an interrupted rendering goes on.
+//! Files from which an interrupted rendering goes on: its film, and beside it what was found before there was one.
 
-use super::Arguments;
+use super::{Arguments, Kind};
 use crate::cli::Failure;
-use crate::render::{Film, Fingerprint, Order, State, StateError};
-use crate::scene::{Prepared, Scene};
+use crate::plan::{Plan, Stage};
+use crate::render::{Film, Fingerprint, Memo, Order, State, StateError};
 use files::Destination;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Where films are kept, and what was found there.
@@ -30,11 +31,9 @@ impl Saved<'_> {
         arguments: &Arguments,
         every: Duration,
         destination: &'a Destination,
-        scene: &Scene,
-        prepared: &Prepared,
+        mut fingerprint: Fingerprint,
         order: &Order,
     ) -> Result<Saved<'a>, Failure> {
-        let mut fingerprint = Fingerprint::of(scene, prepared, order);
         if let Some(views) = arguments.views {
             // Views that are finished get no more samples.
             let Order { samples, target, .. } = order;
@@ -66,5 +65,56 @@ impl Saved<'_> {
     /// Keeps that a view is the next one, and not begun.
     pub(super) fn write_next(&self, number: usize, before: &Film) -> Result<(), StateError> {
         Film::new(before.width(), before.height())?.write_state(self.destination, self.fingerprint, number as u32)
+    }
+}
+
+/// Files beside that of the film, for work that is done before samples are taken and may take long. They are removed when
+/// the rendering is finished.
+pub(super) struct Intermediate {
+    /// Light that was followed from lamps.
+    light: Option<PathBuf>,
+    /// What was found for radiosity.
+    radiosity: Option<PathBuf>,
+}
+
+impl Intermediate {
+    /// Those that a rendering needs.
+    pub(super) fn of(arguments: &Arguments, plan: &Plan) -> Intermediate {
+        let beside = |ending: &str| {
+            let mut name = arguments.resume.as_ref()?.as_os_str().to_owned();
+            name.push(ending);
+            Some(PathBuf::from(name))
+        };
+        let is_traced = matches!(arguments.renderer, Kind::RayTracing | Kind::TwoWay);
+        let is_followed = is_traced && arguments.light.is_none() && plan.needs(Stage::CaughtLight);
+        let is_solved = arguments.renderer == Kind::Radiosity || (is_traced && plan.needs(Stage::Radiosity));
+        Intermediate {
+            light: is_followed.then(|| beside(".light")).flatten(),
+            radiosity: is_solved.then(|| beside(".radiosity")).flatten(),
+        }
+    }
+
+    /// The database for light that is followed, and whether it is to last.
+    pub(super) fn light<'a>(&'a self, arguments: &'a Arguments) -> Option<(&'a Path, bool)> {
+        let lasting = arguments.light.as_deref().map(|path| (path, true));
+        lasting.or_else(|| self.light.as_deref().map(|path| (path, false)))
+    }
+
+    /// What was found for radiosity.
+    ///
+    /// # Errors
+    /// [`StateError`] as [`Failure`].
+    pub(super) fn memo(&self, arguments: &Arguments, fingerprint: &Fingerprint) -> Result<Option<Memo>, Failure> {
+        // What is left out depends on the views.
+        let Arguments { views, turn, everything, renderer, .. } = arguments;
+        let fingerprint = fingerprint.of_scene(&format!("{views:?} {turn:?} {everything} {renderer:?}"));
+        Ok(self.radiosity.as_ref().map(|path| Memo::open(path, fingerprint)).transpose()?)
+    }
+
+    /// Removes them; that one cannot be removed harms nobody.
+    pub(super) fn remove(&self) {
+        [&self.light, &self.radiosity].into_iter().flatten().for_each(|path| {
+            let _ = std::fs::remove_file(path);
+        });
     }
 }

@@ -7,6 +7,7 @@ use crate::color::Channels;
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// How much shorter a ray to a triangle that emits is, so that it does not meet it.
 const SHORT: f64 = 1.0 - 1e-7;
@@ -24,7 +25,7 @@ const MORE: u32 = 4;
 const INWARDS: f64 = 1e-3;
 
 /// What comes from elsewhere than other elements to a point of an element, W/m². In spectra, lanes are means over all combs.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Lit {
     /// Irradiance straight from lights.
     pub(super) direct: Channels,

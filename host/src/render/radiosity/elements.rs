@@ -7,7 +7,7 @@ use crate::color::Channels;
 use crate::illumination::optics::{Optics, Side, Sighting};
 use crate::illumination::texture::Place;
 use glam::DVec3;
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all combs: light that
 /// surfaces send beside what they reflect of lights and of each other, as what two-way ray tracing caught, times their
@@ -38,6 +38,7 @@ pub(super) struct Elements<'a> {
 }
 
 /// What is known of one node.
+#[derive(Serialize, Deserialize)]
 struct Known {
     reflectance: Channels,
     mean: Lit,
@@ -117,11 +118,11 @@ impl<'a> Elements<'a> {
     /// - `corners`: what is known at their corners; of none at first.
     fn learn(&mut self, sight: &Sight<'_>, first: usize, corners: &[Option<[Lit; 3]>]) {
         let nodes = &self.hierarchy.nodes[first..];
-        let of = |(i, node): (usize, &Node)| match node.is_face_cluster() {
+        let of = |i: usize, node: &Node| match node.is_face_cluster() {
             true => self.known_of_faces(sight, (first + i) as u32),
             false => self.known(sight, node, corners.get(i).copied().flatten()),
         };
-        let known: Vec<Known> = nodes.par_iter().enumerate().map(of).collect();
+        let known: Vec<Known> = sight.map(nodes, of);
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
         for (Known { reflectance, mean: Lit { direct, extra }, around }, place) in known.into_iter().zip(first..) {
             self.reflectance.push(reflectance);

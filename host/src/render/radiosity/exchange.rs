@@ -5,6 +5,7 @@
 
 use super::hierarchy::{Amount, Hierarchy, NONE, Node};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Rounds of balancing at the most, and the error of a row that ends them.
 const MOST_ROUNDS: u32 = 100;
@@ -39,7 +40,7 @@ pub(super) struct Looks {
 }
 
 /// Two nodes that exchange light.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Link {
     pub(super) a: u32,
     /// The same for light that a node exchanges with itself.

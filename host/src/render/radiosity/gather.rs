@@ -102,7 +102,7 @@ impl<'g> Gatherer<'g, '_> {
         }
         let (rows, entries) = by_node(nodes.len(), links);
         let apart = self.apart(sent);
-        let of = |(number, corner): (usize, &Corner)| {
+        let of = |number: usize, corner: &Corner| {
             let from = corner.view();
             let (mut found, mut pending) = (Vec::new(), Vec::new());
             let mut at = corner.leaf;
@@ -136,7 +136,7 @@ impl<'g> Gatherer<'g, '_> {
             found.shrink_to_fit();
             found
         };
-        let of = corners.all.par_iter().enumerate().map(of).collect();
+        let of = self.sight.map(&corners.all, of);
         Views { hierarchy: self.hierarchy, corners, of }
     }
 

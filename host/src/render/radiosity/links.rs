@@ -9,7 +9,7 @@ use super::exchange::Link;
 use super::form_factor::{self, kernel};
 use super::hierarchy::{Node, POINTS};
 use super::sight::Sight;
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Error of form factors, as a part of the smaller element.
@@ -23,7 +23,7 @@ const SEEN: f64 = 0.02;
 const MOST_NODES: usize = 3_000_000;
 
 /// A link, and how uncertain it is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Judged {
     pub(super) link: Link,
     /// The error of its exchange, square units.
@@ -33,6 +33,7 @@ pub(super) struct Judged {
 }
 
 /// What is to be done with two nodes.
+#[derive(Serialize, Deserialize)]
 enum Verdict {
     Keep(Judged),
     Drop,
@@ -78,8 +79,8 @@ pub(super) fn refine(
     while !pending.is_empty() {
         let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
         let bound = if may_divide { bound } else { Bound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
-        let judge = |(pair, is_clear): &([u32; 2], bool)| Judge { sight, elements, bound }.judge(*pair, *is_clear);
-        let verdicts: Vec<Verdict> = pending.par_iter().map(judge).collect();
+        let judge = |_, (pair, is_clear): &([u32; 2], bool)| Judge { sight, elements, bound }.judge(*pair, *is_clear);
+        let verdicts: Vec<Verdict> = sight.map(&pending, judge);
         let divided: Vec<u32> = verdicts
             .iter()
             .filter_map(|verdict| match verdict {

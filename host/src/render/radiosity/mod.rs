@@ -124,7 +124,7 @@ impl Radiosity {
         let start = Instant::now();
         let stopped = || watch.is_cancelled();
         let world = World::new(prepared, plan)?;
-        let sight = Sight::new(&world);
+        let sight = Sight::new(&world, watch.memo);
         let shadows = plan.needs(Stage::Shadows);
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);

@@ -6,7 +6,10 @@ use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::cosine_hemisphere;
 use crate::numeric::sequence::Sequence;
+use crate::render::Memo;
 use glam::DVec3;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// Rounding errors, in units of the last place of the largest coordinate, that rays keep clear of.
 const CLEARANCE_ULPS: f64 = 64.0;
@@ -18,6 +21,8 @@ pub(super) struct Sight<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) clearance: f64,
     seed: u64,
+    /// Where what was found is kept, if anywhere.
+    memo: Option<&'a Memo>,
 }
 
 /// What is seen from an element in a direction.
@@ -32,11 +37,20 @@ pub(super) enum Seen {
 }
 
 impl<'a> Sight<'a> {
-    pub(super) fn new(world: &'a World<'a>) -> Sight<'a> {
+    pub(super) fn new(world: &'a World<'a>, memo: Option<&'a Memo>) -> Sight<'a> {
         let prepared = world.appearance.prepared;
         let largest = prepared.vertices.iter().fold(0.0f64, |most, vertex| most.max(vertex.abs().max_element()));
         let clearance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
-        Sight { world, clearance, seed: prepared.settings.seed }
+        Sight { world, clearance, seed: prepared.settings.seed, memo }
+    }
+
+    /// What a function finds of each item, on all threads; see [`Memo::map`].
+    pub(super) fn map<T: Sync, R: Serialize + DeserializeOwned + Send>(
+        &self,
+        items: &[T],
+        f: impl Fn(usize, &T) -> R + Sync,
+    ) -> Vec<R> {
+        Memo::map(self.memo, items, f)
     }
 
     /// The part of light that comes from one point to another, in the mean over what light carries, 0..=1.

@@ -180,7 +180,7 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.3, 0.5, -0.2))]);
     let plan = Plan::new(&room, &room.view());
     let world = World::new(&room, &plan).expect("a world");
-    let sight = Sight::new(&world);
+    let sight = Sight::new(&world, None);
     let inside: Vec<Patch> = patches(&room, &plan, &sight).into_iter().filter(|patch| !patch.outside).collect();
     let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &sight, (None, true), 0.1);
     elements.divide_where_light_varies(&sight, f64::INFINITY, 0.6);

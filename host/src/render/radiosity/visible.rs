@@ -3,11 +3,10 @@
 use super::contact::Contacts;
 use super::elements::{Elements, Exitance};
 use super::exchange::Looks;
-use super::hierarchy::{Hierarchy, NONE, Patch};
+use super::hierarchy::{Hierarchy, NONE, Node, Patch};
 use super::pieces::Pieces;
 use super::sight::{Seen, Sight};
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Directions in which a patch looks around for each of its parts, and at the most.
 const LOOKS: u32 = 16;
@@ -73,8 +72,8 @@ fn dark(
         }
     };
     let patch_of = numbers(sight, &hierarchy.patches);
-    let looked = |number: u32| {
-        let node = &nodes[number as usize];
+    let looked = |number: usize, node: &Node| {
+        let number = number as u32;
         if !node.is_leaf() {
             return Vec::new();
         }
@@ -87,12 +86,12 @@ fn dark(
         seen.dedup();
         seen
     };
-    let seen: Vec<Vec<u32>> = (0..nodes.len() as u32).into_par_iter().map(looked).collect();
+    let seen: Vec<Vec<u32>> = sight.map(nodes, looked);
     let mut joined = Pieces::new(nodes.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().for_each(|other| joined.join(number, *other));
     }
-    joined.alight(|some| some.par_iter().map(|node| is_lit(*node)).collect()).iter().map(|alight| !alight).collect()
+    joined.alight(|some| sight.map(some, |_, node| is_lit(*node))).iter().map(|alight| !alight).collect()
 }
 
 fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
@@ -139,7 +138,7 @@ pub(super) fn seen(
     let patch_of = numbers(sight, &hierarchy.patches);
     let mut place = vec![NONE; hierarchy.nodes.len()];
     (0..).zip(leaves).for_each(|(number, leaf)| place[*leaf as usize] = number);
-    let looked = |(number, leaf): (usize, &u32)| {
+    let looked = |number: usize, leaf: &u32| {
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
         let of = |seen: Seen| match element(hierarchy, &patch_of, seen) {
@@ -152,7 +151,7 @@ pub(super) fn seen(
             .map(of)
             .collect::<Vec<u32>>()
     };
-    let seen: Vec<Vec<u32>> = leaves.par_iter().enumerate().map(looked).collect();
+    let seen: Vec<Vec<u32>> = sight.map(leaves, looked);
     let mut joined = Pieces::new(leaves.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Samples of the first pass, where errors or the clock decide about more.
-const FIRST_PASS: u32 = 8;
+/// Samples after the second pass, which are enough to tell the error of a pixel.
+const FIRST_DOUBLED: u32 = 8;
 
 /// Keeps a film from time to time while samples are added.
 pub struct Checkpoints<'a> {
@@ -180,13 +180,12 @@ impl RayTracer<'_> {
         Ok(Rendering { picture, film, complete, rays, spans, balance, seconds, threads })
     }
 
-    /// How many samples pixels have after each pass: one pass, unless errors or the clock decide, or light is caught anew.
+    /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice as many
+    /// each time, so that errors and the clock can decide about more; and where light is caught anew.
     fn passes(&self, order: &Order) -> Vec<u32> {
-        let mut passes = vec![order.samples];
-        if order.target.is_some() || order.seconds.is_some() {
-            let doubled = std::iter::successors(Some(FIRST_PASS), |samples| samples.checked_mul(2));
-            passes.extend(doubled.take_while(|samples| *samples < order.samples));
-        }
+        let doubled = std::iter::successors(Some(FIRST_DOUBLED), |samples| samples.checked_mul(2));
+        let mut passes = vec![1, order.samples];
+        passes.extend(doubled.take_while(|samples| *samples < order.samples));
         if self.two_way.is_some() {
             passes.extend((SHARING..order.samples).step_by(SHARING as usize));
         }

@@ -7,8 +7,8 @@ use crate::render::ray_tracing::{RayTracer, widest_disc};
 use crate::render::scan_line::ScanLine;
 use crate::render::{Order, Renderer, Watch};
 use crate::scene::{Prepared, Scene, Settings};
-use crate::study::{Options, StudyError, resized};
-use serde::Serialize;
+use crate::study::{Kept, Options, StudyError, resized};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -72,8 +72,10 @@ pub(super) struct Setup {
 }
 
 /// The scene that is studied, as it was asked for.
-pub(super) struct Base {
+pub(super) struct Base<'a> {
     scene: Scene,
+    /// What was rendered before.
+    kept: &'a Kept<Vec<Shot>>,
     pub(super) prepared: Prepared,
     pub(super) options: Options,
     /// What the scene would need if no knob held it back.
@@ -83,8 +85,8 @@ pub(super) struct Base {
 }
 
 /// One rendering.
-#[derive(Clone, Debug)]
-pub(super) struct Shot {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Shot {
     pub(super) picture: Picture,
     /// From the scene to a renderer that has taken it up, seconds.
     pub(super) build: f64,
@@ -92,10 +94,10 @@ pub(super) struct Shot {
     pub(super) render: f64,
 }
 
-impl Base {
+impl<'a> Base<'a> {
     /// # Errors
     /// [`StudyError::Scene`].
-    pub(super) fn new(scene: &Scene, options: &Options) -> Result<Base, StudyError> {
+    pub(super) fn new(scene: &Scene, options: &Options, kept: &'a Kept<Vec<Shot>>) -> Result<Base<'a>, StudyError> {
         let options = Options { settings: options.settings.clamp(2, 16), ..*options };
         let mut scene = resized(scene, &options);
         let prepared = Prepared::new(&scene)?;
@@ -108,7 +110,7 @@ impl Base {
         free.settings.spectral = free.settings.spectral.filter(|spectral| *spectral);
         free.settings.two_way = true;
         let plan = Plan::new(&free, &free.view());
-        Ok(Base { scene, prepared, options, plan, largest_curved })
+        Ok(Base { scene, kept, prepared, options, plan, largest_curved })
     }
 
     pub(super) fn settings(&self) -> &Settings {
@@ -189,6 +191,16 @@ impl Base {
     }
 
     fn shoot(
+        &self,
+        setup: &Setup,
+        vary: &dyn Fn(u64, &mut Order),
+        is_enough: &dyn Fn(&[Shot]) -> bool,
+        watch: &Watch<'_>,
+    ) -> Result<Vec<Shot>, StudyError> {
+        self.kept.next(|| self.shoot_now(setup, vary, is_enough, watch))
+    }
+
+    fn shoot_now(
         &self,
         setup: &Setup,
         vary: &dyn Fn(u64, &mut Order),

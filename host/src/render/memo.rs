@@ -1,0 +1,213 @@
+//! Results of long computations in a file, so that who does the same once more gets them from there.
+//!
+//! Layout: eight bytes of name and version; a fingerprint of what is computed (u32); then records, each the length of its
+//! content (u64), a checksum of it (CRC-32, u32) and the content: results in the order in which they were asked for. Numbers
+//! are little-endian. A last record that is not whole, as after a crash, is written anew.
+
+use super::StateError;
+use bincode::config::{Configuration, Fixint, LittleEndian, standard};
+use bincode::serde::{decode_from_slice, encode_to_vec};
+use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// What such a file begins with; the last byte is the version.
+const MAGIC: [u8; 8] = *b"PERISM\x00\x01";
+/// Bytes before the first record.
+const HEAD: u64 = 12;
+const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
+/// Results of a record: computed in about a tenth of a second, and enough for many threads.
+const CHUNK: usize = 8192;
+
+/// Results that are kept in a file.
+#[derive(Debug)]
+pub struct Memo {
+    path: PathBuf,
+    stand: Mutex<Stand>,
+}
+
+/// Where the file stands.
+#[derive(Debug)]
+enum Stand {
+    /// What was computed before is read, up to a byte.
+    Reading(BufReader<File>, u64),
+    /// What is computed is written.
+    Writing(File),
+    /// It could not be written, and is left as it is.
+    Broken,
+}
+
+impl Memo {
+    /// Goes on with the results in a file, or begins one.
+    ///
+    /// - `fingerprint`: of all that the results depend on.
+    ///
+    /// # Errors
+    /// [`StateError`]: the file cannot be read or written, or is of another computation.
+    pub fn open(path: &Path, fingerprint: u32) -> Result<Memo, StateError> {
+        let failed = |source| StateError::File { path: path.into(), source };
+        let other = |what| StateError::Other { path: path.into(), what };
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
+        let head = [&MAGIC[..], &fingerprint.to_le_bytes()].concat();
+        let mut found = Vec::new();
+        Read::by_ref(&mut file).take(HEAD).read_to_end(&mut found).map_err(failed)?;
+        // One that was begun and not more is begun again.
+        if !head.starts_with(&found) {
+            return Err(other(if found.starts_with(&MAGIC) { "what it computed" } else { "its kind" }));
+        }
+        let stand = match found.len() == head.len() {
+            true => Stand::Reading(BufReader::new(file), HEAD),
+            false => {
+                file.seek(SeekFrom::Start(0)).and_then(|_| file.write_all(&head)).map_err(failed)?;
+                Stand::Writing(file)
+            }
+        };
+        Ok(Memo { path: path.into(), stand: Mutex::new(stand) })
+    }
+
+    /// What a function makes of each item, told its number and the item, on all threads: from the file as far as it is
+    /// there, and kept as far as it is not. Calls are to come in the same order each time.
+    ///
+    /// - `memo`: without one, nothing is kept.
+    pub(super) fn map<T: Sync, R: Serialize + DeserializeOwned + Send>(
+        memo: Option<&Memo>,
+        items: &[T],
+        f: impl Fn(usize, &T) -> R + Sync,
+    ) -> Vec<R> {
+        let Some(memo) = memo else {
+            return items.par_iter().enumerate().map(|(number, item)| f(number, item)).collect();
+        };
+        let mut results = Vec::with_capacity(items.len());
+        for chunk in items.chunks(CHUNK) {
+            let first = results.len();
+            let make = || chunk.par_iter().enumerate().map(|(number, item)| f(first + number, item)).collect();
+            results.extend(memo.chunk(chunk.len(), make));
+        }
+        results
+    }
+
+    /// The next results: read, or made and written.
+    fn chunk<R: Serialize + DeserializeOwned>(&self, count: usize, make: impl FnOnce() -> Vec<R>) -> Vec<R> {
+        let lock = || self.stand.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = lock().read(count) {
+            return found;
+        }
+        let made = make();
+        if let Err(error) = lock().write(&made) {
+            tracing::warn!("{}: {error}; intermediate results are no longer kept", self.path.display());
+        }
+        made
+    }
+}
+
+impl Stand {
+    /// The next record, if it is whole and has as many results; otherwise writing begins in its place.
+    fn read<R: DeserializeOwned>(&mut self, count: usize) -> Option<Vec<R>> {
+        let Stand::Reading(file, end) = self else { return None };
+        match record(file, *end) {
+            Ok((content, next)) => {
+                if let Ok((found, used)) = decode_from_slice::<Vec<R>, _>(&content, ENCODING)
+                    && (found.len(), used) == (count, content.len())
+                {
+                    *end = next;
+                    return Some(found);
+                }
+            }
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {}
+            Err(error) => tracing::warn!("intermediate results are computed anew: {error}"),
+        }
+        let end = *end;
+        *self = match std::mem::replace(self, Stand::Broken) {
+            Stand::Reading(file, _) => {
+                let mut file = file.into_inner();
+                match file.set_len(end).and_then(|()| file.seek(SeekFrom::Start(end))) {
+                    Ok(_) => Stand::Writing(file),
+                    Err(_) => Stand::Broken,
+                }
+            }
+            other => other,
+        };
+        None
+    }
+
+    fn write(&mut self, made: &impl Serialize) -> io::Result<()> {
+        let Stand::Writing(file) = self else { return Ok(()) };
+        let content = encode_to_vec(made, ENCODING).map_err(io::Error::other)?;
+        let head = [&(content.len() as u64).to_le_bytes()[..], &crc32fast::hash(&content).to_le_bytes()].concat();
+        let written = file.write_all(&head).and_then(|()| file.write_all(&content));
+        if written.is_err() {
+            *self = Stand::Broken;
+        }
+        written
+    }
+}
+
+/// The content of a record that begins at a byte, and where the next one begins.
+fn record(file: &mut BufReader<File>, begin: u64) -> io::Result<(Vec<u8>, u64)> {
+    let (mut length, mut sum) = ([0; 8], [0; 4]);
+    file.read_exact(&mut length)?;
+    file.read_exact(&mut sum)?;
+    let length = u64::from_le_bytes(length);
+    let next = begin.saturating_add(12).saturating_add(length);
+    if next > file.get_ref().metadata()?.len() {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    let mut content = vec![0; length as usize];
+    file.read_exact(&mut content)?;
+    match crc32fast::hash(&content) == u32::from_le_bytes(sum) {
+        true => Ok((content, next)),
+        false => Err(io::Error::new(io::ErrorKind::InvalidData, "a checksum is wrong")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Squares of numbers, and how many of them were computed.
+    fn squares(path: &Path, counts: &[usize]) -> (Vec<Vec<u64>>, usize) {
+        let memo = Memo::open(path, 7).expect("a memo");
+        let computed = AtomicUsize::new(0);
+        let square = |number: usize, item: &u64| {
+            assert_eq!(number as u64, *item);
+            computed.fetch_add(1, Ordering::Relaxed);
+            item * item
+        };
+        let all = counts.iter().map(|count| {
+            let items: Vec<u64> = (0..*count as u64).collect();
+            Memo::map(Some(&memo), &items, square)
+        });
+        (all.collect(), computed.load(Ordering::Relaxed))
+    }
+
+    #[test]
+    fn results_are_computed_once_wherever_the_file_was_cut_off() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("memo");
+        let counts = [10, 2 * CHUNK + 5, 0, 3];
+        let (whole, computed) = squares(&path, &counts);
+        assert_eq!(computed, counts.iter().sum::<usize>());
+        assert_eq!(squares(&path, &counts), (whole.clone(), 0));
+        let bytes = std::fs::read(&path).expect("there");
+        for cut in [0, 5, 12, 20, 100, bytes.len() / 2, bytes.len() - 1] {
+            std::fs::write(&path, &bytes[..cut]).expect("written");
+            let (found, computed) = squares(&path, &counts);
+            assert!(found == whole && computed > 0, "{cut} bytes");
+            assert_eq!(std::fs::read(&path).expect("there"), bytes, "{cut} bytes");
+        }
+        let mut damaged = bytes.clone();
+        damaged[bytes.len() / 2] ^= 1;
+        std::fs::write(&path, damaged).expect("written");
+        assert!(squares(&path, &counts).0 == whole && std::fs::read(&path).expect("there") == bytes);
+        assert!(matches!(Memo::open(&path, 8), Err(StateError::Other { .. })));
+        std::fs::write(&path, "a document").expect("written");
+        assert!(matches!(Memo::open(&path, 7), Err(StateError::Other { .. })));
+        assert_eq!(std::fs::read(&path).expect("there"), b"a document");
+    }
+}
