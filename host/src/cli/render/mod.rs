@@ -170,7 +170,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         saved: None,
         comes_bit_by_bit: false,
     };
-    match arguments.renderer {
+    let ended = match arguments.renderer {
         Kind::Radiosity => {
             progress::stage("while solving for radiosity");
             let settings = prepared.settings.into();
@@ -178,12 +178,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             all.radiosity = Some(solution.report);
             let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
             scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by radiosity, {what}")));
-            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))?;
+            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
         }
         Kind::ScanLine => {
             let scan_line = ScanLine::new(&prepared, &plan)?;
             scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by scan line, {what}")));
-            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))?;
+            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
         }
         Kind::RayTracing | Kind::TwoWay => {
             if let Some(state) = &state {
@@ -200,11 +200,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
                 let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
                 let film = if arguments.layers && state.is_none() { film.with_classes() } else { film };
                 Ok(tracer.go_on(film, view, &order, &watch, checkpoints)?)
-            })?;
+            })
         }
+    };
+    if ended.as_ref().map_or_else(|failure| failure.exit == Exit::Missed, |()| true) {
+        intermediate.remove();
     }
-    intermediate.remove();
-    Ok(())
+    ended
 }
 
 impl Arguments {

@@ -1,0 +1,298 @@
+//! Processes that are ended at any moment, and places that take no files: older files stay whole or are replaced by whole
+//! ones, nothing else is left, and interrupted work goes on to the same bytes.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use tests::PATIENCE;
+
+const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
+/// What stands in each file before the program begins.
+const OLDER: &[u8] = b"an older file";
+
+/// A command that writes.
+struct Case {
+    /// Its arguments; those that name files do so in the current folder.
+    arguments: &'static [&'static str],
+    /// The files that it writes.
+    files: &'static [&'static str],
+    /// Arguments that make it go on where it was interrupted.
+    resume: &'static [&'static str],
+}
+
+/// Every sub-command that writes files of its own.
+const CASES: &[Case] = &[
+    Case {
+        arguments: &["render", "teapot", "--width", "48", "--samples", "24", "-o", "a.png", "-o", "a.exr", "--layers"],
+        files: &["a.png", "a.exr"],
+        resume: &[],
+    },
+    Case {
+        arguments: &["render", "teapot", "--width", "48", "--samples", "24", "-o", "b.exr"],
+        files: &["b.exr"],
+        resume: &["--resume", "b.state", "--checkpoint", "0.02"],
+    },
+    Case {
+        arguments: &["render", "teapot", "--width", "32", "--samples", "8", "--views", "3", "-o", "c.png"],
+        files: &["c-1.png", "c-2.png", "c-3.png"],
+        resume: &["--resume", "c.state", "--checkpoint", "0.02"],
+    },
+    Case {
+        arguments: &["render", "ring", "--renderer", "two-way", "--width", "24", "--samples", "10", "-o", "d.exr"],
+        files: &["d.exr"],
+        resume: &["--resume", "d.state", "--checkpoint", "0.02"],
+    },
+    Case {
+        arguments: &["render", "cube.rhai", "--renderer", "radiosity", "--width", "24", "-o", "e.exr"],
+        files: &["e.exr"],
+        resume: &["--resume", "e.state"],
+    },
+    Case { arguments: &["compose", "one.exr", "over", "two.exr", "-o", "f.png"], files: &["f.png"], resume: &[] },
+    Case { arguments: &["diff", "one.exr", "two.exr", "--map", "g.png"], files: &["g.png"], resume: &[] },
+    Case { arguments: &["octree", "cube.rhai", "-o", "h.octree"], files: &["h.octree"], resume: &[] },
+    Case { arguments: &["tessellate", "cube.rhai", "-o", "i.obj"], files: &["i.obj"], resume: &[] },
+    Case { arguments: &["convert", "one.stl", "j.ply"], files: &["j.ply"], resume: &[] },
+    Case { arguments: &["convert", "one.exr", "k.png"], files: &["k.png"], resume: &[] },
+    Case { arguments: &["convert", "cube.rhai", "l.ps300"], files: &["l.ps300"], resume: &[] },
+    Case { arguments: &["boolean", "one.stl", "-", "two.stl", "-o", "m.glb"], files: &["m.glb"], resume: &[] },
+    Case { arguments: &["check", "one.stl", "--repair", "n.stl"], files: &["n.stl"], resume: &[] },
+    Case { arguments: &["intersect", "cube.rhai", "-o", "o.csv"], files: &["o.csv"], resume: &[] },
+    Case { arguments: &["db", "export", "shipped", "copper", "p.txt"], files: &["p.txt"], resume: &[] },
+];
+
+const SCRIPT: &str = "box(2, 2, 2).name(\"a\"); sphere(1.3).name(\"b\").translate(0, 1, 0);
+    light(area(#{corner: [-1, 4, -1], across: [2, 0, 0], up: [0, 0, 2]}), 20);";
+
+/// Runs the program to its end; its exit code and what it said on standard error.
+fn peris(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = Command::new(PERIS).args(arguments).current_dir(folder).output().expect("the program starts");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+/// Makes what the commands read.
+fn prepare(folder: &Path) {
+    std::fs::write(folder.join("cube.rhai"), SCRIPT).expect("written");
+    std::fs::write(folder.join("ball.rhai"), "sphere(1.2);").expect("written");
+    for arguments in [
+        &["render", "teapot", "--width", "40", "--samples", "1", "--matte", "-o", "one.exr"][..],
+        &["render", "teapot", "--width", "40", "--samples", "2", "--matte", "-o", "two.exr"],
+        &["tessellate", "cube.rhai", "-o", "cube.stl"],
+        &["tessellate", "ball.rhai", "-o", "one.stl"],
+        &["convert", "one.stl", "two.stl", "--scale", "0.5"],
+    ] {
+        let (code, said) = peris(folder, arguments);
+        assert_eq!(code, Some(0), "{arguments:?}: {said}");
+    }
+}
+
+/// The files of a folder, with what is in them.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
+    entries
+        .map(|entry| {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            (name, std::fs::read(entry.path()).unwrap_or_default())
+        })
+        .collect()
+}
+
+/// Whether a process that runs is a zombie or gone within a time.
+fn ended_within(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
+    let end = Instant::now() + limit;
+    loop {
+        if let Some(status) = child.try_wait().expect("it runs") {
+            return Some(status);
+        }
+        if Instant::now() >= end {
+            return None;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Ends a process by a signal.
+fn signal(child: &Child, signal: rustix::process::Signal) {
+    let pid = rustix::process::Pid::from_child(child);
+    // It may have ended just now.
+    let _ = rustix::process::kill_process(pid, signal);
+}
+
+/// A reference run of each case: its files, and how long it takes.
+fn references(folder: &Path) -> Vec<(Vec<Vec<u8>>, Duration)> {
+    let run = |case: &Case| {
+        let start = Instant::now();
+        let (code, said) = peris(folder, case.arguments);
+        assert_eq!(code, Some(0), "{:?}: {said}", case.arguments);
+        let took = start.elapsed();
+        let files = case.files.iter().map(|file| std::fs::read(folder.join(file)).expect("written")).collect();
+        (files, took)
+    };
+    CASES.iter().map(run).collect()
+}
+
+/// A picture that is whole, as an interrupted rendering may leave one with fewer samples.
+fn is_picture(bytes: &[u8]) -> bool {
+    image::load_from_memory(bytes).is_ok()
+}
+
+/// Ends commands at random moments by random signals.
+fn survive(rounds: usize, seed: u64) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    prepare(folder);
+    let references = references(folder);
+    let inputs = contents(folder);
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let (mut interrupted, mut resumed) = (0, 0);
+    for round in 0..rounds {
+        let number = round % CASES.len();
+        let (Case { arguments, files, resume }, (whole, took)) = (&CASES[number], &references[number]);
+        let is_older: bool = random.random();
+        for file in *files {
+            let path = folder.join(file);
+            let _ = std::fs::remove_file(&path);
+            if is_older {
+                std::fs::write(path, OLDER).expect("written");
+            }
+        }
+        let mut attempts = 0;
+        loop {
+            attempts += 1;
+            let mut child = Command::new(PERIS)
+                .args(*arguments)
+                .args(*resume)
+                .current_dir(folder)
+                .stdout(Stdio::null())
+                .stderr(Stdio::piped())
+                .spawn()
+                .expect("the program starts");
+            let wait = took.mul_f64(random.random::<f64>() * (0.5 + 0.5 * f64::from(attempts)));
+            let signals = [
+                rustix::process::Signal::KILL,
+                rustix::process::Signal::TERM,
+                rustix::process::Signal::HUP,
+                rustix::process::Signal::INT,
+            ];
+            let chosen = signals[random.random_range(0..signals.len())];
+            let by_itself = ended_within(&mut child, wait);
+            if by_itself.is_none() {
+                signal(&child, chosen);
+                interrupted += 1;
+            }
+            let status = ended_within(&mut child, PATIENCE).unwrap_or_else(|| panic!("{arguments:?} does not end"));
+            let mut said = String::new();
+            child.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+            let place = || format!("round {round}, {arguments:?}, {chosen:?} after {wait:?}: {status}\n{said}");
+            for (file, whole) in files.iter().zip(whole) {
+                match std::fs::read(folder.join(file)) {
+                    Ok(found) if found == *whole || (is_older && found == OLDER) => {}
+                    // The first pass of a rendering gives a whole picture.
+                    Ok(found) => {
+                        assert!(arguments[0] == "render" && is_picture(&found), "{file} is not whole: {}", place());
+                        assert!(!status.success(), "{file} is another: {}", place());
+                    }
+                    Err(_) => assert!(!is_older && !status.success(), "{file} is missing: {}", place()),
+                }
+            }
+            for (name, content) in contents(folder) {
+                let is_own = files.contains(&&*name) || (name.contains(".state") && !resume.is_empty());
+                let is_before = inputs.get(&name).is_some_and(|before| *before == content);
+                assert!(is_own || is_before, "{name} is left: {}", place());
+            }
+            if status.success() {
+                let files = files.iter().map(|file| std::fs::read(folder.join(file)).expect("written"));
+                assert!(files.eq(whole.iter().cloned()), "other bytes after {attempts} attempts: {}", place());
+                resumed += usize::from(attempts > 1);
+                break;
+            }
+            let is_by_signal = status.code().is_none_or(|code| code == 130);
+            assert!(is_by_signal, "{}", place());
+            if resume.is_empty() {
+                break;
+            }
+        }
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.to_string_lossy().contains(".state") {
+                std::fs::remove_file(path).expect("removed");
+            }
+        }
+    }
+    assert!(interrupted > rounds / 4 && resumed > rounds / 20, "{interrupted} interrupted, {resumed} resumed");
+}
+
+#[test]
+fn what_is_ended_at_any_moment_harms_no_file_and_goes_on_to_the_same_bytes() {
+    survive(160, 1);
+}
+
+#[test]
+#[ignore = "long"]
+fn what_is_ended_at_any_moment_harms_no_file_in_two_thousand_rounds() {
+    survive(2_000, 2);
+}
+
+/// The arguments of a case with its files in another folder.
+fn elsewhere(case: &Case, place: &str) -> Vec<String> {
+    let in_place = |argument: &&str| match case.files.iter().any(|file| file.replace("-1", "") == **argument) {
+        true => format!("{place}/{argument}"),
+        false => argument.to_string(),
+    };
+    case.arguments.iter().map(in_place).collect()
+}
+
+#[test]
+fn a_place_that_takes_no_file_is_refused_before_the_work_and_the_message_names_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    prepare(folder);
+    std::fs::write(folder.join("file"), OLDER).expect("written");
+    std::fs::create_dir(folder.join("closed")).expect("made");
+    std::fs::set_permissions(folder.join("closed"), PermissionsExt::from_mode(0o555)).expect("closed");
+    // Who may write everywhere finds no folder closed.
+    let is_root = rustix::process::geteuid().is_root();
+    let places = [("none", "there is no folder none"), ("file", "file is no folder"), ("closed", "takes no files")];
+    let inputs = contents(folder);
+    for case in CASES {
+        for (place, expected) in places.iter().filter(|(place, _)| !(is_root && *place == "closed")) {
+            let arguments = elsewhere(case, place);
+            let (code, said) = peris(folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
+            assert_eq!(code, Some(1), "{arguments:?}: {said}");
+            assert!(said.contains("writing ") && said.contains(expected), "{arguments:?}: {said}");
+            assert!(contents(folder) == inputs, "{arguments:?} leaves something");
+        }
+    }
+}
+
+#[test]
+fn a_disk_that_is_full_leaves_the_older_file_and_the_whole_one_elsewhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    prepare(folder);
+    // A file system of 64 KiB, seen by one process and its children.
+    let script = "mkdir small && mount -t tmpfs -o size=64k none small && echo older > small/a.exr && \
+                  \"$0\" render teapot --width 200 --samples 1 -o small/a.exr; echo \"code $?\"; \
+                  cat small/a.exr; ls -A small";
+    let mut command = Command::new("unshare");
+    command.args(["--user", "--map-root-user", "--mount", "sh", "-c", script, PERIS]).current_dir(folder);
+    command.env("TMPDIR", folder);
+    let Ok(output) = command.output() else { return eprintln!("skipped: there is no unshare") };
+    let (said, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if !said.contains("code") {
+        return eprintln!("skipped: no file system can be mounted: {errors}");
+    }
+    assert!(said.ends_with("code 1\nolder\na.exr\n"), "{said}{errors}");
+    let kept = folder.join("a.exr");
+    let expected = format!(
+        "writing small/a.exr: No space left on device (os error 28); the whole file is kept as {}",
+        kept.display()
+    );
+    assert!(errors.contains(&expected), "{errors}");
+    assert!(is_picture(&std::fs::read(kept).expect("it is kept")));
+}
