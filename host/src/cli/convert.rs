@@ -1,14 +1,13 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
-use super::{Definitions, Exit, Failure, Row};
+use super::{Definitions, Exit, Failure, Row, load};
 use crate::mesh::{self, Grouped};
 use crate::picture::Picture;
-use crate::scene::{Object, Prepared, Scene, Shape};
-use crate::script;
+use crate::scene::Prepared;
 use crate::workstation::{Drawing, Lines, structure};
 use clap::{Args, FromArgMatches};
 use files::Destination;
-use glam::{DAffine3, DMat4, DVec3};
+use glam::{DAffine3, DVec3};
 use protocol::command::print;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,7 +22,7 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), a picture (.png, .exr), a scene script (.rhai) or the name of a scene that ships
+    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), a picture (.png, .exr), an octree (.octree), a scene script (.rhai) or the name of a scene that ships
     #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]
@@ -95,7 +94,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn commands(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { input, definitions, output, json, lines, tolerance, .. } = arguments;
     let destination = Destination::of(output)?;
-    let scene = input_scene(input, definitions)?;
+    let scene = load(&input.to_string_lossy(), definitions)?.scene;
     let prepared = Prepared::new(&scene)?;
     let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
     let shown = structure::commands(&scene, &prepared.camera, &prepared.bounds, &drawing)
@@ -121,31 +120,11 @@ fn factor(text: &str) -> Result<f64, String> {
     factor.ok_or_else(|| "give a number above 0".to_string())
 }
 
-/// The scene of a script or of the name of one that ships; none for another file.
-fn scene(input: &Path, definitions: &Definitions) -> Result<Option<Scene>, Failure> {
-    let name = input.to_string_lossy();
-    let is_script = input.extension().is_some_and(|e| e == "rhai");
-    let known = is_script || script::EMBEDDED.iter().any(|e| e.name == name);
-    if !known && !definitions.is_empty() {
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
-    }
-    Ok(if known { Some(super::load(&name, definitions)?.scene) } else { None })
-}
-
-/// The scene of a script or of the name of one that ships; for another file the mesh in it as the only object.
-pub(super) fn input_scene(input: &Path, definitions: &Definitions) -> Result<Scene, Failure> {
-    if let Some(scene) = scene(input, definitions)? {
-        return Ok(scene);
-    }
-    let name = input.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let shape = Shape::Mesh { path: input.to_owned() };
-    let object = Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance: None };
-    Ok(Scene { objects: vec![object], ..Scene::default() })
-}
-
+/// The triangles of a mesh with their groups, or of a whole scene.
 fn triangles(input: &Path, definitions: &Definitions) -> Result<Grouped, Failure> {
-    match scene(input, definitions)? {
-        Some(scene) => Ok(scene.tessellated()?),
-        None => Ok(mesh::read_grouped(input)?),
-    }
+    let scene = load(&input.to_string_lossy(), definitions)?.scene;
+    Ok(match mesh::Format::of(input) {
+        Some(_) => mesh::read_grouped(input)?,
+        None => scene.tessellated()?,
+    })
 }

@@ -1,6 +1,6 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
-use super::{Definitions, Failure, Row, SCRIPT_HELP, load, progress};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, load, load_lit, progress};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
@@ -106,7 +106,7 @@ struct Job<'a> {
 }
 
 fn run(arguments: &RunArguments) -> Result<(), Failure> {
-    let evaluated = load(&arguments.script, &arguments.definitions)?;
+    let evaluated = load_lit(&arguments.script, &arguments.definitions)?;
     let (common, to, dials) = (&arguments.common, arguments.to.as_ref(), arguments.dials.as_slice());
     Job {
         title: &evaluated.name,

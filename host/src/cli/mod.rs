@@ -27,6 +27,7 @@ mod study_render;
 mod tessellate;
 
 pub use exit::{Exit, Failure};
+use source::load_lit;
 pub use source::{Definitions, SCRIPT_HELP, load};
 
 use crate::illumination::Bands;

@@ -1,16 +1,13 @@
 //! `peris octree`: the linear octree of a scene, or one from a file.
 
 use super::{Definitions, Exit, Failure, Row, load};
-use crate::octree::{MAX_DEPTH, Octree, Settings, Statistics};
+use crate::octree::{ENDING, MAX_DEPTH, Octree, Settings, Statistics};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-/// How the name of an octree file ends.
-const ENDING: &str = "octree";
 
 pub(super) const ROW: Row = Row {
     name: "octree",
@@ -21,7 +18,7 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A scene script (.rhai), the name of a scene that ships, or an octree that was kept (.octree)
+    /// A scene script (.rhai), the name of a scene that ships, a mesh, or an octree that was kept (.octree)
     #[arg(default_value = "teapot", value_name = "SCENE")]
     scene: String,
     #[command(flatten)]
@@ -49,7 +46,7 @@ struct Arguments {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let destination = arguments.output.as_deref().map(destination).transpose()?;
     let path = Path::new(&arguments.scene);
-    let kept = is_octree(path);
+    let kept = Octree::is_file(path);
     let (octree, seconds) = if kept { read(path, arguments)? } else { build(arguments)? };
     if let Some(destination) = destination {
         let bytes = octree.to_bytes()?;
@@ -75,14 +72,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether a name is that of an octree that was kept.
-fn is_octree(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == ENDING)
-}
-
 /// Where the octree will be kept, under a name by which it is known again.
 fn destination(path: &Path) -> Result<Destination, Failure> {
-    if !is_octree(path) {
+    if !Octree::is_file(path) {
         let why = format!("{}: the name of an octree ends in .{ENDING}", path.display());
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
     }

@@ -1,6 +1,6 @@
 //! `peris plan`: what a scene needs, and why.
 
-use super::{Definitions, Failure, Row, SCRIPT_HELP, load};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, load_lit};
 use crate::plan::Plan;
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
@@ -27,7 +27,7 @@ struct Arguments {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let prepared = Prepared::new(&load(&arguments.script, &arguments.definitions)?.scene)?;
+    let prepared = Prepared::new(&load_lit(&arguments.script, &arguments.definitions)?.scene)?;
     let view = prepared.view();
     let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
     if arguments.json {

@@ -1,6 +1,6 @@
 //! `peris show`: a scene on a workstation, with dials and keys, until someone ends it.
 
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load, progress};
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load_lit, progress};
 use crate::{
     production::{Production, ProductionError, Sent, tiling},
     render::{Order, tiles::Tiling},
@@ -72,7 +72,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         tolerance: arguments.tolerance,
         facets: arguments.facets,
     };
-    let scene = load(&arguments.script, &arguments.definitions)?.scene;
+    let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     let light = if arguments.radiosity { Some(solve(&scene, arguments)?) } else { None };
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),

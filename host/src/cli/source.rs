@@ -1,12 +1,15 @@
 //! Where a scene comes from: a script file, or a name.
 
-use super::{Failure, progress};
+use super::{Exit, Failure, progress};
+use crate::mesh;
+use crate::octree::Octree;
+use crate::scene::Scene;
 use crate::script::{self, Definition, Evaluated};
 use clap::Args;
 use std::path::Path;
 
 /// Help for the argument SCRIPT.
-pub const SCRIPT_HELP: &str = "A scene script (.rhai), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal, manifold, materials, textures, room, cornell, caustic, ring, spectrum, mirror, flowers, pool, afternoon, vases, corner, motion";
+pub const SCRIPT_HELP: &str = "A scene script (.rhai), a mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), an octree that was kept (.octree), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal, manifold, materials, textures, room, cornell, caustic, ring, spectrum, mirror, flowers, pool, afternoon, vases, corner, motion";
 
 /// Values for parameters of the script.
 #[derive(Args, Clone, Debug, Default)]
@@ -24,11 +27,36 @@ impl Definitions {
     }
 }
 
-/// Runs the script that the command line names; what it prints goes to standard error.
+/// Whether a name is that of a file with triangles, and not of a script.
+pub(super) fn is_mesh(name: &Path) -> bool {
+    mesh::Format::of(name).is_some() || Octree::is_file(name)
+}
+
+/// The scene that the command line names, to be looked at: one that has only triangles is lit and framed.
+///
+/// # Errors
+/// As [`load`].
+pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
+    let evaluated = load(name, definitions)?;
+    Ok(match is_mesh(Path::new(name)) {
+        true => Evaluated { scene: evaluated.scene.in_studio()?, ..evaluated },
+        false => evaluated,
+    })
+}
+
+/// Runs the script that the command line names, or takes the mesh that it names as the only object of a scene; what the
+/// script prints goes to standard error.
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`].
 pub fn load(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
+    let path = Path::new(name);
+    if is_mesh(path) {
+        if !definitions.is_empty() {
+            return Err(Failure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
+        }
+        return Ok(Evaluated { scene: Scene::of_mesh(path), name: stem(name).into(), printed: Vec::new() });
+    }
     progress::stage("while evaluating the script");
     let evaluated = script::load(name, &definitions.given)?;
     progress::clear();

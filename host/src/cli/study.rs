@@ -1,7 +1,7 @@
 //! `peris study`: error against run time.
 
 use super::source::stem;
-use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load, progress, study_render};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load_lit, progress, study_render};
 use crate::study::{KNOBS, Kept, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use files::{Destination, Folder};
@@ -133,7 +133,7 @@ fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
 
 fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
     let folder = Folder::make(&arguments.output)?;
-    let scene = load(&arguments.script, &arguments.definitions)?.scene;
+    let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     let mut options = knob.options;
     options.width = arguments.width.unwrap_or(options.width);
     options.samples = arguments.samples.unwrap_or(options.samples);

@@ -2,7 +2,7 @@
 
 use super::source::stem;
 use super::study::kept;
-use super::{Definitions, Failure, SCRIPT_HELP, load, progress};
+use super::{Definitions, Failure, SCRIPT_HELP, load_lit, progress};
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, Technique, renderers};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -65,7 +65,7 @@ pub(super) fn command() -> Command {
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let arguments = Arguments::from_arg_matches(matches)?;
     let folder = Folder::make(&arguments.output)?;
-    let scene = load(&arguments.script, &arguments.definitions)?.scene;
+    let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     let Arguments { width, samples, settings, threads, .. } = arguments;
     let options = Options { width, samples, settings, threads };
     let usual = Technique::usual(&scene.settings);

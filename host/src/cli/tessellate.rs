@@ -1,7 +1,6 @@
 //! `peris tessellate`: the triangles of a scene, to a tolerance.
 
-use super::convert::input_scene;
-use super::{Definitions, Failure, Row};
+use super::{Definitions, Failure, Row, load};
 use crate::mesh;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
@@ -38,7 +37,7 @@ struct Arguments {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { input, definitions, output, chord, angle, json } = arguments;
     let destination = mesh::destination(output)?;
-    let scene = input_scene(input, definitions)?.within(*chord, *angle);
+    let scene = load(&input.to_string_lossy(), definitions)?.scene.within(*chord, *angle);
     let start = Instant::now();
     let grouped = scene.tessellated()?;
     let seconds = start.elapsed().as_secs_f64();

@@ -7,7 +7,9 @@ use bincode::config::{Configuration, standard};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::mesh::Mesh;
 use std::ops::Range;
+use std::path::Path;
 
 use super::build::{Division, Leaves, Nodes, Reference, eighths};
 use super::cube::Cube;
@@ -21,6 +23,9 @@ const VERSION: u32 = 1;
 const HEAD: usize = 16;
 
 const ENCODING: Configuration = standard();
+
+/// How the name of an octree file ends.
+pub const ENDING: &str = "octree";
 
 /// Why bytes are not an octree.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -91,6 +96,18 @@ impl Octree {
         bytes.extend(crc32fast::hash(&fields).to_le_bytes());
         bytes.extend(fields);
         Ok(bytes)
+    }
+
+    /// Whether a name is that of an octree file.
+    pub fn is_file(path: &Path) -> bool {
+        path.extension().is_some_and(|ending| ending == ENDING)
+    }
+
+    /// The triangles, with the numbers of their objects as surfaces.
+    pub fn mesh(&self) -> Mesh {
+        let surfaces = (0..).zip(&self.objects).flat_map(|(number, object)| vec![number; object.triangles]);
+        let (vertices, triangles) = (self.vertices.clone(), self.triangles.clone());
+        Mesh { vertices, triangles, surfaces: surfaces.collect(), ..Mesh::default() }
     }
 
     /// Reads what [`Octree::to_bytes`] wrote. Rays go down the index.

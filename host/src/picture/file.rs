@@ -1,6 +1,7 @@
 //! Pictures as files: PNG with eight bits sRGB, OpenEXR with linear 32-bit floats.
 
 use super::{Picture, Pixel, encoder};
+use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
 use files::{Destination, WriteError};
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 use protocol::raster::linear_from_srgb;
@@ -103,16 +104,23 @@ impl Picture {
     /// [`PictureError::Format`] for another name, [`PictureError::Write`] if the file cannot be written; it may be kept
     /// elsewhere then.
     pub fn write(&self, destination: &Destination) -> Result<(), PictureError> {
-        let format = format_of(destination.path())?;
-        let srgb = if format == ImageFormat::Png { self.to_srgb8() } else { Vec::new() };
-        let (bytes, kind) = match format {
-            ImageFormat::Png => (&*srgb, image::ColorType::Rgb8),
-            _ => (bytemuck::cast_slice(&self.pixels), image::ColorType::Rgba32F),
-        };
-        Ok(destination.write_or_keep(|file| {
-            image::write_buffer_with_format(file, bytes, self.width, self.height, kind, format)
-                .map_err(encoder::image_error)
-        })?)
+        let (width, height) = (self.width, self.height);
+        match format_of(destination.path())? {
+            ImageFormat::Png => {
+                let bytes = self.to_srgb8();
+                destination.write_or_keep(|file| encoder::png(file, &bytes, width, height))?;
+            }
+            _ => {
+                let pixel = |at: Vec2<usize>| {
+                    let Pixel { radiance: [r, g, b], coverage } = self.pixels[at.y() * width as usize + at.x()];
+                    (r, g, b, coverage)
+                };
+                let size = (width as usize, height as usize);
+                let image = Image::from_channels(size, SpecificChannels::rgba(pixel));
+                destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?;
+            }
+        }
+        Ok(())
     }
 
     /// Reads a PNG or EXR file back into linear light. Without an alpha channel, everything counts as covered.

@@ -9,13 +9,14 @@ use super::sculpture::{Sculpture, SculptureError};
 use crate::database::{Content, DatabaseError, Kind, Library};
 use crate::intersection::Precision;
 use crate::mesh::{self, Mesh, MeshError, Polylines, edges::EdgeTable};
+use crate::octree::Octree;
 use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError};
 use crate::subdivision::SubdivisionError;
 use crate::surface::{self, Surface, TessellationError, Tolerance, chord_error, ground, tessellate};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Steps along the sides of a triangle at which its distance to the exact surface is measured.
@@ -29,6 +30,14 @@ pub enum ShapeError {
     /// The mesh cannot be read.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The octree cannot be read.
+    #[error("{}: {problem}", path.display())]
+    Octree {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        problem: String,
+    },
     /// The geometry cannot be had from its database.
     #[error(transparent)]
     Database(#[from] DatabaseError),
@@ -229,7 +238,7 @@ impl Shape {
             }
             Shape::Rounded(rounded) => rounded.made(tolerance),
             Shape::Bunny => Ok(Made { mesh: mesh::bunny(), ..Made::default() }),
-            Shape::Mesh { path } => Ok(Made { mesh: mesh::read(path)?, ..Made::default() }),
+            Shape::Mesh { path } => Ok(Made { mesh: mesh_of(path)?, ..Made::default() }),
             Shape::Stored { database, name } => {
                 let (record, _) = Library::of(database.as_deref())?.record(Kind::Geometry, name)?;
                 match record.content {
@@ -289,6 +298,16 @@ impl Rounded {
         let operand_of = if operands.is_empty() { Vec::new() } else { operands_beside(&mesh, operands) };
         Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
     }
+}
+
+/// The mesh of a file: of a mesh file, or of an octree that was kept.
+fn mesh_of(path: &Path) -> Result<Mesh, ShapeError> {
+    if !Octree::is_file(path) {
+        return Ok(mesh::read(path)?);
+    }
+    let failed = |problem: String| ShapeError::Octree { path: path.into(), problem };
+    let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
+    Ok(Octree::from_bytes(&bytes).map_err(|error| failed(error.to_string()))?.mesh())
 }
 
 /// For each triangle the operand of its surface; what is rounded is of an operand beside it.

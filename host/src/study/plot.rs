@@ -1,7 +1,7 @@
 //! Plots over logarithmic and linear axes, as SVG and PNG, with a font of their own: nothing needs to be installed.
 
 use crate::picture::encoder;
-use files::{Folder, Writer};
+use files::Folder;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -174,11 +174,8 @@ impl Plot {
         let text = self.svg()?;
         let svg = folder.write_or_keep(&format!("{name}.svg"), |file| file.write_all(text.as_bytes()))?;
         let (bytes, width, height) = self.pixels()?;
-        let encode = |file: &mut Writer<'_>| {
-            let (kind, format) = (image::ColorType::Rgb8, image::ImageFormat::Png);
-            image::write_buffer_with_format(file, &bytes, width, height, kind, format).map_err(encoder::image_error)
-        };
-        let png = folder.write_or_keep(&format!("{name}.png"), encode)?;
+        let png = format!("{name}.png");
+        let png = folder.write_or_keep(&png, |file| encoder::png(file, &bytes, width, height))?;
         Ok([svg, png])
     }
 

@@ -4,13 +4,12 @@ use super::{Failure, Place};
 use crate::cli::progress;
 use crate::color::Color;
 use crate::database::{Content, Curves, Record};
-use crate::illumination::light::{Light, Patch};
-use crate::illumination::material::{Body, Classic, Material};
+use crate::illumination::material::Material;
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::ray_tracing::RayTracer;
 use crate::render::{Order, Renderer};
-use crate::scene::{Camera, Object, Prepared, Scene, Shape};
+use crate::scene::{Object, Prepared, Scene, Shape};
 use crate::solid::Primitive;
 use crate::study::{Axis, Plot, Point, Series};
 use files::{Destination, Folder};
@@ -51,14 +50,14 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Folder) -> Result<()
             vec![render(ball, &picture_file(folder, &name)?)?]
         }
         Content::Geometry(grouped) => {
-            let bounds = grouped.mesh.bounds().ok_or_else(|| anyhow::anyhow!("the mesh is empty"))?;
-            let (middle, size) = ((bounds.min + bounds.max) / 2.0, bounds.diagonal().max(f64::MIN_POSITIVE));
-            let lowest = DVec3::new(middle.x, bounds.min.y, middle.z);
+            if grouped.mesh.triangles.is_empty() {
+                return Err(anyhow::anyhow!("the mesh is empty").into());
+            }
             let (_, database) = place.library()?.record(record.kind(), &record.name)?;
             let object = Object {
                 name: name.clone(),
                 shape: Shape::Stored { database, name: record.name.clone() },
-                transform: DMat4::from_scale(DVec3::splat(2.4 / size)) * DMat4::from_translation(-lowest),
+                transform: DMat4::IDENTITY,
                 material: Some(Material::default()),
                 tolerance: None,
             };
@@ -101,36 +100,9 @@ fn curve(record: &Record, curves: &Curves) -> Plot {
     }
 }
 
-/// A picture of an object about two units high: on a grey ground under a pale sky, a window of daylight and a lamp.
+/// A picture of an object in the studio.
 fn render(object: Object, file: &Destination) -> Result<PathBuf, Failure> {
-    let grey = Body::Classic(Classic { diffuse: Color::grey(0.4).into(), ..Classic::default() });
-    let ground = Object {
-        name: "ground".into(),
-        shape: Shape::Ground { size: 60.0 },
-        transform: DMat4::IDENTITY,
-        material: Some(grey.into()),
-        tolerance: None,
-    };
-    let window = Patch::Rectangle {
-        corner: DVec3::new(-5.0, 1.5, 2.0),
-        across: DVec3::new(1.0, 4.5, 0.0),
-        up: DVec3::new(0.0, 0.0, 4.0),
-    };
-    let lamp = Patch::Sphere { center: DVec3::new(3.5, 4.0, 4.0), radius: 0.4 };
-    let light = |patch, strength| Light::Area { patch, radiance: Color::grey(strength) };
-    let sky = Light::Sky { map: None, radiance: Color::grey(0.35), turned: 0.0 };
-    let camera = Camera {
-        from: DVec3::new(0.0, 2.4, 7.0),
-        at: DVec3::new(0.0, 0.95, 0.0),
-        up: DVec3::Y,
-        field_of_view: 26.0,
-        near: 0.0,
-        far: None,
-        lens: None,
-        parallel: None,
-    };
-    let lights = vec![light(window, 2.5), light(lamp, 20.0), sky];
-    let mut scene = Scene { objects: vec![object, ground], lights, camera: Some(camera), ..Scene::default() };
+    let mut scene = Scene { objects: vec![object], ..Scene::default() }.in_studio()?;
     (scene.settings.width, scene.settings.height, scene.settings.samples) = (360, 360, 48);
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();

@@ -5,7 +5,7 @@ mod saved;
 mod views;
 
 use super::source::stem;
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load, progress, warn};
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load_lit, progress, warn};
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::radiosity::Radiosity;
@@ -128,7 +128,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = arguments.destinations()?;
     let state = arguments.resume.as_ref().map(Destination::of).transpose()?;
     arguments.light.as_ref().map(Destination::of).transpose()?;
-    let mut scene = load(&arguments.script, &arguments.definitions)?.scene;
+    let mut scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     super::warn_of_darkness(&scene);
     let settings = &mut scene.settings;
     (settings.width, settings.height) = size(settings.width, settings.height, arguments.width, arguments.height);

@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 
 /// Samples after the second pass, which are enough to tell the error of a pixel.
 const FIRST_DOUBLED: u32 = 8;
+/// Time between checkpoints at least, in times that writing one took.
+const LEAST_WORK: u32 = 10;
 
 /// Keeps a film from time to time while samples are added.
 pub struct Checkpoints<'a> {
@@ -19,6 +21,13 @@ pub struct Checkpoints<'a> {
     pub every: Duration,
     /// Keeps the film as it is. What goes wrong is told of, and the work goes on.
     pub keep: &'a mut dyn FnMut(&Film) -> Result<(), StateError>,
+}
+
+/// When the next checkpoint is due after one that began at a time and is written now: where writing takes long, later, so
+/// that most of the time goes into the work.
+pub(super) fn after(every: Duration, begin: Instant) -> Instant {
+    let now = Instant::now();
+    now + every.max((now - begin) * LEAST_WORK)
 }
 
 /// What an exposure took.
@@ -58,8 +67,7 @@ impl RayTracer<'_> {
         let eye = self.eye(view, order)?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
         let is_late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
-        let next = |checkpoints: &Option<Checkpoints<'_>>| checkpoints.as_ref().map(|c| Instant::now() + c.every);
-        let mut due = next(&checkpoints);
+        let mut due = checkpoints.as_ref().map(|checkpoints| start + checkpoints.every);
         let mut adaptive = film.adaptive(order.target);
         let passes = self.passes(order);
         let all_rows = passes.len() as u64 * u64::from(order.height);
@@ -134,13 +142,14 @@ impl RayTracer<'_> {
                     is_finished = false;
                     break 'passes;
                 }
-                if let Some(checkpoints) = &mut checkpoints {
+                due = checkpoints.as_mut().map(|checkpoints| {
                     film.set_adaptive(adaptive.clone());
+                    let begin = Instant::now();
                     if let Err(error) = (checkpoints.keep)(film) {
                         tracing::warn!("{error}");
                     }
-                }
-                due = next(&checkpoints);
+                    after(checkpoints.every, begin)
+                });
             }
             if let Some(adaptive) = &mut adaptive {
                 adaptive.pass(*samples);

@@ -26,6 +26,7 @@ mod walls;
 pub use flight::Balance;
 pub use shelf::Shelf;
 
+use super::exposure::after;
 use super::world::{Found, World};
 use crate::color::{Channels, LANES};
 use crate::illumination::light::Start;
@@ -203,8 +204,8 @@ impl<'s> TwoWay<'s> {
         let known = |chunk: &Chunk| before.get(chunk).filter(|_| is_whole(chunk)).cloned();
         let mut blocks: Vec<Option<Block>> = wanted.iter().map(known).collect();
         let all = wanted.len() as u64;
+        let mut due = self.shelf.map(|shelf| Instant::now() + shelf.every);
         loop {
-            let due = self.shelf.map(|shelf| Instant::now() + shelf.every);
             let pauses = || watch.is_cancelled() || due.is_some_and(|due| Instant::now() >= due);
             let done = AtomicU64::new(blocks.iter().flatten().count() as u64);
             blocks.par_iter_mut().zip(&wanted).filter(|(block, _)| block.is_none()).for_each(|(block, chunk)| {
@@ -215,9 +216,11 @@ impl<'s> TwoWay<'s> {
             });
             let is_finished = blocks.iter().all(Option::is_some);
             if !is_finished || self.shelf.is_some_and(|shelf| shelf.lasts) {
+                let begin = Instant::now();
                 let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| is_whole(chunk));
                 let whole = whole.filter_map(|(chunk, block)| Some((*chunk, block.as_ref()?)));
                 self.keep(world, pass, whole.collect(), &before);
+                due = self.shelf.map(|shelf| after(shelf.every, begin));
             }
             if is_finished {
                 break;
