@@ -95,6 +95,67 @@ fn a_writer_that_is_killed_loses_nothing_that_was_committed() {
 }
 
 #[test]
+fn a_first_writer_that_is_killed_leaves_no_database_or_one_that_can_be_used() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    write(folder, "walnut.json", WALNUT);
+    let start = Instant::now();
+    done(folder, &["db", "add", "first.redb", "walnut.json"]);
+    let whole = start.elapsed();
+    let (mut none, mut whole_ones) = (0, 0);
+    for round in 0..40_u32 {
+        let name = format!("{round}.redb");
+        if round % 4 == 0 {
+            // An empty file is as good as none.
+            write(folder, &name, "");
+        }
+        let mut child = Command::new(PERIS);
+        child.args(["db", "add", &name, "walnut.json"]).current_dir(folder).stdout(Stdio::null()).stderr(Stdio::null());
+        let mut child = Killed(child.spawn().expect("the program starts"));
+        std::thread::sleep(whole.mul_f64(f64::from(round) / 36.0));
+        let _ = child.0.kill();
+        let _ = child.0.wait();
+        let path = folder.join(&name);
+        if path.metadata().is_ok_and(|found| found.len() > 0) {
+            whole_ones += 1;
+            done(folder, &["db", "check", &name]);
+        } else {
+            none += 1;
+        }
+        done(folder, &["db", "add", &name, "walnut.json", "--replace"]);
+        assert!(done(folder, &["db", "show", &name, "walnut"]).contains("\"roughness\": 0.1"), "round {round}");
+        std::fs::remove_file(path).expect("removed");
+    }
+    let left = std::fs::read_dir(folder).expect("a folder").count();
+    assert_eq!(left, 2, "something is left");
+    assert!(none > 3 && whole_ones > 3, "{none} without a database, {whole_ones} with one");
+}
+
+#[test]
+fn a_writer_without_room_or_memory_leaves_the_database_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    write(folder, "walnut.json", WALNUT);
+    write(folder, "large.obj", &large_mesh(200));
+    done(folder, &["db", "add", "a.redb", "walnut.json"]);
+    let before = std::fs::read(folder.join("a.redb")).expect("there");
+    let mut refused = 0;
+    // Blocks of 512 bytes that a file may have, and KiB of memory that the process may have.
+    let limits = [("-f", 64), ("-f", 3200), ("-f", 4000), ("-v", 60_000), ("-v", 120_000), ("-v", 180_000)];
+    for (limit, most) in limits {
+        write(folder, "a.redb", "");
+        std::fs::write(folder.join("a.redb"), &before).expect("written");
+        let script = format!("ulimit {limit} {most}; exec \"$0\" db add a.redb large.obj");
+        let output = Command::new("sh").args(["-c", &script, PERIS]).current_dir(folder).output().expect("a shell");
+        let checked = done(folder, &["db", "check", "a.redb"]);
+        let records = if output.status.success() { 2 } else { 1 };
+        refused += usize::from(!output.status.success());
+        assert_eq!(checked, format!("a.redb: {records} records are whole, 0 are not\n"), "{script}");
+    }
+    assert!(refused > 1, "{refused}");
+}
+
+#[test]
 fn many_read_and_write_at_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();

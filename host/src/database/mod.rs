@@ -17,6 +17,8 @@ mod record;
 pub mod shipped;
 mod store;
 #[cfg(test)]
+mod fault_tests;
+#[cfg(test)]
 mod tests;
 
 pub use caught::{CaughtBlock, CaughtLight};

@@ -1,6 +1,8 @@
 //! The file: transactions, many readers beside one writer, and what happens when it is damaged.
 
 use super::{DatabaseError, Entry, Kind, Record};
+use files::Destination;
+use redb::backends::FileBackend;
 use redb::{
     Builder, ConcurrencyMode, Database, ReadOnlyDatabase, ReadTransaction, ReadableDatabase, ReadableTable,
     StorageError, TableDefinition, TableError,
@@ -85,27 +87,54 @@ impl Store {
     }
 
     fn open_as(path: &Path, create: bool) -> Result<Store, DatabaseError> {
-        let is_new = !path.exists();
+        if create && std::fs::metadata(path).map_or(true, |found| found.len() == 0) {
+            Destination::of(path)?.make_once(|file| Store::make_in(path, file))?;
+        }
         let since = Instant::now();
         loop {
-            let opened = guarded(path, || {
-                let mut builder = builder();
-                builder.set_check_integrity_on_open(true);
-                let database = if create { builder.create(path) } else { builder.open(path) };
-                let database = database.map_err(|error| opening(path, error))?;
-                let store = Store { path: path.into(), handle: Handle::Write(database) };
-                if create { store.mark_form() } else { store.check_form() }.map(|()| store)
-            });
-            match opened {
+            match Store::open_once(path, |builder| builder.open(path)) {
                 Err(DatabaseError::Busy { .. }) if since.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
-                Ok(store) if is_new => {
-                    // The name of a new file is as lasting as its content where folders can be synchronised.
-                    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-                    let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
-                    return Ok(store);
-                }
                 other => return other,
             }
+        }
+    }
+
+    /// Makes an empty database in an empty file. The file gets its name when all is written.
+    fn make_in(path: &Path, file: &File) -> Result<(), DatabaseError> {
+        let failed = |source| DatabaseError::File { path: path.into(), source };
+        let file = file.try_clone().map_err(failed)?;
+        let made = guarded(path, || {
+            let made = FileBackend::new(file).and_then(|file| builder().create_with_backend(file));
+            made.map_err(|error| opening(path, error))
+        })?;
+        Store { path: path.into(), handle: Handle::Write(made) }.mark_form()
+    }
+
+    /// Opens what the builder is told to open, and checks it.
+    fn open_once(
+        path: &Path,
+        open: impl FnOnce(&Builder) -> Result<Database, redb::DatabaseError>,
+    ) -> Result<Store, DatabaseError> {
+        guarded(path, || {
+            let mut builder = builder();
+            builder.set_check_integrity_on_open(true);
+            let database = open(&builder).map_err(|error| opening(path, error))?;
+            let store = Store { path: path.into(), handle: Handle::Write(database) };
+            store.check_form().map(|()| store)
+        })
+    }
+
+    /// Opens or makes a database in a storage of the tests.
+    #[cfg(test)]
+    pub(super) fn over(storage: impl redb::StorageBackend, is_new: bool) -> Result<Store, DatabaseError> {
+        let path = Path::new("storage");
+        match is_new {
+            true => guarded(path, || {
+                let made = builder().create_with_backend(storage).map_err(|error| opening(path, error))?;
+                let store = Store { path: path.into(), handle: Handle::Write(made) };
+                store.mark_form().map(|()| store)
+            }),
+            false => Store::open_once(path, |builder| builder.create_with_backend(storage)),
         }
     }
 
@@ -114,21 +143,14 @@ impl Store {
         &self.path
     }
 
-    /// Writes the form into a new file; checks it in others.
+    /// Writes the form into a new database.
     fn mark_form(&self) -> Result<(), DatabaseError> {
         let failed = |error: redb::Error| failure(&self.path, error);
-        let Handle::Write(database) = &self.handle else { return self.check_form() };
-        let read = database.begin_read().map_err(|error| failed(error.into()))?;
-        let tables = read.list_tables().map_err(|error| failed(error.into()))?;
-        if tables.count() > 0 {
-            return self.check_form();
-        }
-        let write = database.begin_write().map_err(|error| failed(error.into()))?;
-        {
+        self.change(|write| {
             let mut about = write.open_table(ABOUT).map_err(|error| failed(error.into()))?;
             about.insert(FORM_KEY, FORM).map_err(|error| failed(error.into()))?;
-        }
-        write.commit().map_err(|error| failed(error.into()))
+            Ok(())
+        })
     }
 
     fn check_form(&self) -> Result<(), DatabaseError> {

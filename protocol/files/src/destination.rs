@@ -89,6 +89,41 @@ impl Destination {
         self.try_write(&content).map_err(|problem| self.failed(kept_elsewhere(name, problem, &content)))
     }
 
+    /// Makes a file that begins as more than an empty one, such as a database, unless there is one with more than nothing in
+    /// it: the content is made under no name, and only then gets its own. Of several processes that do so at once, one makes
+    /// the file, and the others find it.
+    ///
+    /// - `content`: makes the content of a file that is open for reading and writing.
+    ///
+    /// # Errors
+    /// Those of `content`, or [`WriteError`].
+    pub fn make_once<E: From<WriteError>>(&self, content: impl FnOnce(&File) -> Result<(), E>) -> Result<(), E> {
+        let failed = |error| self.failed(Problem::System(error));
+        let empty = match OpenOptions::new().read(true).write(true).open(&self.target) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => return Err(failed(error).into()),
+            Ok(file) => {
+                // Who replaces an empty file holds its lock, and so does so once.
+                file.lock().map_err(failed)?;
+                let is_there = is_same(&file, &self.target) && file.metadata().map_err(failed)?.len() == 0;
+                if !is_there {
+                    return Ok(());
+                }
+                Some(file)
+            }
+        };
+        let draft = Draft::new(self.folder()).map_err(failed)?;
+        content(draft.file())?;
+        let published = match &empty {
+            Some(_) => draft.publish(&self.target),
+            None => draft.publish_new(&self.target),
+        };
+        match published {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+            published => Ok(published.map_err(failed)?),
+        }
+    }
+
     pub(crate) fn failed(&self, problem: Problem) -> WriteError {
         WriteError { path: self.path.clone(), problem }
     }
@@ -191,6 +226,22 @@ fn fill(draft: &Draft, content: impl Fn(&mut Writer<'_>) -> io::Result<()>) -> i
     let mut writer = BufWriter::new(draft.file());
     content(&mut writer)?;
     writer.flush()
+}
+
+/// Whether a path leads to a file that is open.
+#[cfg(unix)]
+fn is_same(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |found: fs::Metadata| (found.dev(), found.ino());
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(open), Ok(named)) => identity(open) == identity(named),
+        _ => false,
+    }
+}
+
+#[cfg(not(unix))]
+fn is_same(_: &File, path: &Path) -> bool {
+    path.exists()
 }
 
 /// The folder of a file.
@@ -329,6 +380,33 @@ mod tests {
             assert_eq!(fs::read(&kept).expect("there"), bytes);
             fs::remove_file(kept).expect("removed");
         }
+    }
+
+    #[test]
+    fn of_many_that_make_a_file_one_makes_it_also_in_place_of_an_empty_one() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (name, is_empty) in [("new", false), ("empty", true)] {
+            let path = folder.path().join(name);
+            if is_empty {
+                fs::write(&path, "").expect("written");
+            }
+            let make = |number: usize| {
+                let destination = Destination::of(&path).expect("a destination");
+                destination.make_once(|mut file| {
+                    std::thread::sleep(std::time::Duration::from_millis(5));
+                    writeln!(file, "{number}").map_err(|error| destination.failed(Problem::System(error)))
+                })
+            };
+            std::thread::scope(|scope| {
+                let all: Vec<_> = (0..8).map(|number| scope.spawn(move || make(number).is_ok())).collect();
+                assert!(all.into_iter().all(|one| one.join().expect("no panic")));
+            });
+            let made = fs::read(&path).expect("made");
+            assert_eq!(made.len(), 2);
+            make(9).expect("there is one");
+            assert_eq!(fs::read(&path).expect("there"), made);
+        }
+        assert_eq!(files_in(folder.path()), ["empty", "new"]);
     }
 
     #[test]
