@@ -239,13 +239,8 @@ fn survive(rounds: usize, seed: u64) {
 
 #[test]
 fn what_is_ended_at_any_moment_harms_no_file_and_goes_on_to_the_same_bytes() {
-    survive(200, 1);
-}
-
-#[test]
-#[ignore = "long"]
-fn what_is_ended_at_any_moment_harms_no_file_in_two_thousand_rounds() {
-    survive(2_000, 2);
+    let is_long = std::env::var_os("PERIS_LONG").is_some();
+    survive(if is_long { 2_000 } else { 200 }, 1);
 }
 
 /// The arguments of a case with its files in another folder.

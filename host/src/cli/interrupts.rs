@@ -54,7 +54,8 @@ fn serve(mut signals: Signals, name: &str) {
                 (0, kept) => kept,
                 _ => "not waiting for what is being written",
             };
-            eprintln!("peris {name}: interrupted {stage}; {kept}");
+            let space = if stage.is_empty() { "" } else { " " };
+            eprintln!("peris {name}: interrupted{space}{stage}; {kept}");
             std::process::exit(Exit::Interrupted as i32);
         }
     }

@@ -14,7 +14,7 @@ const TICK: Duration = Duration::from_millis(200);
 /// Whether stages are shown.
 static SHOWN: AtomicBool = AtomicBool::new(false);
 /// The stage, and its line on the terminal.
-static STAGE: Mutex<(&str, Option<ProgressBar>)> = Mutex::new(("at the beginning", None));
+static STAGE: Mutex<(&str, Option<ProgressBar>)> = Mutex::new(("", None));
 
 fn state() -> MutexGuard<'static, (&'static str, Option<ProgressBar>)> {
     STAGE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -62,7 +62,7 @@ pub(super) fn clear() {
     }
 }
 
-/// The stage, in words that follow `interrupted`.
+/// The stage, in words that follow `interrupted`; none at the beginning.
 pub(super) fn current() -> &'static str {
     state().0
 }

@@ -14,12 +14,15 @@ use files::{Destination, WriteError};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
+use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// What such a file begins with; the last byte is the version.
 const MAGIC: [u8; 8] = *b"PERISF\x00\x03";
 const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
+
+/// Bytes that are written at a time.
+const PIECE: usize = 1 << 20;
 
 /// A scene and an order, as far as samples depend on them: where it is the same, samples can be added to others.
 ///
@@ -180,13 +183,14 @@ impl Film {
             adaptive: adaptive.map(|adaptive| (adaptive.target, adaptive.passed, !goals.is_empty())),
         };
         Ok(destination.write_or_keep(|file| {
-            let mut file = Summed::new(file);
-            file.write_all(&MAGIC)?;
-            encode(&head, &mut file)?;
-            self.tallies().iter().try_for_each(|tally| encode(tally, &mut file))?;
-            goals.iter().try_for_each(|goal| encode(goal, &mut file))?;
-            let sum = file.sum.finalize();
-            file.inner.write_all(&sum.to_le_bytes())
+            // Checksums of large pieces are found many times faster than those of small ones.
+            let mut pieces = BufWriter::with_capacity(PIECE, Summed::new(file));
+            pieces.write_all(&MAGIC)?;
+            encode(&head, &mut pieces)?;
+            self.tallies().iter().try_for_each(|tally| encode(tally, &mut pieces))?;
+            goals.iter().try_for_each(|goal| encode(goal, &mut pieces))?;
+            let Summed { inner, sum } = pieces.into_inner().map_err(io::IntoInnerError::into_error)?;
+            inner.write_all(&sum.finalize().to_le_bytes())
         })?)
     }
 }

@@ -47,7 +47,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use surfaces::Surfaces;
 
 /// Ways that one thread follows before it takes others.
@@ -57,6 +57,8 @@ const REACH: f64 = 0.05;
 
 /// How far above a surface ways along it lead, as a part of the size of the scene.
 const LIFT: f64 = 1e-9;
+/// Work on a pass that is kept when it is interrupted.
+const WORTH_KEEPING: Duration = Duration::from_secs(5);
 /// Memory that caught light takes while it is kept for further views, bytes at the most.
 const MOST_BYTES: usize = 1 << 30;
 
@@ -204,7 +206,8 @@ impl<'s> TwoWay<'s> {
         let known = |chunk: &Chunk| before.get(chunk).filter(|_| is_whole(chunk)).cloned();
         let mut blocks: Vec<Option<Block>> = wanted.iter().map(known).collect();
         let all = wanted.len() as u64;
-        let mut due = self.shelf.map(|shelf| Instant::now() + shelf.every);
+        let mut kept = Instant::now();
+        let mut due = self.shelf.map(|shelf| kept + shelf.every);
         loop {
             let pauses = || watch.is_cancelled() || due.is_some_and(|due| Instant::now() >= due);
             let done = AtomicU64::new(blocks.iter().flatten().count() as u64);
@@ -215,11 +218,16 @@ impl<'s> TwoWay<'s> {
                 }
             });
             let is_finished = blocks.iter().all(Option::is_some);
-            if !is_finished || self.shelf.is_some_and(|shelf| shelf.lasts) {
+            let lasts = is_finished && self.shelf.is_some_and(|shelf| shelf.lasts);
+            // Who is interrupted does not wait for little to be kept.
+            let is_much =
+                !is_finished && kept.elapsed() >= WORTH_KEEPING.min(self.shelf.map_or(WORTH_KEEPING, |s| s.every));
+            if lasts || is_much {
                 let begin = Instant::now();
                 let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| is_whole(chunk));
                 let whole = whole.filter_map(|(chunk, block)| Some((*chunk, block.as_ref()?)));
                 self.keep(world, pass, whole.collect(), &before);
+                kept = Instant::now();
                 due = self.shelf.map(|shelf| after(shelf.every, begin));
             }
             if is_finished {
