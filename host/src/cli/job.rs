@@ -1,6 +1,6 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
-use super::{Definitions, Failure, Row, SCRIPT_HELP, load, load_lit, progress};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load, load_lit, progress};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
@@ -163,6 +163,7 @@ impl Job<'_> {
     fn perform(mut self) -> Result<(), Failure> {
         let folder = self.common.output.clone().unwrap_or_else(|| self.folder.into());
         let folder = Folder::make(std::path::absolute(&folder)?)?;
+        interrupts::say_kept(format!("what was finished is in {}", folder.path().display()));
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
         super::warn_of_darkness(&self.scene);

@@ -1,7 +1,7 @@
 //! `peris octree`: the linear octree of a scene, or one from a file.
 
 use super::{Definitions, Exit, Failure, Row, load};
-use crate::octree::{ENDING, MAX_DEPTH, Octree, Settings, Statistics};
+use crate::octree::{ENDING, MAX_BYTES, MAX_DEPTH, Octree, Settings, Statistics};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -104,7 +104,7 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Octree, f64), Failure> {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
     }
     let start = Instant::now();
-    let bytes = std::fs::read(path).map_err(|error| failed(path, &error))?;
+    let bytes = files::read(path, MAX_BYTES).map_err(|error| failed(path, &error))?;
     let octree = Octree::from_bytes(&bytes).map_err(|error| failed(path, &error))?;
     Ok((octree, start.elapsed().as_secs_f64()))
 }

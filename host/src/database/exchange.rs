@@ -12,7 +12,7 @@ use crate::mesh;
 use crate::picture::Picture;
 use files::Destination;
 use serde::{Deserialize, Serialize};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::Path;
 
 /// The longest text that is read, bytes.
@@ -136,13 +136,7 @@ fn unknown_ending(path: &Path) -> DatabaseError {
 
 fn text_of(path: &Path) -> Result<String, DatabaseError> {
     let failed = |source| DatabaseError::File { path: path.into(), source };
-    let mut text = String::new();
-    std::fs::File::open(path).map_err(failed)?.take(MAX_TEXT + 1).read_to_string(&mut text).map_err(failed)?;
-    if text.len() as u64 > MAX_TEXT {
-        let problem = format!("longer than {MAX_TEXT} bytes");
-        return Err(DatabaseError::Exchange { path: path.into(), problem });
-    }
-    Ok(text)
+    files::read_text(path, MAX_TEXT).map_err(failed)
 }
 
 fn of_columns(

@@ -1,8 +1,7 @@
 //! Mesh files: the format by the extension, the limits, and the way in and out.
 
 use std::ffi::OsStr;
-use std::fs::File;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::Path;
 
 use files::Destination;
@@ -69,23 +68,13 @@ pub fn read_grouped(path: impl AsRef<Path>) -> Result<Grouped, MeshError> {
     let path = path.as_ref();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
     let in_content = |fault| MeshError::Content { path: path.to_owned(), fault };
-    let bytes = bytes_of(path).map_err(|source| MeshError::File { path: path.to_owned(), source })?;
+    let bytes = files::read(path, MAX_BYTES).map_err(|source| MeshError::File { path: path.to_owned(), source })?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let neighbour = |name: &str| bytes_of(&folder.join(name)).map_err(|error| error.to_string());
+    let neighbour = |name: &str| files::read(&folder.join(name), MAX_BYTES).map_err(|error| error.to_string());
     let grouped = parse_beside(&bytes, format, &neighbour).map_err(in_content)?;
     // Bytes of any kind can pass for an OBJ file without a face.
     let is_empty = grouped.mesh.triangles.is_empty();
     if is_empty { Err(in_content(Place::Mesh.fault(Problem::NoTriangles))) } else { Ok(grouped) }
-}
-
-/// The bytes of a file, if it is not too long.
-fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(std::io::Error::other(format!("longer than {MAX_BYTES} bytes")));
-    }
-    Ok(bytes)
 }
 
 /// Where a mesh will be written, tested before a long computation.

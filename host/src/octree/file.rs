@@ -27,6 +27,9 @@ const ENCODING: Configuration = standard();
 /// How the name of an octree file ends.
 pub const ENDING: &str = "octree";
 
+/// The longest file that is read, bytes.
+pub const MAX_BYTES: u64 = 16 << 30;
+
 /// Why bytes are not an octree.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileError {

@@ -43,7 +43,7 @@ use crate::numeric::triangle::MAX_MAGNITUDE;
 use build::{Division, Leaves, Nodes, PARALLEL_TRIANGLES};
 pub use code::{LocationalCode, MAX_DEPTH};
 use cube::Cube;
-pub use file::{ENDING, FileError};
+pub use file::{ENDING, FileError, MAX_BYTES};
 use frame::Line;
 pub use frame::MAX_DISTANCE;
 use index::Index;

@@ -6,6 +6,7 @@ use exr::prelude::{
     AnyChannel, AnyChannels, FlatSamples, Image, ReadChannels, ReadLayers, ReadSpecificChannel, WritableImage, read,
 };
 use files::Destination;
+use std::io::BufReader;
 use std::path::Path;
 
 /// A picture with the depth of what its pixels show.
@@ -40,7 +41,8 @@ impl Deep {
     pub fn read(path: &Path) -> Result<Deep, PictureError> {
         let failed = |problem: String| PictureError::Layers { path: path.into(), problem };
         // Sizes are looked at before there is memory for them.
-        let known = MetaData::read_from_file(path, false).map_err(|error| failed(error.to_string()))?;
+        let open = || files::open(path).map(BufReader::new).map_err(|error| failed(error.to_string()));
+        let known = MetaData::read_from_buffered(open()?, false).map_err(|error| failed(error.to_string()))?;
         for header in &known.headers {
             let [width, height] =
                 [header.layer_size.0, header.layer_size.1].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
@@ -69,7 +71,7 @@ impl Deep {
             )
             .first_valid_layer()
             .all_attributes()
-            .from_file(path)
+            .from_buffered(open()?)
             .map_err(|error| failed(error.to_string()))?;
         let size = image.layer_data.size;
         let (pixels, depth): (Vec<Pixel>, Vec<f32>) = image.layer_data.channel_data.pixels.1.into_iter().unzip();

@@ -5,6 +5,7 @@ use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
 use files::{Destination, WriteError};
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 use protocol::raster::linear_from_srgb;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Most bytes that reading a picture may allocate.
@@ -131,8 +132,8 @@ impl Picture {
     /// [`PictureError`] for a file that is missing, broken, of another format or too large.
     pub fn read(path: &Path) -> Result<Picture, PictureError> {
         let format = format_of(path)?;
-        let opened = ImageReader::open(path).map_err(|source| PictureError::Open { path: path.into(), source })?;
-        let mut reader = opened;
+        let file = files::open(path).map_err(|source| PictureError::Open { path: path.into(), source })?;
+        let mut reader = ImageReader::new(BufReader::new(file));
         reader.set_format(format);
         let mut limits = Limits::default();
         limits.max_alloc = Some(MAX_READ_BYTES);

@@ -13,7 +13,6 @@ use crc32fast::Hasher;
 use files::{Destination, WriteError};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -203,10 +202,7 @@ impl State {
     pub fn read(path: &Path, order: &Order, fingerprint: Fingerprint) -> Result<State, StateError> {
         let failed = |source| StateError::File { path: path.into(), source };
         let damaged = |problem: &str| StateError::Damaged { path: path.into(), problem: problem.into() };
-        let file = File::open(path).map_err(failed)?;
-        if !file.metadata().map_err(failed)?.is_file() {
-            return Err(damaged("it is no ordinary file"));
-        }
+        let file = files::open(path).map_err(failed)?;
         let mut file = Summed::new(BufReader::new(file));
         let mut magic = [0; 8];
         file.read_exact(&mut magic).map_err(|_| damaged("it is no state of a rendering"))?;

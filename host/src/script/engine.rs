@@ -13,7 +13,6 @@ use crate::illumination::distribution::{FacetError, FacetTable};
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, FnPtr, Map, NativeCallContext};
 use std::cell::RefCell;
-use std::io::Read;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -43,13 +42,7 @@ type State = Rc<RefCell<Builder>>;
 /// Reads a script.
 pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
     let failed = |source| ScriptError::Read { path: path.into(), source };
-    let mut text = String::new();
-    let file = std::fs::File::open(path).map_err(failed)?;
-    file.take(MAX_SCRIPT_BYTES + 1).read_to_string(&mut text).map_err(failed)?;
-    if text.len() as u64 > MAX_SCRIPT_BYTES {
-        return Err(ScriptError::TooLong { path: path.into() });
-    }
-    Ok(text)
+    files::read_text(path, MAX_SCRIPT_BYTES).map_err(failed)
 }
 
 /// Runs a script.

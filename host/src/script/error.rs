@@ -17,12 +17,6 @@ pub enum ScriptError {
         /// Why.
         source: std::io::Error,
     },
-    /// The file is longer than a script may be.
-    #[error("{}: longer than {} bytes", path.display(), super::MAX_SCRIPT_BYTES)]
-    TooLong {
-        /// The file.
-        path: PathBuf,
-    },
     /// The script is wrong at a place.
     #[error("{0}")]
     Place(Box<Place>),

@@ -15,6 +15,9 @@ use rhai::Dynamic;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+/// The longest file of a luminaire, bytes.
+const MAX_GONIOMETRY: u64 = 16 << 20;
+
 /// The spectrum of a light.
 pub(super) const SPECTRUM: Parameter = parameter(
     "spectrum",
@@ -100,7 +103,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "luminaire(#{ at: [0, 3, 0], file: \"downlight.ies\", factor: 5 });",
         action: |builder, bound| {
             let path = builder.folder.join(bound.text("file").unwrap_or_default());
-            let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+            let text =
+                files::read_text(&path, MAX_GONIOMETRY).map_err(|error| format!("{}: {error}", path.display()))?;
             let goniometry = Goniometry::parse(&text).map_err(|error| format!("{}: {error}", path.display()))?;
             let vector = |name, default| bound.vector(name).unwrap_or(default);
             let color = color_of_light(builder, bound, vector("factor", DVec3::ONE))?;

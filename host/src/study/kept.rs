@@ -132,11 +132,7 @@ impl<T: Clone + Serialize + DeserializeOwned> Kept<T> {
 fn read<T: DeserializeOwned>(path: &Path, fingerprint: u32) -> Result<Vec<T>, KeptError> {
     let failed = |source| KeptError::File { path: path.into(), source };
     let other = |problem| KeptError::Other { path: path.into(), problem };
-    let found = std::fs::metadata(path).map_err(failed)?;
-    if !found.is_file() || found.len() > MAX_BYTES {
-        return Err(other("this is no file of a study"));
-    }
-    let bytes = std::fs::read(path).map_err(failed)?;
+    let bytes = files::read(path, MAX_BYTES).map_err(failed)?;
     let (head, content) = bytes.split_at_checked(HEAD).ok_or_else(|| other("this is no file of a study"))?;
     if !head.starts_with(&MAGIC) {
         return Err(other("this is no file of a study, or of one of another version"));

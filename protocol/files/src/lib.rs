@@ -1,4 +1,4 @@
-//! How both programs write files: whole or not at all.
+//! How both programs read and write files: within limits, and whole or not at all.
 //!
 //! A file is written under no name, or another name in the same folder, synchronised, and only then given its own name.
 //! Whoever reads the name finds the older file or the whole new one, whatever happens in between.
@@ -7,7 +7,9 @@ mod error;
 mod draft;
 mod destination;
 mod growing;
+mod read;
 
 pub use destination::{Destination, Folder, Writer};
 pub use error::{Problem, WriteError};
 pub use growing::Growing;
+pub use read::{open, read, read_text};

@@ -12,7 +12,7 @@ use crate::render::radiosity::Radiosity;
 use crate::render::ray_tracing::{RayTracer, Shelf};
 use crate::render::scan_line::ScanLine;
 use crate::render::{Film, Fingerprint, Order, RenderError, Renderer, Watch};
-use crate::scene::{Camera, MAX_SAMPLES, Prepared, View};
+use crate::scene::{Camera, MAX_SAMPLES, Prepared, Settings, View};
 use clap::{Args, FromArgMatches, ValueEnum};
 use files::Destination;
 use saved::{Intermediate, Saved};
@@ -130,29 +130,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.light.as_ref().map(Destination::of).transpose()?;
     let mut scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     super::warn_of_darkness(&scene);
-    let settings = &mut scene.settings;
-    (settings.width, settings.height) = size(settings.width, settings.height, arguments.width, arguments.height);
-    settings.samples = arguments.samples.unwrap_or(settings.samples);
-    settings.seed = arguments.seed.unwrap_or(settings.seed);
-    settings.tolerance = arguments.tolerance.or(settings.tolerance);
-    settings.two_way |= arguments.renderer == Kind::TwoWay;
-    // Surfaces out of view send light, too.
-    settings.interreflection |= arguments.renderer == Kind::Radiosity;
+    arguments.set(&mut scene.settings);
     let start = Instant::now();
     progress::stage("while building the geometry");
     let prepared = Prepared::new(&scene)?;
     let views = arguments.views_of(&prepared)?;
     let plan = Plan::of_views(&prepared, &views, arguments.everything);
-    let is_open = arguments.error.is_some() || arguments.seconds.is_some();
-    let most = if is_open { MAX_SAMPLES } else { prepared.settings.samples };
-    let order = Order {
-        samples: arguments.samples.unwrap_or(most),
-        threads: arguments.threads,
-        target: arguments.error,
-        seconds: arguments.seconds,
-        matte: arguments.matte,
-        ..Order::of(&prepared.settings)
-    };
+    let order = arguments.order(&prepared.settings);
     let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
     let intermediate = Intermediate::of(arguments, &plan);
     let keeps = |(path, lasts): (&Path, bool)| Shelf::new(path, &scene, &prepared, every, lasts);
@@ -210,6 +194,30 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
+    /// Sets what the command line says of the scene's settings.
+    fn set(&self, settings: &mut Settings) {
+        (settings.width, settings.height) = size(settings.width, settings.height, self.width, self.height);
+        settings.samples = self.samples.unwrap_or(settings.samples);
+        settings.seed = self.seed.unwrap_or(settings.seed);
+        settings.tolerance = self.tolerance.or(settings.tolerance);
+        settings.two_way |= self.renderer == Kind::TwoWay;
+        // Surfaces out of view send light, too.
+        settings.interreflection |= self.renderer == Kind::Radiosity;
+    }
+
+    /// How pictures are to be made. Where errors or the clock decide about samples, the scene does not.
+    fn order(&self, settings: &Settings) -> Order {
+        let is_open = self.error.is_some() || self.seconds.is_some();
+        Order {
+            samples: self.samples.unwrap_or(if is_open { MAX_SAMPLES } else { settings.samples }),
+            threads: self.threads,
+            target: self.error,
+            seconds: self.seconds,
+            matte: self.matte,
+            ..Order::of(settings)
+        }
+    }
+
     /// The files of each view, tested; none for a single pixel.
     fn destinations(&self) -> Result<Vec<Vec<Destination>>, Failure> {
         if self.pixel.is_some() {

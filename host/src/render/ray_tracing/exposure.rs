@@ -104,10 +104,8 @@ impl RayTracer<'_> {
             let tracer = self.tracer(caught.as_ref(), &eye);
             loop {
                 let done = AtomicU64::new(number as u64 * u64::from(order.height));
-                let pauses = || {
-                    let now = Instant::now();
-                    watch.is_cancelled() || due.is_some_and(|due| now >= due) || is_late()
-                };
+                let is_due = || due.is_some_and(|due| Instant::now() >= due);
+                let pauses = || watch.is_cancelled() || is_due() || is_late();
                 let row = |(y, (row, mut classes)): (usize, (&mut [Tally], Option<&mut [ByClass]>))| {
                     let mut work = Work::default();
                     for (x, tally) in row.iter_mut().enumerate() {

@@ -220,9 +220,8 @@ impl<'s> TwoWay<'s> {
             let is_finished = blocks.iter().all(Option::is_some);
             let lasts = is_finished && self.shelf.is_some_and(|shelf| shelf.lasts);
             // Who is interrupted does not wait for little to be kept.
-            let is_much =
-                !is_finished && kept.elapsed() >= WORTH_KEEPING.min(self.shelf.map_or(WORTH_KEEPING, |s| s.every));
-            if lasts || is_much {
+            let worth = self.shelf.map_or(WORTH_KEEPING, |shelf| shelf.every.min(WORTH_KEEPING));
+            if lasts || (!is_finished && kept.elapsed() >= worth) {
                 let begin = Instant::now();
                 let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| is_whole(chunk));
                 let whole = whole.filter_map(|(chunk, block)| Some((*chunk, block.as_ref()?)));
