@@ -213,6 +213,11 @@ fn survive(rounds: usize, seed: u64) {
                 let is_written = CASES.iter().any(|case| case.files.contains(&&*name));
                 let is_state = name.contains(".state") && !resume.is_empty();
                 let is_before = inputs.get(&name).is_some_and(|before| *before == content);
+                if chosen == rustix::process::Signal::KILL && name.starts_with(".peris-") {
+                    // Killed between the two names of a file that replaces another: a moment that a signal waits for.
+                    std::fs::remove_file(folder.join(name)).expect("removed");
+                    continue;
+                }
                 assert!(is_written || is_state || is_before, "{name} is left: {}", place());
             }
             if status.success() {

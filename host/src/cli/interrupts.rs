@@ -56,6 +56,7 @@ fn serve(mut signals: Signals, name: &str) {
             };
             let space = if stage.is_empty() { "" } else { " " };
             eprintln!("peris {name}: interrupted{space}{stage}; {kept}");
+            let _naming = files::naming();
             std::process::exit(Exit::Interrupted as i32);
         }
     }

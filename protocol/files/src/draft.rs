@@ -4,6 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A file in a folder that nobody else sees as a whole one yet; it is gone when dropped.
 ///
@@ -49,6 +50,7 @@ impl Draft {
     }
 
     fn replace(mut self, path: &Path) -> io::Result<()> {
+        let _naming = naming();
         let beside = match &self.name {
             Some(name) => name.clone(),
             // Most files are new, and need no second name.
@@ -75,6 +77,15 @@ impl Drop for Draft {
             let _ = fs::remove_file(name);
         }
     }
+}
+
+/// Held while a file that is whole has a name of its own and not yet that of the older one, which is a moment.
+static NAMING: Mutex<()> = Mutex::new(());
+
+/// Waits until no file is on its way from one name to another: who ends the process while holding this leaves no other name
+/// behind. A process that is killed may, once in thousands of times, where an older file is replaced.
+pub fn naming() -> MutexGuard<'static, ()> {
+    NAMING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A name in a folder that no file has.

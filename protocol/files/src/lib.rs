@@ -10,6 +10,7 @@ mod growing;
 mod read;
 
 pub use destination::{Destination, Folder, Writer};
+pub use draft::naming;
 pub use error::{Problem, WriteError};
 pub use growing::Growing;
 pub use read::{open, read, read_text};
