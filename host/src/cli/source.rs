@@ -35,7 +35,7 @@ pub(super) fn is_mesh(name: &Path) -> bool {
 /// The scene that the command line names, to be looked at: one that has only triangles is lit and framed.
 ///
 /// # Errors
-/// As [`load`].
+/// A [`Failure`] with [`super::Exit::Scene`], if the script is wrong or the mesh cannot be read.
 pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
     let evaluated = load(name, definitions)?;
     Ok(match is_mesh(Path::new(name)) {

@@ -106,7 +106,9 @@ impl Fingerprint {
         Fingerprint { scene: checksum(&words), geometry: geometry.finalize(), order: checksum(order.as_bytes()) }
     }
 
-    /// The same rendering in another way: it differs if that does.
+    /// The fingerprint of this rendering made in a way of its own, such as one of several views.
+    ///
+    /// - `way`: in words; fingerprints of other ways differ.
     pub fn with(self, way: &str) -> Fingerprint {
         Fingerprint { order: crc32fast::hash(format!("{} {way}", self.order).as_bytes()), ..self }
     }

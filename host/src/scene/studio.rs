@@ -32,7 +32,7 @@ impl Scene {
         Ok(self.in_studio_of(&bounds))
     }
 
-    /// As [`Scene::in_studio`], around known bounds.
+    /// Puts the objects of the scene into a studio as [`Scene::in_studio`] does, where their bounds are known.
     pub fn in_studio_of(mut self, bounds: &Bounds) -> Scene {
         let unit = (bounds.diagonal() / DIAGONAL).max(f64::MIN_POSITIVE);
         let center = bounds.center();

@@ -53,7 +53,7 @@ pub struct Kept<T> {
 #[derive(Debug)]
 struct Parts<T> {
     done: Vec<T>,
-    /// Which of them is asked for next.
+    /// The number of the part that is asked for next, from 0.
     next: usize,
 }
 

@@ -29,7 +29,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// The content of an ordinary file that is text, as [`read`] reads it.
 ///
 /// # Errors
-/// As [`read`], and for bytes that are no UTF-8.
+/// Those of [`read`], and one that names the first byte that is not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read(path, most)?).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
@@ -40,7 +40,7 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
 /// Opens an ordinary file for reading; others are refused as by [`read`].
 ///
 /// # Errors
-/// As [`read`], but for the length.
+/// What the system says, or in words what kind of file it is.
 pub fn open(path: &Path) -> io::Result<File> {
     let refused = || Err(io::Error::other("this is a device, pipe or socket and no ordinary file"));
     let check = |found: fs::Metadata| match found {

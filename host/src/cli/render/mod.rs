@@ -36,7 +36,7 @@ pub(super) const ROW: Row = Row {
 enum Kind {
     /// All light: mirrors, glass, rough surfaces, soft shadows
     RayTracing,
-    /// The same, with light that is followed from lamps through mirrors and glass first: caustics
+    /// All light, with that of lamps followed through mirrors and glass first: caustics
     TwoWay,
     /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show
     /// lights and ambient light only, and glass bends nothing
