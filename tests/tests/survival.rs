@@ -248,6 +248,22 @@ fn what_is_ended_at_any_moment_harms_no_file_and_goes_on_to_the_same_bytes() {
     survive(if is_long { 2_000 } else { 200 }, 1);
 }
 
+#[test]
+fn what_an_interrupted_study_has_done_is_not_replaced_and_a_finished_one_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let state = folder.join("illumination.state");
+    std::fs::write(&state, OLDER).expect("written");
+    let (code, said) = peris(folder, &["study", "illumination", "--roughness", "0.5"]);
+    assert!(code == Some(2) && said.contains("--resume goes on"), "{code:?}: {said}");
+    let (code, said) = peris(folder, &["study", "illumination", "--roughness", "0.5", "--resume"]);
+    assert!(code == Some(2) && said.contains("no file of a study"), "{code:?}: {said}");
+    assert_eq!(std::fs::read(&state).expect("there"), OLDER);
+    std::fs::remove_file(&state).expect("removed");
+    let (code, said) = peris(folder, &["study", "illumination", "--roughness", "0.5"]);
+    assert!(code == Some(0) && !state.exists(), "{code:?}: {said}");
+}
+
 /// The arguments of a case with its files in another folder.
 fn elsewhere(case: &Case, place: &str) -> Vec<String> {
     let in_place = |argument: &&str| match case.files.iter().any(|file| file.replace("-1", "") == **argument) {

@@ -1,7 +1,7 @@
 //! `peris study`: error against run time.
 
 use super::source::stem;
-use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load_lit, progress, study_render};
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, interrupts, load_lit, progress, study_render};
 use crate::study::{KNOBS, Kept, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use files::{Destination, Folder};
@@ -76,7 +76,12 @@ pub(super) fn kept<T: Clone + Serialize + DeserializeOwned>(
     resume: bool,
 ) -> Result<Kept<T>, Failure> {
     let destination = Destination::of(folder.path().join(format!("{name}.state")))?;
-    interrupts::say_kept(format!("what is finished is kept in {}; --resume goes on", destination.path().display()));
+    let file = destination.path().display();
+    if !resume && destination.path().exists() {
+        let why = format!("{file} holds what an interrupted study has done; --resume goes on, remove it to begin anew");
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
+    }
+    interrupts::say_kept(format!("what is finished is kept in {file}; --resume goes on"));
     Ok(if resume { Kept::resume(destination, study)? } else { Kept::begin(destination, study) })
 }
 
