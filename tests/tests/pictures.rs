@@ -95,7 +95,7 @@ fn a_rendering_that_goes_on_from_a_file_is_as_if_it_had_never_ended() {
     assert_eq!(fs::read(folder.join("more.exr")).unwrap(), fs::read(folder.join("once.exr")).unwrap());
     assert_eq!(fs::read(folder.join("a.state")).unwrap(), fs::read(folder.join("b.state")).unwrap());
     let other = peris(&["render", "a.rhai", "--samples", "8", "--seed", "7", "--resume", "a.state"], folder);
-    assert!(other.code == Some(2) && other.errors.contains("another rendering"), "{}", other.errors);
+    assert!(other.code == Some(2) && other.errors.contains("the state of other work"), "{}", other.errors);
     fs::write(folder.join("a.state"), "something else").unwrap();
     let none = peris(&["render", "a.rhai", "--resume", "a.state"], folder);
     assert!(none.code == Some(1) && none.errors.contains("a.state"), "{}", none.errors);

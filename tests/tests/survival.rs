@@ -257,7 +257,7 @@ fn what_an_interrupted_study_has_done_is_not_replaced_and_a_finished_one_leaves_
     let (code, said) = peris(folder, &["study", "illumination", "--roughness", "0.5"]);
     assert!(code == Some(2) && said.contains("--resume goes on"), "{code:?}: {said}");
     let (code, said) = peris(folder, &["study", "illumination", "--roughness", "0.5", "--resume"]);
-    assert!(code == Some(2) && said.contains("no file of a study"), "{code:?}: {said}");
+    assert!(code == Some(2) && said.contains("the state of other work"), "{code:?}: {said}");
     assert_eq!(std::fs::read(&state).expect("there"), OLDER);
     std::fs::remove_file(&state).expect("removed");
     let (code, said) = peris(folder, &["study", "illumination", "--roughness", "0.5"]);

@@ -96,7 +96,6 @@ failures! {
     crate::octree::OctreeError => Failed,
     crate::octree::FileError => Failed,
     PlotError => Failed,
-    crate::study::KeptError => Usage,
     RenderError => Failed,
     SceneError => Scene,
     ScriptError => Scene,

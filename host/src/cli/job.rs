@@ -6,7 +6,7 @@ use crate::{
     production::{Production, Sent, difference, view_of_dials},
     render::Order,
     scene::Scene,
-    study::{Kept, Options, Technique, renderers},
+    study::{Options, Technique, renderers},
     workstation::{Drawing, Emulator},
 };
 use clap::{Args, FromArgMatches};
@@ -277,8 +277,7 @@ impl Job<'_> {
         let options = Options { width: 160, samples: 256, settings: 6, threads: self.common.threads };
         progress::stage("while studying");
         let start = Instant::now();
-        let (watch, kept) = (progress::watch(), Kept::nowhere());
-        let study = renderers(&self.scene, &[Technique::RayTracing], &["samples"], &options, &watch, &kept)?;
+        let study = renderers(&self.scene, &[Technique::RayTracing], &["samples"], &options, &progress::watch())?;
         progress::clear();
         let (seconds, table) = (start.elapsed().as_secs_f64(), study.table());
         let text = format!("\nerror against run time (studied in {seconds:.1} s)\n{}", table.trim_end());

@@ -2,11 +2,10 @@
 
 use super::source::stem;
 use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, interrupts, load_lit, progress, study_render};
-use crate::study::{KNOBS, Kept, KnobRow, illumination};
+use crate::render::{Memo, Watch};
+use crate::study::{KNOBS, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
-use files::{Destination, Folder};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use files::Folder;
 use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -66,23 +65,18 @@ struct IlluminationArguments {
     json: bool,
 }
 
-/// What was done of a study before, if that is asked for; and where it is kept.
+/// What was done of a study before, if that is asked for; and where what is done is kept.
 ///
 /// - `name`: of the study and its files. `study`: whatever it depends on, in words.
-pub(super) fn kept<T: Clone + Serialize + DeserializeOwned>(
-    folder: &Folder,
-    name: &str,
-    study: &str,
-    resume: bool,
-) -> Result<Kept<T>, Failure> {
-    let destination = Destination::of(folder.path().join(format!("{name}.state")))?;
-    let file = destination.path().display();
-    if !resume && destination.path().exists() {
+pub(super) fn memo(folder: &Folder, name: &str, study: &str, resume: bool) -> Result<Memo, Failure> {
+    let path = folder.path().join(format!("{name}.state"));
+    let file = path.display();
+    if !resume && path.exists() {
         let why = format!("{file} holds what an interrupted study has done; --resume goes on, remove it to begin anew");
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
     }
     interrupts::say_kept(format!("what is finished is kept in {file}; --resume goes on"));
-    Ok(if resume { Kept::resume(destination, study)? } else { Kept::begin(destination, study) })
+    Ok(Memo::open(&path, crc32fast::hash(study.as_bytes()))?)
 }
 
 fn arguments(command: Command) -> Command {
@@ -116,8 +110,9 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
 fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
     let folder = Folder::make(&arguments.output)?;
     progress::stage("while studying");
-    let kept = kept(&folder, ILLUMINATION, &format!("{:?}", arguments.roughness), arguments.resume)?;
-    let study = illumination(&arguments.roughness, &progress::watch(), &kept)?;
+    let memo = memo(&folder, ILLUMINATION, &format!("{:?}", arguments.roughness), arguments.resume)?;
+    let watch = Watch { memo: Some(&memo), ..progress::watch() };
+    let study = illumination(&arguments.roughness, &watch)?;
     progress::clear();
     let table = study.csv();
     let csv = folder.write_or_keep(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
@@ -125,7 +120,7 @@ fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
     for (roughness, plot) in study.plots() {
         written.extend(plot.write(&folder, &format!("{ILLUMINATION}-{roughness}"))?);
     }
-    kept.finish();
+    memo.remove();
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&study)?);
     } else {
@@ -148,13 +143,14 @@ fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
     let script = stem(&arguments.script);
     let name = format!("{script}-{}", knob.name);
     let words = format!("{name} {options:?} {}", serde_json::to_string(&scene)?);
-    let kept = kept(&folder, &name, &words, arguments.resume)?;
-    let study = (knob.run)(&scene, &options, &progress::watch(), &kept)?;
+    let memo = memo(&folder, &name, &words, arguments.resume)?;
+    let watch = Watch { memo: Some(&memo), ..progress::watch() };
+    let study = (knob.run)(&scene, &options, &watch)?;
     progress::clear();
     let table = study.csv();
     let csv = folder.write_or_keep(&format!("{name}.csv"), |file| file.write_all(table.as_bytes()))?;
     let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&folder, &name)?;
-    kept.finish();
+    memo.remove();
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&study)?);
     } else {

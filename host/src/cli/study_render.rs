@@ -1,8 +1,9 @@
 //! `peris study render`: error against run time of every knob of every renderer.
 
 use super::source::stem;
-use super::study::kept;
+use super::study::memo;
 use super::{Definitions, Failure, SCRIPT_HELP, load_lit, progress};
+use crate::render::Watch;
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, Technique, renderers};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -81,8 +82,9 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
     progress::stage("while studying");
     let script = stem(&arguments.script);
     let words = format!("{techniques:?} {names:?} {options:?} {}", serde_json::to_string(&scene)?);
-    let kept = kept(&folder, &format!("{script}-{NAME}"), &words, arguments.resume)?;
-    let study = renderers(&scene, &techniques, &names, &options, &progress::watch(), &kept)?;
+    let memo = memo(&folder, &format!("{script}-{NAME}"), &words, arguments.resume)?;
+    let watch = Watch { memo: Some(&memo), ..progress::watch() };
+    let study = renderers(&scene, &techniques, &names, &options, &watch)?;
     progress::clear();
     let table = study.csv();
     let csv = folder.write_or_keep(&format!("{script}-{NAME}.csv"), |file| file.write_all(table.as_bytes()))?;
@@ -97,6 +99,6 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
         let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
         say!("{}", names.join(", "));
     }
-    kept.finish();
+    memo.remove();
     Ok(())
 }

@@ -10,6 +10,7 @@ use bincode::serde::{decode_from_slice, encode_to_vec};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::convert::Infallible;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -86,33 +87,61 @@ impl Memo {
         for chunk in items.chunks(CHUNK) {
             let first = results.len();
             let make = || chunk.par_iter().enumerate().map(|(number, item)| f(first + number, item)).collect();
-            results.extend(memo.chunk(chunk.len(), make));
+            let has_all = |found: &Vec<R>| found.len() == chunk.len();
+            let Ok(found) = memo.record::<_, Infallible>(has_all, || Ok(make()));
+            results.extend(found);
         }
         results
     }
 
-    /// The next results: read, or made and written.
-    fn chunk<R: Serialize + DeserializeOwned>(&self, count: usize, make: impl FnOnce() -> Vec<R>) -> Vec<R> {
-        let lock = || self.stand.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = lock().read(count) {
-            return found;
+    /// The next result: from the file, or made now and kept. Calls are to come in the same order each time.
+    ///
+    /// - `memo`: without one, nothing is kept.
+    ///
+    /// # Errors
+    /// Those of `make`; nothing is kept of them.
+    pub fn next<R: Serialize + DeserializeOwned, E>(
+        memo: Option<&Memo>,
+        make: impl FnOnce() -> Result<R, E>,
+    ) -> Result<R, E> {
+        match memo {
+            Some(memo) => memo.record(|_| true, make),
+            None => make(),
         }
-        let made = make();
+    }
+
+    /// The next record: read, if it is whole and right, or made and written.
+    fn record<R: Serialize + DeserializeOwned, E>(
+        &self,
+        is_right: impl Fn(&R) -> bool,
+        make: impl FnOnce() -> Result<R, E>,
+    ) -> Result<R, E> {
+        let lock = || self.stand.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = lock().read(is_right) {
+            return Ok(found);
+        }
+        let made = make()?;
         if let Err(error) = lock().write(&made) {
             tracing::warn!("{}: {error}; intermediate results are no longer kept", self.path.display());
         }
-        made
+        Ok(made)
+    }
+
+    /// Ends the work: the file is of no use any more, and is removed. That it cannot be removed harms nobody.
+    pub fn remove(self) {
+        let _ = std::fs::remove_file(self.path);
     }
 }
 
 impl Stand {
-    /// The next record, if it is whole and has as many results; otherwise writing begins in its place.
-    fn read<R: DeserializeOwned>(&mut self, count: usize) -> Option<Vec<R>> {
+    /// The next record, if it is whole and right; otherwise writing begins in its place.
+    fn read<R: DeserializeOwned>(&mut self, is_right: impl Fn(&R) -> bool) -> Option<R> {
         let Stand::Reading(file, end) = self else { return None };
         match record(file, *end) {
             Ok((content, next)) => {
-                if let Ok((found, used)) = decode_from_slice::<Vec<R>, _>(&content, ENCODING)
-                    && (found.len(), used) == (count, content.len())
+                if let Ok((found, used)) = decode_from_slice::<R, _>(&content, ENCODING)
+                    && used == content.len()
+                    && is_right(&found)
                 {
                     *end = next;
                     return Some(found);
@@ -169,6 +198,21 @@ fn record(file: &mut BufReader<File>, begin: u64) -> io::Result<(Vec<u8>, u64)> 
 mod tests {
     use super::*;
     use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn results_come_one_by_one_and_errors_are_not_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("memo");
+        let open = || Memo::open(&path, 7).expect("a memo");
+        let next = |memo: &Memo, made: Result<i32, &'static str>| Memo::next(Some(memo), || made);
+        let first = open();
+        assert_eq!([next(&first, Ok(1)), next(&first, Ok(2)), next(&first, Err("no"))], [Ok(1), Ok(2), Err("no")]);
+        let second = open();
+        assert_eq!([next(&second, Err("a")), next(&second, Err("b")), next(&second, Ok(3))], [Ok(1), Ok(2), Ok(3)]);
+        assert_eq!(Memo::next(None, || Ok::<_, ()>(4)), Ok(4));
+        second.remove();
+        assert!(!path.exists());
+    }
 
     /// Squares of numbers, and how many of them were computed.
     fn squares(path: &Path, counts: &[usize]) -> (Vec<Vec<u64>>, usize) {

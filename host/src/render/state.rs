@@ -54,7 +54,7 @@ pub enum StateError {
         problem: String,
     },
     /// It is of another scene or order.
-    #[error("{path} is the state of another rendering: {what} differs; remove the file to begin anew")]
+    #[error("{path} is the state of other work: {what} differs; remove the file to begin anew")]
     Other {
         /// The file.
         path: PathBuf,

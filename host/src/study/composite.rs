@@ -1,7 +1,7 @@
 //! The knob of composites: how far the triangles of their operands are from the exact surfaces, and what the volume and the
 //! area of the results make of it.
 
-use super::{Kept, Knob, Options, Study, StudyError, Trial, Tried, sweep};
+use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene, Shape};
@@ -22,12 +22,7 @@ struct Composites<'a> {
 }
 
 /// Makes the study of a scene.
-pub(super) fn study(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
+pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let shapes = scene.objects.iter().map(|object| &object.shape);
     let shapes: Vec<&Shape> = shapes.filter(|shape| matches!(shape, Shape::Composite(_))).collect();
     if shapes.is_empty() {
@@ -35,7 +30,7 @@ pub(super) fn study(
     }
     let coarsest = Prepared::new(scene)?.bounds.diagonal() * COARSEST;
     let (angle, settings) = (scene.settings.angle, options.settings.clamp(1, 9));
-    sweep(&Composites { shapes, coarsest, angle, settings }, watch, kept)
+    sweep(&Composites { shapes, coarsest, angle, settings }, watch)
 }
 
 impl Knob for Composites<'_> {

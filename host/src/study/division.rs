@@ -1,6 +1,6 @@
 //! The knob of subdivision: how many steps bring a polyhedron how near to its limit surface.
 
-use super::{Kept, Knob, Options, Study, StudyError, Trial, Tried, sweep};
+use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
 use crate::octree::{Sorted, hausdorff};
 use crate::render::Watch;
@@ -26,12 +26,7 @@ struct Steps {
 }
 
 /// Makes the study of a scene.
-pub(super) fn study(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
+pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let mut scene = scene.clone();
     scene.settings.tolerance = Some(Prepared::new(&scene)?.bounds.diagonal() * COARSE);
     scene.objects.iter_mut().for_each(|object| object.tolerance = None);
@@ -45,7 +40,7 @@ pub(super) fn study(
     if polyhedra.is_empty() {
         return Err(StudyError::Nothing("no object of the scene is a polyhedron"));
     }
-    sweep(&Steps { polyhedra, most: options.settings.clamp(1, MOST_STEPS) }, watch, kept)
+    sweep(&Steps { polyhedra, most: options.settings.clamp(1, MOST_STEPS) }, watch)
 }
 
 impl Knob for Steps {

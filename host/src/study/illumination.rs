@@ -2,13 +2,13 @@
 //!
 //! It needs no scene. It walks the table of the family and knows no member by name.
 
+use super::StudyError;
 use super::plot::{Axis, Plot, Point, Series};
 use super::sweep::short;
-use super::{Kept, StudyError};
 use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual};
 use crate::illumination::distribution::{Distribution, FAMILY};
 use crate::numeric::sampling::{Stream, even};
-use crate::render::Watch;
+use crate::render::{Memo, Watch};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::atomic::Ordering;
@@ -55,15 +55,11 @@ pub struct IlluminationRow {
 
 /// Measures every member of the family.
 ///
-/// - `roughness`: the values of m to try, 1e-8..=1000. `kept`: rows that were made before.
+/// - `roughness`: the values of m to try, 1e-8..=1000.
 ///
 /// # Errors
 /// [`StudyError::Distribution`] for a roughness that is not provided for, or [`StudyError::Interrupted`].
-pub fn illumination(
-    roughness: &[f64],
-    watch: &Watch<'_>,
-    kept: &Kept<IlluminationRow>,
-) -> Result<IlluminationStudy, StudyError> {
+pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<IlluminationStudy, StudyError> {
     let steps = (roughness.len() * FAMILY.len()) as u64;
     let mut rows = Vec::new();
     for &m in roughness {
@@ -71,7 +67,8 @@ pub fn illumination(
             if watch.cancelled.load(Ordering::Relaxed) {
                 return Err(StudyError::Interrupted);
             }
-            rows.push(kept.next(|| Ok(row(member.name, m, (member.make)(m)?.as_ref())))?);
+            let make = || Ok::<_, StudyError>(row(member.name, m, (member.make)(m)?.as_ref()));
+            rows.push(Memo::next(watch.memo, make)?);
             (watch.progress)(rows.len() as u64, steps);
         }
     }

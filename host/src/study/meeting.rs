@@ -1,7 +1,7 @@
 //! The knobs of curves of intersection: how closely triangles follow the surfaces that meet, and how long Newton's
 //! iteration goes on.
 
-use super::{Kept, Knob, Options, Study, StudyError, Trial, Tried, sweep};
+use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::intersection::{Intersection, Precision};
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene, meetings};
@@ -35,33 +35,23 @@ struct Meetings {
 }
 
 /// Makes the study of the tolerance of triangles.
-pub(super) fn triangles(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
-    sweep(&meetings_of(scene, options, What::Triangles)?, watch, kept)
+pub(super) fn triangles(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+    study(scene, options, watch, What::Triangles)
 }
 
 /// Makes the study of the tolerance of Newton's iteration.
-pub(super) fn newton(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
-    sweep(&meetings_of(scene, options, What::Newton)?, watch, kept)
+pub(super) fn newton(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+    study(scene, options, watch, What::Newton)
 }
 
-fn meetings_of(scene: &Scene, options: &Options, what: What) -> Result<Meetings, StudyError> {
+fn study(scene: &Scene, options: &Options, watch: &Watch<'_>, what: What) -> Result<Study, StudyError> {
     let mut scene = scene.clone();
     scene.objects.iter_mut().for_each(|object| object.tolerance = None);
     if meetings(&scene, &Precision::default())?.iter().all(|m| m.intersection.branches.is_empty()) {
         return Err(StudyError::Nothing("no two objects of the scene meet in a curve"));
     }
     let diagonal = Prepared::new(&scene)?.bounds.diagonal();
-    Ok(Meetings { scene, diagonal, settings: options.settings.clamp(1, 7), what })
+    sweep(&Meetings { scene, diagonal, settings: options.settings.clamp(1, 7), what }, watch)
 }
 
 impl Knob for Meetings {

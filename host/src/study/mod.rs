@@ -3,7 +3,6 @@
 //! A [`Knob`] is one quality setting that can be swept. [`KNOBS`] lists those that the program offers, but for the
 //! [`RENDER_KNOBS`] of the renderers, which are studied together.
 
-mod kept;
 mod composite;
 mod division;
 mod illumination;
@@ -19,12 +18,11 @@ mod tessellation;
 mod tests;
 
 pub use illumination::{IlluminationRow, IlluminationStudy, illumination};
-pub use kept::{Kept, KeptError};
 pub use plot::{Axis, Plot, PlotError, Point, Series};
 pub use rendering::{
     Bend, KnobStudy, Measures, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, Technique, renderers,
 };
-pub use sweep::{Knob, Row, Study, Trial, Tried, sweep};
+pub use sweep::{Knob, Row, Study, Trial, sweep};
 
 use crate::illumination::distribution::DistributionError;
 use crate::octree::OctreeError;
@@ -56,8 +54,8 @@ pub struct KnobRow {
     pub summary: &'static str,
     /// Options that give a useful curve within a minute.
     pub options: Options,
-    /// Makes the study of a scene; rows that were made before are taken from what was kept.
-    pub run: fn(&Scene, &Options, &Watch<'_>, &Kept<Tried>) -> Result<Study, StudyError>,
+    /// Makes the study of a scene.
+    pub run: fn(&Scene, &Options, &Watch<'_>) -> Result<Study, StudyError>,
 }
 
 /// The studies that the program offers.

@@ -1,6 +1,6 @@
 //! The knobs of the octree: leaf size and depth. They change no answer, only what it costs.
 
-use super::{Kept, Knob, Options, Study, StudyError, Trial, Tried, sweep};
+use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::numeric::ray::{Hit, Ray};
 use crate::numeric::sampling::{Stream, sphere};
 use crate::octree::brute_force::{Agreement, agreement, closest_many};
@@ -31,23 +31,13 @@ struct Answer {
 }
 
 /// Makes the study of the leaf size.
-pub(super) fn leaf_size(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
-    sweep(&Division::new(scene, options, What::LeafTriangles)?, watch, kept)
+pub(super) fn leaf_size(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+    sweep(&Division::new(scene, options, What::LeafTriangles)?, watch)
 }
 
 /// Makes the study of the depth.
-pub(super) fn depth(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
-    sweep(&Division::new(scene, options, What::Depth)?, watch, kept)
+pub(super) fn depth(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+    sweep(&Division::new(scene, options, What::Depth)?, watch)
 }
 
 impl Division {

@@ -1,7 +1,7 @@
 //! The knob of exact surfaces: how far triangles are from them, and how far their planes turn away. The triangles are
 //! adaptive where a shape has its surfaces as a whole, else those of its scene.
 
-use super::{Kept, Knob, Options, Study, StudyError, Trial, Tried, sweep};
+use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene, Shape};
@@ -39,12 +39,7 @@ struct Residual<'a> {
 }
 
 /// Makes the study of a scene.
-pub(super) fn study(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
+pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let coarsest = Prepared::new(scene)?.bounds.diagonal() * COARSEST;
     let angle = scene.settings.angle;
     let mut shapes = Vec::new();
@@ -52,7 +47,7 @@ pub(super) fn study(
     if shapes.is_empty() {
         return Err(StudyError::Nothing("no object of the scene has curved surfaces that are known exactly"));
     }
-    sweep(&Residual { shapes, coarsest, angle, settings: options.settings.clamp(1, 9) }, watch, kept)
+    sweep(&Residual { shapes, coarsest, angle, settings: options.settings.clamp(1, 9) }, watch)
 }
 
 /// Adds a shape if its surfaces are known, or else the operands that it is made of.

@@ -1,9 +1,8 @@
 //! One knob through all its settings: run time, errors, table, CSV and plot.
 
 use super::StudyError;
-use super::kept::Kept;
 use super::plot::{Axis, Plot, Point, Series};
-use crate::render::Watch;
+use crate::render::{Memo, Watch};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
@@ -79,19 +78,17 @@ pub struct Row {
 }
 
 /// A setting that was tried.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Tried {
+#[derive(Serialize, Deserialize)]
+struct Tried {
     row: Row,
     count_names: Vec<String>,
 }
 
 /// Sweeps a knob.
 ///
-/// - `kept`: rows that were made before.
-///
 /// # Errors
 /// The first [`StudyError`], or [`StudyError::Interrupted`].
-pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>, kept: &Kept<Tried>) -> Result<Study, StudyError> {
+pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let (settings, finest) = knob.settings();
     let steps = settings.len() as u64 + 1;
     let quiet = watch.quiet();
@@ -103,7 +100,7 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>, kept: &Kept<Tried>) -> Result
     // The first run warms the machine; its time is not kept.
     let reference = run(finest)?;
     (watch.progress)(1, steps);
-    let tried = |setting| {
+    let tried = |setting| -> Result<Tried, StudyError> {
         let mut trial = run(setting)?;
         let mut spent = trial.seconds;
         for _ in 1..MOST_TRIALS {
@@ -124,7 +121,7 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>, kept: &Kept<Tried>) -> Result
     };
     let mut count_names = Vec::new();
     for (index, &setting) in settings.iter().enumerate() {
-        let tried = kept.next(|| tried(setting))?;
+        let tried = Memo::next(watch.memo, || tried(setting))?;
         count_names = tried.count_names;
         rows.push(tried.row);
         (watch.progress)(index as u64 + 2, steps);

@@ -1,6 +1,6 @@
 //! The knob of the modeller: how closely triangles follow the exact surfaces.
 
-use super::{Kept, Knob, Options, Study, StudyError, Trial, Tried, resized, sweep};
+use super::{Knob, Options, Study, StudyError, Trial, resized, sweep};
 use crate::picture::{Picture, difference};
 use crate::plan::Plan;
 use crate::render::ray_tracing::RayTracer;
@@ -29,13 +29,8 @@ struct Answer {
 }
 
 /// Makes the study of a scene.
-pub(super) fn study(
-    scene: &Scene,
-    options: &Options,
-    watch: &Watch<'_>,
-    kept: &Kept<Tried>,
-) -> Result<Study, StudyError> {
-    sweep(&Tessellation::new(scene, options)?, watch, kept)
+pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
+    sweep(&Tessellation::new(scene, options)?, watch)
 }
 
 impl Tessellation {

@@ -30,7 +30,7 @@ fn row(name: &str) -> &'static KnobRow {
 #[test]
 fn a_finer_tolerance_follows_the_sphere_more_closely() {
     let options = Options { width: 24, samples: 1, settings: 3, threads: None };
-    let study = (row("tessellate").run)(&sphere(), &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = (row("tessellate").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
     for row in &study.rows {
         assert!(row.errors[0] <= row.setting, "chord error {} above the tolerance {}", row.errors[0], row.setting);
         assert!(row.errors[0] > row.setting / 30.0, "far more triangles than asked for");
@@ -42,12 +42,8 @@ fn a_finer_tolerance_follows_the_sphere_more_closely() {
 #[test]
 fn a_scene_without_curved_surfaces_has_no_tolerance_to_study() {
     let options = row("tessellate").options;
-    let result = (row("tessellate").run)(
-        &scene(Shape::Solid(Primitive::Box { size: DVec3::ONE })),
-        &options,
-        &Watch::NOBODY,
-        &Kept::nowhere(),
-    );
+    let result =
+        (row("tessellate").run)(&scene(Shape::Solid(Primitive::Box { size: DVec3::ONE })), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
 }
 
@@ -55,7 +51,7 @@ fn a_scene_without_curved_surfaces_has_no_tolerance_to_study() {
 fn a_cancelled_study_says_so() {
     let cancelled = std::sync::atomic::AtomicBool::new(true);
     let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
-    let result = (row("tessellate").run)(&sphere(), &row("tessellate").options, &watch, &Kept::nowhere());
+    let result = (row("tessellate").run)(&sphere(), &row("tessellate").options, &watch);
     assert!(matches!(result, Err(StudyError::Interrupted)));
 }
 
@@ -63,7 +59,7 @@ fn a_cancelled_study_says_so() {
 fn leaf_size_and_depth_change_no_hit() {
     for name in ["octree", "depth"] {
         let options = Options { width: 40, settings: 4, ..row(name).options };
-        let study = (row(name).run)(&sphere(), &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+        let study = (row(name).run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
         assert_eq!(study.rows.len(), 4);
         assert!(study.rows.iter().all(|row| row.errors == [0.0]), "{study:?}");
         let svg = study.plot("A").svg().expect("a plot of what it costs");
@@ -74,8 +70,7 @@ fn leaf_size_and_depth_change_no_hit() {
 #[test]
 fn steps_of_subdivision_come_nearer_to_the_limit() {
     let scene = scene(Shape::Solid(Primitive::Box { size: DVec3::ONE }));
-    let study =
-        (row("subdivide").run)(&scene, &row("subdivide").options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = (row("subdivide").run)(&scene, &row("subdivide").options, &Watch::NOBODY).expect("a study");
     // The distance falls by four with each step where the surface is smooth, the angle by two.
     for pair in study.rows.windows(2).skip(1) {
         let [angle, distance] = [0, 2].map(|k| pair[0].errors[k] / pair[1].errors[k]);
@@ -87,11 +82,11 @@ fn steps_of_subdivision_come_nearer_to_the_limit() {
 #[test]
 fn adaptive_triangles_keep_their_tolerance() {
     let options = Options { settings: 3, ..row("surface").options };
-    let study = (row("surface").run)(&sphere(), &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = (row("surface").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");
     assert!(study.rows.iter().all(|row| row.errors[2] <= row.setting * 1.01), "{study:?}");
     let [first, last] = [0, 2].map(|k| &study.rows[k]);
     assert!((0..3).all(|error| last.errors[error] < first.errors[error]), "{study:?}");
-    let result = (row("surface").run)(&scene(Shape::Bunny), &options, &Watch::NOBODY, &Kept::nowhere());
+    let result = (row("surface").run)(&scene(Shape::Bunny), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
 }
 
@@ -104,8 +99,7 @@ fn the_residual_of_any_exact_surface_falls_with_its_tolerance() {
     let operands = vec![scene(torus.clone()).objects.remove(0), scene(tube.clone()).objects.remove(0)];
     let both = Composite { operation: Operation::Union, operands, nesting: 1 };
     let options = Options { settings: 3, ..row("surface").options };
-    let study =
-        |shape| (row("surface").run)(&scene(shape), &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = |shape| (row("surface").run)(&scene(shape), &options, &Watch::NOBODY).expect("a study");
     let shapes = [torus, Shape::Sculpture(Box::new(sculpture)), tube, Shape::Composite(Box::new(both))];
     for study in shapes.map(study) {
         assert!(study.rows.iter().all(|row| row.errors[2] <= row.setting * 1.01), "{study:?}");
@@ -121,7 +115,7 @@ fn triangles_of_a_limit_surface_are_measured() {
     let cage = Cage { points: points.collect(), faces: faces.map(Vec::from).to_vec(), sharpenings: Vec::new() };
     let options = Options { width: 8, samples: 1, settings: 4, threads: None };
     let scene = scene(Shape::Subdivision(Box::new(cage)));
-    let study = (row("tessellate").run)(&scene, &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = (row("tessellate").run)(&scene, &options, &Watch::NOBODY).expect("a study");
     for row in &study.rows {
         assert!(row.errors[0] <= row.setting && row.errors[0] > row.setting / 10.0, "{study:?}");
     }
@@ -135,12 +129,12 @@ fn a_drilled_ball_loses_error_as_its_tolerance_falls() {
     let composite = Composite { operation: Operation::Difference, operands: vec![ball, drill], nesting: 1 };
     let scene = scene(Shape::Composite(Box::new(composite)));
     let options = Options { settings: 4, ..row("boolean").options };
-    let study = (row("boolean").run)(&scene, &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = (row("boolean").run)(&scene, &options, &Watch::NOBODY).expect("a study");
     // A third of the tolerance is about a third of the error.
     for pair in study.rows.windows(2) {
         assert!(pair[0].errors.iter().zip(&pair[1].errors).all(|(one, two)| one / two > 2.0), "{pair:?}");
     }
-    let error = (row("boolean").run)(&sphere(), &options, &Watch::NOBODY, &Kept::nowhere()).expect_err("no composite");
+    let error = (row("boolean").run)(&sphere(), &options, &Watch::NOBODY).expect_err("no composite");
     assert!(error.to_string().contains("made of others"));
 }
 
@@ -152,7 +146,7 @@ fn finer_triangles_bring_lines_nearer_to_the_curve_and_a_finer_iteration_the_poi
     scene.objects.push(Object { name: "tube".into(), shape: tube, transform, material: None, tolerance: None });
     let run = |name: &str| {
         let options = Options { settings: 4, ..row(name).options };
-        (row(name).run)(&scene, &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study")
+        (row(name).run)(&scene, &options, &Watch::NOBODY).expect("a study")
     };
     let study = run("intersect");
     assert!(study.rows.iter().all(|row| row.errors[0] < 1e-13 && row.counts[1] == 0.0));
@@ -162,14 +156,14 @@ fn finer_triangles_bring_lines_nearer_to_the_curve_and_a_finer_iteration_the_poi
     let study = run("newton");
     assert!(study.rows[0].errors[0] > 1e-6 && study.rows[3].errors[0] < 1e-6 * 4.0);
     assert!(matches!(
-        (row("newton").run)(&sphere(), &row("newton").options, &Watch::NOBODY, &Kept::nowhere()),
+        (row("newton").run)(&sphere(), &row("newton").options, &Watch::NOBODY),
         Err(StudyError::Nothing(_))
     ));
 }
 
 #[test]
 fn the_family_of_distributions_is_measured_and_plotted() {
-    let study = illumination(&[0.5], &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = illumination(&[0.5], &Watch::NOBODY).expect("a study");
     let row = |name: &str| study.rows.iter().find(|row| row.name == name).expect("a member");
     assert_eq!(study.csv().lines().count(), study.rows.len() + 1);
     assert!(row("Lambert").shares.iter().all(|share| (share - 1.0).abs() < 1e-9));
@@ -181,6 +175,6 @@ fn the_family_of_distributions_is_measured_and_plotted() {
     assert!(plots.len() == 1 && plots[0].1.svg().expect("a plot").contains("incidence (degrees)"));
     let cancelled = std::sync::atomic::AtomicBool::new(true);
     let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
-    assert!(matches!(illumination(&[0.5], &watch, &Kept::nowhere()), Err(StudyError::Interrupted)));
-    assert!(matches!(illumination(&[-1.0], &Watch::NOBODY, &Kept::nowhere()), Err(StudyError::Distribution(_))));
+    assert!(matches!(illumination(&[0.5], &watch), Err(StudyError::Interrupted)));
+    assert!(matches!(illumination(&[-1.0], &Watch::NOBODY), Err(StudyError::Distribution(_))));
 }

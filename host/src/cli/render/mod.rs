@@ -141,8 +141,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let intermediate = Intermediate::of(arguments, &plan);
     let keeps = |(path, lasts): (&Path, bool)| Shelf::new(path, &scene, &prepared, every, lasts);
     let shelf = intermediate.light(arguments).map(keeps).transpose()?;
-    let fingerprint = Fingerprint::of(&scene, &prepared, &order);
-    let memo = intermediate.memo(arguments, &fingerprint)?;
+    // Only what is kept has to be known again.
+    let fingerprint = state.as_ref().map(|_| Fingerprint::of(&scene, &prepared, &order));
+    let memo = intermediate.memo(arguments, fingerprint.as_ref())?;
     let watch = Watch { memo: memo.as_ref(), ..progress::watch() };
     let mut all = Views {
         arguments,
@@ -170,7 +171,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
         }
         Kind::RayTracing | Kind::TwoWay => {
-            if let Some(state) = &state {
+            if let (Some(state), Some(fingerprint)) = (&state, fingerprint) {
                 all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
             }
             let tracer = in_pool(arguments, || RayTracer::watched(&prepared, &plan, shelf.as_ref(), &watch))?;

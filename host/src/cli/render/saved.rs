@@ -104,11 +104,16 @@ impl Intermediate {
     ///
     /// # Errors
     /// [`StateError`] as [`Failure`].
-    pub(super) fn memo(&self, arguments: &Arguments, fingerprint: &Fingerprint) -> Result<Option<Memo>, Failure> {
+    pub(super) fn memo(
+        &self,
+        arguments: &Arguments,
+        fingerprint: Option<&Fingerprint>,
+    ) -> Result<Option<Memo>, Failure> {
+        let (Some(path), Some(fingerprint)) = (&self.radiosity, fingerprint) else { return Ok(None) };
         // What is left out depends on the views.
         let Arguments { views, turn, everything, renderer, .. } = arguments;
         let fingerprint = fingerprint.of_scene(&format!("{views:?} {turn:?} {everything} {renderer:?}"));
-        Ok(self.radiosity.as_ref().map(|path| Memo::open(path, fingerprint)).transpose()?)
+        Ok(Some(Memo::open(path, fingerprint)?))
     }
 
     /// Removes them; that one cannot be removed harms nobody.

@@ -14,16 +14,16 @@ mod tests;
 pub use bend::Bend;
 pub use knob::{RENDER_KNOBS, RenderKnob};
 pub use measure::Measures;
-pub use setup::{Shot, Technique};
+pub use setup::Technique;
 
-use super::{Kept, Options, StudyError};
+use super::{Options, StudyError};
 use crate::picture::Picture;
 use crate::render::Watch;
 use crate::scene::Scene;
 use bend::bend;
 use measure::Reference;
 use serde::Serialize;
-use setup::{Base, Setup};
+use setup::{Base, Setup, Shot};
 
 /// A setting is tried again, for its shortest time, while it took less than this many seconds in all.
 const SHORT_SECONDS: f64 = 0.25;
@@ -97,8 +97,6 @@ impl RenderRow {
 /// - `techniques`, `names`: the renderers, and the names of knobs in [`RENDER_KNOBS`]; a knob that a renderer does not have
 ///   is passed over.
 ///
-/// - `kept`: pictures that were made before.
-///
 /// Being stopped is no error: the study then holds what was finished.
 ///
 /// # Errors
@@ -109,9 +107,8 @@ pub fn renderers(
     names: &[&str],
     options: &Options,
     watch: &Watch<'_>,
-    kept: &Kept<Vec<Shot>>,
 ) -> Result<RenderStudy, StudyError> {
-    let base = Base::new(scene, options, kept)?;
+    let base = Base::new(scene, options)?;
     let chosen: Vec<(Technique, &RenderKnob)> = techniques
         .iter()
         .flat_map(|technique| technique.knobs().map(|knob| (*technique, knob)))
@@ -144,7 +141,7 @@ pub fn renderers(
 
 /// A scene, and the references that were made of it.
 struct Bench<'a> {
-    base: &'a Base<'a>,
+    base: &'a Base,
     watch: &'a Watch<'a>,
     references: Vec<(Setup, Reference)>,
     done: u64,

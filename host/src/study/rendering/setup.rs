@@ -5,9 +5,9 @@ use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::render::ray_tracing::{RayTracer, widest_disc};
 use crate::render::scan_line::ScanLine;
-use crate::render::{Order, Renderer, Watch};
+use crate::render::{Memo, Order, Renderer, Watch};
 use crate::scene::{Prepared, Scene, Settings};
-use crate::study::{Kept, Options, StudyError, resized};
+use crate::study::{Options, StudyError, resized};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -72,10 +72,8 @@ pub(super) struct Setup {
 }
 
 /// The scene that is studied, as it was asked for.
-pub(super) struct Base<'a> {
+pub(super) struct Base {
     scene: Scene,
-    /// What was rendered before.
-    kept: &'a Kept<Vec<Shot>>,
     pub(super) prepared: Prepared,
     pub(super) options: Options,
     /// What the scene would need if no knob held it back.
@@ -86,7 +84,7 @@ pub(super) struct Base<'a> {
 
 /// One rendering.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Shot {
+pub(super) struct Shot {
     pub(super) picture: Picture,
     /// From the scene to a renderer that has taken it up, seconds.
     pub(super) build: f64,
@@ -94,10 +92,10 @@ pub struct Shot {
     pub(super) render: f64,
 }
 
-impl<'a> Base<'a> {
+impl Base {
     /// # Errors
     /// [`StudyError::Scene`].
-    pub(super) fn new(scene: &Scene, options: &Options, kept: &'a Kept<Vec<Shot>>) -> Result<Base<'a>, StudyError> {
+    pub(super) fn new(scene: &Scene, options: &Options) -> Result<Base, StudyError> {
         let options = Options { settings: options.settings.clamp(2, 16), ..*options };
         let mut scene = resized(scene, &options);
         let prepared = Prepared::new(&scene)?;
@@ -110,7 +108,7 @@ impl<'a> Base<'a> {
         free.settings.spectral = free.settings.spectral.filter(|spectral| *spectral);
         free.settings.two_way = true;
         let plan = Plan::new(&free, &free.view());
-        Ok(Base { scene, kept, prepared, options, plan, largest_curved })
+        Ok(Base { scene, prepared, options, plan, largest_curved })
     }
 
     pub(super) fn settings(&self) -> &Settings {
@@ -197,7 +195,7 @@ impl<'a> Base<'a> {
         is_enough: &dyn Fn(&[Shot]) -> bool,
         watch: &Watch<'_>,
     ) -> Result<Vec<Shot>, StudyError> {
-        self.kept.next(|| self.shoot_now(setup, vary, is_enough, watch))
+        Memo::next(watch.memo, || self.shoot_now(setup, vary, is_enough, watch))
     }
 
     fn shoot_now(

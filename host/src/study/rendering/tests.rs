@@ -103,15 +103,14 @@ fn exact_ball(width: u32) -> Picture {
 }
 
 fn study(scene: &Scene, names: &[&str], options: Options) -> Vec<KnobStudy> {
-    let study = renderers(scene, RAYS, names, &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let study = renderers(scene, RAYS, names, &options, &Watch::NOBODY).expect("a study");
     assert!(study.complete);
     study.knobs
 }
 
 #[test]
 fn a_reference_is_as_near_to_the_closed_form_as_it_says() {
-    let kept = Kept::nowhere();
-    let base = Base::new(&ball(), &SMALL, &kept).expect("a scene");
+    let base = Base::new(&ball(), &SMALL).expect("a scene");
     let samples = RENDER_KNOBS.iter().find(|knob| knob.name == "samples").expect("a knob");
     let best = base.best(Technique::RayTracing, samples);
     let reference = Reference::new(base.halves(&best, &Watch::NOBODY).expect("pictures")).expect("a reference");
@@ -189,8 +188,7 @@ fn knobs_of_radiosity_are_idle_without_it_and_change_the_picture_with_it() {
 fn every_knob_changes_the_picture_or_says_why_not() {
     let options = Options { width: 12, samples: 64, settings: 3, ..SMALL };
     let names: Vec<&str> = RENDER_KNOBS.iter().map(|knob| knob.name).collect();
-    let mut found =
-        renderers(&all_knobs(), &Technique::ALL, &names, &options, &Watch::NOBODY, &Kept::nowhere()).expect("a study");
+    let mut found = renderers(&all_knobs(), &Technique::ALL, &names, &options, &Watch::NOBODY).expect("a study");
     let expected = RENDER_KNOBS.iter().map(|knob| knob.techniques.len()).sum::<usize>();
     assert_eq!(found.knobs.len(), expected);
     found.knobs.retain(|study| !study.name.starts_with("radiosity"));
@@ -225,7 +223,7 @@ fn every_knob_changes_the_picture_or_says_why_not() {
 #[test]
 fn scan_line_is_held_against_ray_tracing_where_it_leaves_nothing_out() {
     let study = |scene: &Scene, options: &Options| {
-        let study = renderers(scene, &[Technique::ScanLine], &["samples"], options, &Watch::NOBODY, &Kept::nowhere());
+        let study = renderers(scene, &[Technique::ScanLine], &["samples"], options, &Watch::NOBODY);
         study.expect("a study").knobs.remove(0)
     };
     let whole = study(&ball(), &SMALL);
@@ -240,7 +238,7 @@ fn what_was_finished_before_an_interruption_is_kept() {
     let cancelled = AtomicBool::new(false);
     let progress = |done: u64, _: u64| cancelled.store(done >= 2, std::sync::atomic::Ordering::Relaxed);
     let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
-    let found = renderers(&ball(), RAYS, &["samples", "error"], &SMALL, &watch, &Kept::nowhere()).expect("a part");
+    let found = renderers(&ball(), RAYS, &["samples", "error"], &SMALL, &watch).expect("a part");
     assert!(!found.complete && found.knobs.len() == 1 && found.knobs[0].rows.len() == 2, "{found:?}");
     assert_eq!(found.csv().lines().count(), 3);
 }
