@@ -1,6 +1,6 @@
 //! `peris boolean`: solids from solids.
 
-use super::{Exit, Failure, Row, formula};
+use super::{Exit, Failure, Row, formula, say};
 use crate::mesh::{self, Grouped, Look};
 use crate::solid::Solid;
 use anyhow::Context;
@@ -61,7 +61,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             "points": counts.points, "divided": counts.divided, "facets": counts.facets, "parts": counts.parts,
             "rays": counts.rays,
         });
-        say!("{known:#}");
+        say::report(known);
     } else {
         let empty = if mesh.triangles.is_empty() { "; the result is empty" } else { "" };
         say!(

@@ -1,6 +1,6 @@
 //! `peris check`: whether a mesh bounds a solid.
 
-use super::{Exit, Failure, Row};
+use super::{Exit, Failure, Row, say};
 use crate::mesh;
 use crate::solid::Solid;
 use clap::{Args, FromArgMatches};
@@ -41,7 +41,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             "triangles_without_area": report.slivers, "duplicate_triangles": duplicates,
             "euler_characteristic": report.euler_characteristic(),
         });
-        say!("{known:#}");
+        say::report(known);
     } else {
         say!("vertices                {}", report.vertices);
         say!("triangles               {}", report.triangles);

@@ -1,6 +1,6 @@
 //! `peris compose`: two pictures made one.
 
-use super::{Exit, Failure, Row};
+use super::{Exit, Failure, Row, say};
 use crate::picture::{self, Deep, Operator, Picture};
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -55,7 +55,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (width, height, coverage) = (picture.width(), picture.height(), covered / picture.pixels().len() as f64);
     if *json {
         let known = serde_json::json!({ "file": output, "width": width, "height": height, "coverage": coverage });
-        say!("{known:#}");
+        say::report(known);
     } else {
         say!("{}: {width} x {height} pixels, {:.1}% covered", output.display(), 100.0 * coverage);
     }

@@ -1,6 +1,6 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
-use super::{Definitions, Exit, Failure, Row, load};
+use super::{Definitions, Exit, Failure, Row, load, say};
 use crate::mesh::{self, Grouped};
 use crate::picture::Picture;
 use crate::scene::Prepared;
@@ -62,7 +62,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         picture.write(&destination)?;
         if *json {
             let known = serde_json::json!({ "file": output, "width": picture.width(), "height": picture.height() });
-            say!("{known:#}");
+            say::report(known);
         } else {
             say!("{}: {} x {} pixels", output.display(), picture.width(), picture.height());
         }
@@ -83,7 +83,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mesh = grouped.mesh;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     if *json {
-        say!("{:#}", serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));
+        say::report(serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));
     } else {
         say!("{}: {vertices} vertices, {triangles} triangles", output.display());
     }
@@ -107,7 +107,7 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
     destination.write_or_keep(|file| file.write_all(&text))?;
     let polygons = shown.points / 3;
     if *json {
-        say!("{:#}", serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));
+        say::report(serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));
     } else {
         say!("{}: {polygons} polygons, {} bytes", output.display(), text.len());
     }

@@ -3,15 +3,24 @@
 //! Files are written whole or not at all, databases keep their last transaction, and a PS 340 of our own ends when its
 //! orders do. So the program may end at any time, and does so at once, unless there is work in memory that is worth
 //! keeping: whoever holds such work says so by [`Keeping`], and is then asked to stop and to write it.
+//!
+//! It ends in the same way where more memory is wanted than it may hold.
 
 use super::{Exit, progress};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+use crate::memory;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
 use signal_hook::iterator::Signals;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How long a thread that wanted too much memory waits for the one that says so.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Set by the first signal, while something is to be kept.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// Bytes that were wanted beyond the limit; 0 before that.
+static WANTED: AtomicU64 = AtomicU64::new(0);
 static STATE: Mutex<State> = Mutex::new(State { keepers: 0, kept: String::new() });
 
 struct State {
@@ -25,13 +34,14 @@ fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on, signals end the program as this module says.
+/// From now on, signals end the program as this module says, and so does a want of more memory than it may hold.
 ///
 /// - `name`: of the sub-command, for messages.
-pub(super) fn begin(name: &str) {
+/// - `most`: bytes that the program may hold; none for no limit.
+pub(super) fn begin(name: &str, most: Option<u64>) {
     // A file that grows beyond a limit is an error of its writer, and no reason to end without a word.
     let is_refused = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).err();
-    let wanted = [Some(SIGINT), Some(SIGTERM), (!hangups_are_ignored()).then_some(SIGHUP)];
+    let wanted = [Some(SIGINT), Some(SIGTERM), Some(SIGUSR1), (!hangups_are_ignored()).then_some(SIGHUP)];
     let signals = match (Signals::new(wanted.into_iter().flatten()), is_refused) {
         (Ok(signals), None) => signals,
         (Err(error), _) | (_, Some(error)) => {
@@ -40,26 +50,55 @@ pub(super) fn begin(name: &str) {
     };
     let name = name.to_owned();
     std::thread::spawn(move || serve(signals, &name));
+    if let Some(most) = most {
+        memory::limit_to(most, end_for_memory);
+    }
 }
 
 fn serve(mut signals: Signals, name: &str) {
-    for _ in signals.forever() {
+    for signal in signals.forever() {
+        let wanted = WANTED.load(Ordering::Relaxed);
+        if signal == SIGUSR1 && wanted == 0 {
+            continue;
+        }
         // Who begins to keep something now must wait, and find out that it is too late.
         let state = state();
+        if wanted > 0 {
+            let limit = memory::readable(memory::limit().unwrap_or_default());
+            let event = format!("stopped at {limit} of memory when {} more were wanted", memory::readable(wanted));
+            let hint = " (--memory SIZE sets how much there is)";
+            end(name, &event, hint, &state, Exit::Failed);
+        }
         if state.keepers == 0 || INTERRUPTED.swap(true, Ordering::Relaxed) {
-            let stage = progress::current();
-            progress::clear();
-            let kept = match (state.keepers, state.kept.as_str()) {
-                (0, "") => "nothing is written",
-                (0, kept) => kept,
-                _ => "not waiting for what is being written",
-            };
-            let space = if stage.is_empty() { "" } else { " " };
-            eprintln!("peris {name}: interrupted{space}{stage}; {kept}");
-            let _naming = files::naming();
-            std::process::exit(Exit::Interrupted as i32);
+            end(name, "interrupted", "", &state, Exit::Interrupted);
         }
     }
+}
+
+/// Says what happened while what was done, and ends.
+fn end(name: &str, event: &str, hint: &str, state: &State, exit: Exit) -> ! {
+    let stage = progress::current();
+    progress::clear();
+    let kept = match (state.keepers, state.kept.as_str()) {
+        (1.., _) if exit == Exit::Interrupted => "not waiting for what is being written",
+        (_, "") => "nothing is written",
+        (_, kept) => kept,
+    };
+    let space = if stage.is_empty() { "" } else { " " };
+    eprintln!("peris {name}: {event}{space}{stage}{hint}; {kept}");
+    let _naming = files::naming();
+    std::process::exit(exit as i32);
+}
+
+/// Ends the program where more memory is wanted than it may hold.
+///
+/// The thread that wants it may hold any lock, so another one speaks.
+fn end_for_memory(wanted: u64) -> ! {
+    WANTED.store(wanted.max(1), Ordering::Relaxed);
+    if signal_hook::low_level::raise(SIGUSR1).is_ok() {
+        std::thread::sleep(PATIENCE);
+    }
+    signal_hook::low_level::exit(Exit::Failed as i32)
 }
 
 /// Whether the process was started so that it outlives its terminal, as `nohup` does.

@@ -1,6 +1,6 @@
 //! `peris intersect`: accurate curves in which the objects of a scene meet.
 
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load};
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load, say};
 use crate::intersection::{Branch, Intersection, Mark, Precision, csv, obj};
 use crate::scene::meetings;
 use clap::{Args, FromArgMatches};
@@ -60,7 +60,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.json {
         let all: Vec<Value> = named.iter().map(|(names, intersection)| described(names, intersection)).collect();
-        say!("{:#}", json!({ "seconds": seconds, "meetings": all }));
+        say::report(json!({ "seconds": seconds, "meetings": all }));
     } else {
         named.iter().for_each(|(names, intersection)| tell(names, intersection));
         say!("{} pairs of objects meet, found in {:.1} ms", named.len(), seconds * 1e3);

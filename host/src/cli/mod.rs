@@ -31,13 +31,18 @@ use source::load_lit;
 pub use source::{Definitions, SCRIPT_HELP, load};
 
 use crate::illumination::Bands;
+use crate::memory;
 use crate::scene::Scene;
-use clap::{ArgMatches, Command};
+use clap::{Arg, ArgMatches, Command};
 use std::num::NonZeroUsize;
 use std::process::ExitCode;
 
 /// Most threads that a command takes.
 const MAX_THREADS: usize = 1024;
+/// Which part of the machine's memory a command may take if nothing else is said: one of so many.
+const PART_OF_MACHINE: u64 = 4;
+/// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
+const LEAST_MEMORY: u64 = 64 << 20;
 
 /// A sub-command.
 pub struct Row {
@@ -75,11 +80,18 @@ pub const COMMANDS: &[Row] = &[
 
 /// The command line as clap knows it.
 pub fn command() -> Command {
+    let memory = Arg::new("memory")
+        .long("memory")
+        .value_name("SIZE")
+        .global(true)
+        .value_parser(bytes)
+        .help("Most memory to take, such as 512M or 8G; a quarter of the machine's if not given");
     let program = Command::new("peris")
         .about("Models an environment, renders it, and shows it on a PS 340.")
         .version(env!("CARGO_PKG_VERSION"))
         .subcommand_required(true)
         .arg_required_else_help(true)
+        .arg(memory)
         .after_help(exit::table());
     COMMANDS.iter().fold(program, |program, row| {
         let sub = (row.arguments)(Command::new(row.name)).about(row.summary).after_help(exit::table());
@@ -101,7 +113,8 @@ pub fn main() -> ExitCode {
     let Some((name, arguments)) = matches.subcommand() else { return Exit::Usage.into() };
     let Some(row) = COMMANDS.iter().find(|row| row.name == name) else { return Exit::Usage.into() };
     progress::begin(matches!(arguments.try_get_one("json"), Ok(Some(true))));
-    interrupts::begin(name);
+    let asked = arguments.get_one("memory").copied();
+    interrupts::begin(name, asked.or_else(|| Some(memory::machine()? / PART_OF_MACHINE)));
     let ended = (row.run)(arguments);
     progress::clear();
     match ended {
@@ -142,6 +155,24 @@ fn threads(text: &str) -> Result<NonZeroUsize, String> {
     count.ok_or_else(|| format!("give 1 to {MAX_THREADS}"))
 }
 
+/// Reads a number of bytes.
+fn bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "" | "B" => 0,
+        "K" | "KB" | "KIB" => 10,
+        "M" | "MB" | "MIB" => 20,
+        "G" | "GB" | "GIB" => 30,
+        "T" | "TB" | "TIB" => 40,
+        _ => return Err("give a number of bytes with K, M, G or T behind it, such as 512M".into()),
+    };
+    let bytes = digits.parse().ok().map(|number: f64| number * 2f64.powi(unit));
+    let bytes = bytes.filter(|bytes| (LEAST_MEMORY as f64..=u64::MAX as f64).contains(bytes));
+    bytes
+        .map(|bytes| bytes as u64)
+        .ok_or_else(|| format!("give at least {}, such as 512M", memory::readable(LEAST_MEMORY)))
+}
+
 /// Reads a length above 0.
 fn length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| *length > 0.0 && *length < f64::INFINITY);
@@ -169,6 +200,18 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         command().debug_assert();
+    }
+
+    #[test]
+    fn memory_is_given_in_bytes_and_their_multiples() {
+        for (text, expected) in
+            [("512M", 512 << 20), ("0.5GiB", 512 << 20), ("100000000", 100_000_000), ("2t", 2 << 40)]
+        {
+            assert_eq!(bytes(text), Ok(expected), "{text}");
+        }
+        for text in ["", "M", "63M", "-1G", "1X", "NaNG", "1e300G", "infT"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `peris octree`: the linear octree of a scene, or one from a file.
 
-use super::{Definitions, Exit, Failure, Row, load};
+use super::{Definitions, Exit, Failure, Row, load, say};
+use crate::memory;
 use crate::octree::{ENDING, MAX_BYTES, MAX_DEPTH, Octree, Settings, Statistics};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
@@ -56,7 +57,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         let mut json = serde_json::to_value(&statistics)?;
         json["build_seconds"] = seconds.into();
-        say!("{}", serde_json::to_string_pretty(&json)?);
+        say::report(json);
     } else {
         say!(
             "{} triangles in {} terminal nodes, {} in {seconds:.3} s, {:.1} bytes a triangle",
@@ -104,7 +105,7 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Octree, f64), Failure> {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
     }
     let start = Instant::now();
-    let bytes = files::read(path, MAX_BYTES).map_err(|error| failed(path, &error))?;
+    let bytes = memory::read(path, MAX_BYTES).map_err(|error| failed(path, &error))?;
     let octree = Octree::from_bytes(&bytes).map_err(|error| failed(path, &error))?;
     Ok((octree, start.elapsed().as_secs_f64()))
 }

@@ -1,6 +1,6 @@
 //! `peris tessellate`: the triangles of a scene, to a tolerance.
 
-use super::{Definitions, Failure, Row, load};
+use super::{Definitions, Failure, Row, load, say};
 use crate::mesh;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
@@ -54,7 +54,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             "file": output, "objects": objects, "surfaces": surfaces, "vertices": vertices, "triangles": triangles,
             "seconds": seconds, "chord_error": error,
         });
-        say!("{known:#}");
+        say::report(known);
     } else {
         say!(
             "{}: {objects} objects, {surfaces} surfaces, {vertices} vertices, {triangles} triangles in {seconds:.3} s; \

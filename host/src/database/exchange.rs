@@ -8,6 +8,7 @@ use super::{Content, Curves, DatabaseError, Record, check_name};
 use crate::color::shipped::Metal;
 use crate::color::{Beyond, Origin, Spectrum, columns};
 use crate::illumination::{Light, Material};
+use crate::memory;
 use crate::mesh;
 use crate::picture::Picture;
 use files::Destination;
@@ -136,7 +137,7 @@ fn unknown_ending(path: &Path) -> DatabaseError {
 
 fn text_of(path: &Path) -> Result<String, DatabaseError> {
     let failed = |source| DatabaseError::File { path: path.into(), source };
-    files::read_text(path, MAX_TEXT).map_err(failed)
+    memory::read_text(path, MAX_TEXT).map_err(failed)
 }
 
 fn of_columns(

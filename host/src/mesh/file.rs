@@ -1,5 +1,6 @@
 //! Mesh files: the format by the extension, the limits, and the way in and out.
 
+use crate::memory;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::Path;
@@ -68,9 +69,9 @@ pub fn read_grouped(path: impl AsRef<Path>) -> Result<Grouped, MeshError> {
     let path = path.as_ref();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
     let in_content = |fault| MeshError::Content { path: path.to_owned(), fault };
-    let bytes = files::read(path, MAX_BYTES).map_err(|source| MeshError::File { path: path.to_owned(), source })?;
+    let bytes = memory::read(path, MAX_BYTES).map_err(|source| MeshError::File { path: path.to_owned(), source })?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let neighbour = |name: &str| files::read(&folder.join(name), MAX_BYTES).map_err(|error| error.to_string());
+    let neighbour = |name: &str| memory::read(&folder.join(name), MAX_BYTES).map_err(|error| error.to_string());
     let grouped = parse_beside(&bytes, format, &neighbour).map_err(in_content)?;
     // Bytes of any kind can pass for an OBJ file without a face.
     let is_empty = grouped.mesh.triangles.is_empty();

@@ -6,7 +6,10 @@ pub mod exact;
 pub mod implicit;
 pub mod plane;
 pub mod predicates;
+mod print;
 pub mod ray;
 pub mod sampling;
 pub mod sequence;
 pub mod triangle;
+
+pub(crate) use print::print_of;

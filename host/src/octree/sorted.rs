@@ -209,12 +209,22 @@ impl Sorted {
     /// Pairs of triangles of this set, the lower first, whose boxes have a point in common and that `keep` accepts, in a
     /// fixed order.
     pub fn pairs_within(&self, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
+        self.pairs_within_until(|| false, keep)
+    }
+
+    /// Pairs of triangles of this set as [`Sorted::pairs_within`] gives them; some of them where `is_enough` becomes true
+    /// before all are found.
+    pub fn pairs_within_until(
+        &self,
+        is_enough: impl Fn() -> bool + Sync,
+        keep: impl Fn(u32, u32) -> bool + Sync,
+    ) -> Vec<[u32; 2]> {
         let Some(top) = self.top() else { return Vec::new() };
         let open = |pair: Pair, found: &mut Vec<_>| {
             self.open_own(pair, self.at(pair.1), |pair, _| found.push(pair));
         };
         searched((top, top), open, |pair, found| {
-            self.descend_own(pair, self.at(pair.1), &mut |(one, two)| {
+            self.descend_own(pair, self.at(pair.1), &is_enough, &mut |(one, two)| {
                 let (a, b) = (self.order[one.index as usize], self.order[two.index as usize]);
                 if one.index != two.index && keep(a.min(b), a.max(b)) {
                     found.push([a.min(b), a.max(b)]);
@@ -332,9 +342,10 @@ impl Sorted {
     }
 
     /// Visits the pairs of triangles under two boxes of one level, the second not before the first, and given.
-    fn descend_own(&self, pair: Pair, beside: Bounds, visit: &mut impl FnMut(Pair)) {
+    fn descend_own(&self, pair: Pair, beside: Bounds, is_enough: &impl Fn() -> bool, visit: &mut impl FnMut(Pair)) {
         match is_open(&pair) {
-            true => self.open_own(pair, beside, |pair, beside| self.descend_own(pair, beside, visit)),
+            true if is_enough() => {}
+            true => self.open_own(pair, beside, |pair, beside| self.descend_own(pair, beside, is_enough, visit)),
             false => visit(pair),
         }
     }

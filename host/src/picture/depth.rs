@@ -1,12 +1,10 @@
 //! Pictures with a depth for each pixel, as EXR files with a layer Z.
 
+use super::file::pixel_of;
+use super::source::{Source, Texel};
 use super::{Picture, PictureError, Pixel, encoder};
-use exr::meta::MetaData;
-use exr::prelude::{
-    AnyChannel, AnyChannels, FlatSamples, Image, ReadChannels, ReadLayers, ReadSpecificChannel, WritableImage, read,
-};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
 use files::Destination;
-use std::io::BufReader;
 use std::path::Path;
 
 /// A picture with the depth of what its pixels show.
@@ -36,49 +34,27 @@ impl Deep {
     /// Reads an EXR file with layers R, G, B and Z, and A if it is there, in which every number but Z must be finite.
     ///
     /// # Errors
-    /// [`PictureError::Layers`] for a file that is missing, broken or without these layers, [`PictureError::Size`] for
-    /// one that is too large, [`PictureError::Number`] for one with other numbers.
+    /// [`PictureError::Broken`] for a file that is broken or without these layers, [`PictureError::Number`] for one with
+    /// other numbers, those of [`Picture::read`] for others.
     pub fn read(path: &Path) -> Result<Deep, PictureError> {
-        let failed = |problem: String| PictureError::Layers { path: path.into(), problem };
-        // Sizes are looked at before there is memory for them.
-        let open = || files::open(path).map(BufReader::new).map_err(|error| failed(error.to_string()));
-        let known = MetaData::read_from_buffered(open()?, false).map_err(|error| failed(error.to_string()))?;
-        for header in &known.headers {
-            let [width, height] =
-                [header.layer_size.0, header.layer_size.1].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
-            Picture::pixels_of(width, height)?;
+        let broken = |problem: String| PictureError::Broken { path: path.into(), problem };
+        let source = Source::open(path)?;
+        if !source.has_depth() {
+            return Err(broken("has no layer Z, as the files that peris render --layers writes".into()));
         }
-        let has = |name: &str| {
-            known.headers.iter().any(|header| header.channels.list.iter().any(|channel| channel.name.eq(name)))
-        };
-        if let Some(name) = ["R", "G", "B", "Z"].into_iter().find(|name| !has(name)) {
-            return Err(failed(format!("has no layer {name}, as those that peris render --layers writes")));
-        }
-        let image = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .specific_channels()
-            .required("R")
-            .required("G")
-            .required("B")
-            .required("Z")
-            .optional("A", 1.0f32)
-            .collect_pixels(
-                |size, _| (size.0, vec![(Pixel::default(), f32::INFINITY); size.0 * size.1]),
-                |(width, pixels), at, (r, g, b, z, a): (f32, f32, f32, f32, f32)| {
-                    pixels[at.1 * *width + at.0] = (Pixel { radiance: [r, g, b], coverage: a }, z);
-                },
-            )
-            .first_valid_layer()
-            .all_attributes()
-            .from_buffered(open()?)
-            .map_err(|error| failed(error.to_string()))?;
-        let size = image.layer_data.size;
-        let (pixels, depth): (Vec<Pixel>, Vec<f32>) = image.layer_data.channel_data.pixels.1.into_iter().unzip();
-        let picture = Picture { width: size.0 as u32, height: size.1 as u32, pixels };
+        let mut picture = Picture::for_source(&source, path, size_of::<Pixel>() + size_of::<f32>())?;
+        let mut depth = vec![f32::INFINITY; picture.pixels.len()];
+        let width = picture.width as usize;
+        source.each(|x, y, texel| {
+            let at = y as usize * width + x as usize;
+            picture.pixels[at] = pixel_of(texel);
+            if let Texel::Float([.., z]) = texel {
+                depth[at] = z;
+            }
+        })?;
         picture.check_finite(path)?;
         if let Some(at) = depth.iter().position(|z| z.is_nan()) {
-            return Err(failed(format!("Z of pixel {},{} is no number", at % size.0, at / size.0)));
+            return Err(broken(format!("Z of pixel {},{} is no number", at % width, at / width)));
         }
         Ok(Deep { picture, depth })
     }

@@ -1,82 +1,13 @@
 //! Pictures as files: PNG with eight bits sRGB, OpenEXR with linear 32-bit floats.
 
-use super::{Picture, Pixel, encoder};
+use super::source::{Source, Texel, format_of};
+use super::{Picture, PictureError, Pixel, encoder};
+use crate::memory;
 use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
-use files::{Destination, WriteError};
-use image::{DynamicImage, ImageFormat, ImageReader, Limits};
-use protocol::raster::linear_from_srgb;
-use std::io::BufReader;
-use std::path::{Path, PathBuf};
-
-/// Most bytes that reading a picture may allocate.
-const MAX_READ_BYTES: u64 = 8 << 30;
-
-/// What can go wrong with a picture.
-#[derive(Debug, thiserror::Error)]
-pub enum PictureError {
-    /// An empty side, or too many pixels.
-    #[error("a picture of {width} x {height} pixels is empty or larger than {} pixels", super::MAX_PIXELS)]
-    Size {
-        /// Columns asked for.
-        width: u32,
-        /// Rows asked for.
-        height: u32,
-    },
-    /// The file with layers cannot be read.
-    #[error("{}: {problem}", path.display())]
-    Layers {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        problem: String,
-    },
-    /// A file holds a number that is infinite or none.
-    #[error("{}: pixel {x},{y} holds something that is no finite number", path.display())]
-    Number {
-        /// The file.
-        path: PathBuf,
-        /// Column, from the left.
-        x: u32,
-        /// Row, from the top.
-        y: u32,
-    },
-    /// Two pictures that were to be compared or combined differ in size.
-    #[error("pictures of different size: {0} x {1} and {2} x {3} pixels")]
-    Mismatch(u32, u32, u32, u32),
-    /// The name ends in something else than the formats known.
-    #[error("{}: a picture's name ends in .png or .exr", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The file cannot be read.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: image::ImageError,
-    },
-    /// The file cannot be opened.
-    #[error("{}: {source}", path.display())]
-    Open {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The file cannot be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
-
-fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
-    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("png") => Ok(ImageFormat::Png),
-        Some("exr") => Ok(ImageFormat::OpenExr),
-        _ => Err(PictureError::Format { path: path.into() }),
-    }
-}
+use files::Destination;
+use image::ImageFormat;
+use protocol::raster::{light_of_srgb, linear_from_srgb};
+use std::path::Path;
 
 impl Picture {
     /// Whether a name is that of an EXR file.
@@ -131,27 +62,21 @@ impl Picture {
     /// # Errors
     /// [`PictureError`] for a file that is missing, broken, of another format or too large.
     pub fn read(path: &Path) -> Result<Picture, PictureError> {
-        let format = format_of(path)?;
-        let file = files::open(path).map_err(|source| PictureError::Open { path: path.into(), source })?;
-        let mut reader = ImageReader::new(BufReader::new(file));
-        reader.set_format(format);
-        let mut limits = Limits::default();
-        limits.max_alloc = Some(MAX_READ_BYTES);
-        reader.limits(limits);
-        let decoded = reader.decode().map_err(|source| PictureError::File { path: path.into(), source })?;
-        let mut picture = Picture::new(decoded.width(), decoded.height())?;
-        let linear = matches!(decoded, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-        if linear {
-            for (pixel, p) in picture.pixels.iter_mut().zip(decoded.to_rgba32f().pixels()) {
-                *pixel = Pixel { radiance: [p[0], p[1], p[2]], coverage: p[3] };
-            }
-        } else {
-            for (pixel, p) in picture.pixels.iter_mut().zip(decoded.to_rgba8().pixels()) {
-                let coverage = f32::from(p[3]) / 255.0;
-                *pixel = Pixel { radiance: [p[0], p[1], p[2]].map(|c| coverage * linear_from_srgb(c)), coverage };
-            }
-        }
+        let source = Source::open(path)?;
+        let mut picture = Picture::for_source(&source, path, size_of::<Pixel>())?;
+        let width = picture.width as usize;
+        source.each(|x, y, texel| picture.pixels[y as usize * width + x as usize] = pixel_of(texel))?;
         Ok(picture)
+    }
+
+    /// A black picture of the size of a file, if there is memory for it.
+    ///
+    /// - `bytes`: for each pixel.
+    pub(super) fn for_source(source: &Source<'_>, path: &Path, bytes: usize) -> Result<Picture, PictureError> {
+        let [width, height] = source.size();
+        let bytes = Picture::pixels_of(width, height)? as u64 * bytes as u64;
+        memory::ask(bytes, || format!("{}: a picture of {width} x {height} pixels", path.display()))?;
+        Picture::new(width, height)
     }
 
     /// Reads a PNG or EXR file as [`Picture::read`] does, in which every number must be finite.
@@ -174,6 +99,19 @@ impl Picture {
                 Err(PictureError::Number { path: path.into(), x, y })
             }
         }
+    }
+}
+
+/// The pixel that a file tells. Colors beside a coverage are premultiplied by it.
+pub(super) fn pixel_of(texel: Texel) -> Pixel {
+    let beside = |light: [f32; 3], coverage: f32| Pixel { radiance: light.map(|c| coverage * c), coverage };
+    match texel {
+        Texel::Eight([r, g, b, a]) => beside([r, g, b].map(linear_from_srgb), f32::from(a) / 255.0),
+        Texel::Sixteen([r, g, b, a]) => {
+            let light = [r, g, b].map(|code| light_of_srgb(f64::from(code) / 65_535.0) as f32);
+            beside(light, (f64::from(a) / 65_535.0) as f32)
+        }
+        Texel::Float([r, g, b, a, _]) => Pixel { radiance: [r, g, b], coverage: a },
     }
 }
 
@@ -235,7 +173,7 @@ mod tests {
         assert!(matches!(Picture::destination(&folder.path().join("none/a.png")), Err(PictureError::Write(_))));
         let path = folder.path().join("broken.png");
         std::fs::write(&path, b"no picture").expect("written");
-        assert!(matches!(Picture::read(&path), Err(PictureError::File { .. })));
+        assert!(matches!(Picture::read(&path), Err(PictureError::Broken { .. })));
         assert!(matches!(Picture::read(&folder.path().join("none.png")), Err(PictureError::Open { .. })));
         assert!(matches!(Picture::new(0, 5), Err(PictureError::Size { .. })));
         assert!(matches!(Picture::new(u32::MAX, u32::MAX), Err(PictureError::Size { .. })));

@@ -4,13 +4,15 @@ mod compose;
 mod depth;
 mod difference;
 pub(crate) mod encoder;
+mod error;
 mod file;
 mod flip;
+pub(crate) mod source;
 
 pub use compose::{Operator, compose, compose_by_depth};
 pub use depth::Deep;
 pub use difference::{Difference, RELATIVE_FLOOR, difference};
-pub use file::PictureError;
+pub use error::PictureError;
 pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip};
 
 use crate::memory::prefer_large_pages;

@@ -2,12 +2,15 @@
 
 use super::RenderError;
 use crate::color::{Channels, Curve, Wavelengths};
+use crate::illumination::Material;
 use crate::illumination::light::{Glow, Source};
 use crate::illumination::optics::{Interreflection, Library, Optics};
+use crate::numeric::print_of;
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
 use crate::scene::Prepared;
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 
 /// A prepared scene with its materials and lights made ready.
 pub(super) struct Appearance<'a> {
@@ -65,27 +68,26 @@ impl<'a> Appearance<'a> {
     fn add_materials(&mut self, plan: &Plan) -> Result<(), RenderError> {
         let wavelengths = self.wavelengths.clone();
         let mut library = Library::new(&wavelengths, plan.forced);
-        let mut known = Vec::new();
+        let mut known: FxHashMap<u64, Vec<(&Material, u32)>> = FxHashMap::default();
         for object in &self.prepared.objects {
             let mut numbers = Vec::with_capacity(object.materials.len());
             for material in &object.materials {
-                let found = known.iter().position(|other| *other == material);
-                let number = match found {
-                    Some(number) => number,
-                    None => {
-                        let failed = |source| RenderError::Material { object: object.name.clone(), source };
-                        let diffuse = match self.prepared.settings.interreflection {
-                            // What radiosity knows is not looked for again.
-                            _ if plan.needs(Stage::Radiosity) => Interreflection::Solved,
-                            true => Interreflection::Followed,
-                            false => Interreflection::LeftOut,
-                        };
-                        self.optics.push(library.optics(material, diffuse).map_err(failed)?);
-                        known.push(material);
-                        known.len() - 1
-                    }
+                let alike = known.entry(print_of(material)).or_default();
+                if let Some((_, number)) = alike.iter().find(|(other, _)| *other == material) {
+                    numbers.push(*number);
+                    continue;
+                }
+                let failed = |source| RenderError::Material { object: object.name.clone(), source };
+                let diffuse = match self.prepared.settings.interreflection {
+                    // What radiosity knows is not looked for again.
+                    _ if plan.needs(Stage::Radiosity) => Interreflection::Solved,
+                    true => Interreflection::Followed,
+                    false => Interreflection::LeftOut,
                 };
-                numbers.push(number as u32);
+                let number = self.optics.len() as u32;
+                self.optics.push(library.optics(material, diffuse).map_err(failed)?);
+                alike.push((material, number));
+                numbers.push(number);
             }
             self.optics_of.push(numbers);
         }

@@ -12,6 +12,7 @@ mod placing;
 mod prepared;
 mod sculpture;
 mod shape;
+mod shared;
 mod studio;
 mod triangles;
 mod view;

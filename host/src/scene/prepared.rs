@@ -2,6 +2,7 @@
 
 use super::exact::Exact;
 use super::placing;
+use super::shared::Shared;
 use super::{Camera, Made, Motion, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
@@ -117,17 +118,18 @@ impl Prepared {
             settings: scene.settings,
             bounds: Bounds::EMPTY,
         };
+        let mut shared = Shared::of(scene);
         for (index, object) in scene.objects.iter().enumerate() {
-            prepared.add(object, scene.motion(index))?;
+            let made = shared.made(scene, index)?;
+            prepared.add(object, &made, scene.motion(index))?;
         }
         prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.bounds));
         Ok(prepared)
     }
 
-    fn add(&mut self, object: &Object, motion: Option<Motion>) -> Result<(), SceneError> {
+    fn add(&mut self, object: &Object, made: &Made, motion: Option<Motion>) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let (Made { mesh, surfaces, operand_of, lines }, tolerance) =
-            object.made(self.settings.tolerance, self.settings.angle)?;
+        let Made { mesh, surfaces, operand_of, lines } = made;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
         }
@@ -151,15 +153,15 @@ impl Prepared {
             [a + base, b + base, c + base]
         }));
         self.object_of.resize(self.triangles.len(), self.objects.len() as u32);
-        let normals_from = self.add_normals(&mesh, &object.transform, mirrored);
+        let normals_from = self.add_normals(mesh, &object.transform, mirrored);
         let is_wanted = self.settings.exact_surfaces && normals_from.is_some();
-        let surfaces_from = if is_wanted { self.exact.add(&mesh, &surfaces) } else { None };
-        let needs_parameters = surfaces_from.is_some() || object.needs_parameters(&operand_of);
+        let surfaces_from = if is_wanted { self.exact.add(mesh, surfaces) } else { None };
+        let needs_parameters = surfaces_from.is_some() || object.needs_parameters(operand_of);
         let parameters_from = needs_parameters.then_some(self.parameters.len() as u32);
         if parameters_from.is_some() {
-            self.parameters.extend(placing::parameters(&mesh, &surfaces, mirrored));
+            self.parameters.extend(placing::parameters(mesh, surfaces, mirrored));
         }
-        let (materials, materials_from) = self.add_materials(object, &operand_of);
+        let (materials, materials_from) = self.add_materials(object, operand_of);
         if motion.is_some() && materials.iter().any(|material| !material.emission.is_black()) {
             return Err(failed("it emits light, and what emits light cannot move".into()));
         }
@@ -172,7 +174,7 @@ impl Prepared {
             count: mesh.triangles.len() as u32,
             bounds,
             motion,
-            tolerance,
+            tolerance: object.scene_chord(self.settings.tolerance),
             normals_from,
             parameters_from,
             to_own: object.transform.inverse(),
@@ -291,12 +293,15 @@ impl Object {
         Some(self.shape.extent()? * largest_stretch(&self.transform))
     }
 
-    /// The triangles in own coordinates, and the tolerance in scene units that they were made for (0 for flat shapes).
-    pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<(Made, f64), SceneError> {
-        let stretch = largest_stretch(&self.transform);
+    /// The triangles in own coordinates.
+    pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Made, SceneError> {
         let tolerance = self.own_tolerance(scene_tolerance, angle);
-        let made = self.shape.made(tolerance).map_err(|source| self.failed(source))?;
-        Ok((made, self.own_chord(scene_tolerance).unwrap_or(0.0) * stretch))
+        self.shape.made(tolerance).map_err(|source| self.failed(source))
+    }
+
+    /// The tolerance in scene units; 0 for flat shapes.
+    fn scene_chord(&self, scene_tolerance: Option<f64>) -> f64 {
+        self.own_chord(scene_tolerance).unwrap_or(0.0) * largest_stretch(&self.transform)
     }
 
     /// The tolerance in own coordinates; none for flat shapes.
@@ -306,7 +311,7 @@ impl Object {
     }
 
     /// In own coordinates; a flat shape fits any.
-    fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
+    pub(super) fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
         Tolerance::new(self.own_chord(scene_tolerance).unwrap_or(f64::MAX), angle)
     }
 

@@ -8,6 +8,7 @@ use super::prepared::largest_stretch;
 use super::sculpture::{Sculpture, SculptureError};
 use crate::database::{Content, DatabaseError, Kind, Library};
 use crate::intersection::Precision;
+use crate::memory;
 use crate::mesh::{self, Mesh, MeshError, Polylines, edges::EdgeTable};
 use crate::octree::{self, Octree};
 use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError};
@@ -306,7 +307,7 @@ fn mesh_of(path: &Path) -> Result<Mesh, ShapeError> {
         return Ok(mesh::read(path)?);
     }
     let failed = |problem: String| ShapeError::Octree { path: path.into(), problem };
-    let bytes = files::read(path, octree::MAX_BYTES).map_err(|error| failed(error.to_string()))?;
+    let bytes = memory::read(path, octree::MAX_BYTES).map_err(|error| failed(error.to_string()))?;
     Ok(Octree::from_bytes(&bytes).map_err(|error| failed(error.to_string()))?.mesh())
 }
 

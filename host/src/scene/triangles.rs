@@ -19,7 +19,7 @@ impl Scene {
     pub fn tessellated(&self) -> Result<Grouped, SceneError> {
         self.check()?;
         let settings = &self.settings;
-        let made = |object: &Object| object.made(settings.tolerance, settings.angle).map(|(made, _)| made);
+        let made = |object: &Object| object.made(settings.tolerance, settings.angle);
         let all = self.objects.par_iter().map(made).collect::<Result<Vec<Made>, SceneError>>()?;
         let mut whole = Grouped::default();
         for (object, Made { mut mesh, operand_of, .. }) in self.objects.iter().zip(all) {

@@ -6,7 +6,11 @@ use crate::database::Library;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Scene, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
+use std::collections::HashMap;
 use std::path::PathBuf;
+
+/// Longest name of an object.
+const MOST_LETTERS: usize = 200;
 
 /// What a script holds of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +23,8 @@ pub(super) struct Builder {
     objects: Vec<Option<Object>>,
     /// How objects move, by handle.
     motions: Vec<Option<Motion>>,
+    /// How many objects of each kind there have been.
+    of_kind: HashMap<&'static str, u32>,
     /// When the shutter opens and closes.
     pub(super) shutter: [f64; 2],
     /// Where relative paths begin.
@@ -36,6 +42,7 @@ impl Builder {
             scene: Scene::default(),
             objects: Vec::new(),
             motions: Vec::new(),
+            of_kind: HashMap::new(),
             shutter: [0.0, 1.0],
             folder,
             definitions: Definitions::new(given),
@@ -82,10 +89,11 @@ impl Builder {
         if index >= MAX_OBJECTS {
             return Err(format!("more than {MAX_OBJECTS} objects"));
         }
-        let same = self.objects.iter().flatten().filter(|o| o.shape.word() == shape.word()).count();
-        let name = match same {
-            0 => shape.word().to_owned(),
-            n => format!("{} {}", shape.word(), n + 1),
+        let number = self.of_kind.entry(shape.word()).or_default();
+        *number += 1;
+        let name = match number {
+            1 => shape.word().to_owned(),
+            number => format!("{} {number}", shape.word()),
         };
         self.objects.push(Some(Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance }));
         self.motions.push(None);
@@ -96,6 +104,19 @@ impl Builder {
     pub(super) fn object(&mut self, handle: Option<Handle>) -> Result<&mut Object, String> {
         let object = handle.and_then(|h| self.objects.get_mut(h.0)).ok_or("there is no such object")?;
         object.as_mut().ok_or_else(|| "the object became part of another; copy() it before".into())
+    }
+
+    /// Names an object.
+    pub(super) fn name(&mut self, handle: Option<Handle>, name: &str) -> Done {
+        let object = self.object(handle)?;
+        if name.chars().count() > MOST_LETTERS {
+            return Err(format!("a name has at most {MOST_LETTERS} characters"));
+        }
+        if name.chars().any(char::is_control) {
+            return Err("a name has no control characters".into());
+        }
+        object.name = name.to_owned();
+        Ok(value(handle))
     }
 
     /// Adds a copy of an object.

@@ -1,8 +1,13 @@
 //! Parameters of scripts: what the command line gives, and what a script asks for.
 
-use rhai::Dynamic;
+use rhai::{Dynamic, ImmutableString};
 use std::fmt::Write;
 use std::str::FromStr;
+
+/// Most parameters of a script.
+const MOST_PARAMETERS: usize = 1000;
+/// Longest name, meaning or default of a parameter, bytes.
+const MOST_BYTES: usize = 4096;
 
 /// A value for a parameter of a script, as text: `name=value`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +60,16 @@ impl Definitions {
             return Err(format!("name must be letters, digits and underscores, not {name:?}"));
         }
         if !self.asked.iter().any(|asked| asked.name == name) {
+            if self.asked.len() == MOST_PARAMETERS {
+                return Err(format!("a script has at most {MOST_PARAMETERS} parameters"));
+            }
+            let text = default.read_lock::<ImmutableString>().map_or(0, |text| text.len());
+            if let Some((what, _)) = [("name", name.len()), ("meaning", meaning.len()), ("default", text)]
+                .into_iter()
+                .find(|(_, bytes)| *bytes > MOST_BYTES)
+            {
+                return Err(format!("the {what} of a parameter has at most {MOST_BYTES} bytes"));
+            }
             let (name, meaning) = (name.to_owned(), meaning.to_owned());
             self.asked.push(Asked { name, default: default.clone(), meaning });
         }

@@ -3,13 +3,15 @@
 use super::argument::Bound;
 use super::builder::{Builder, Handle};
 use super::definition::Definition;
-use super::error::{self, ScriptError};
+use super::error::{self, OutOfMemory, ScriptError};
 use super::function::{Function, Kind};
+use super::printed::Printed;
 use super::spline::ControlMeaning;
 use super::{Evaluated, functions};
 use crate::curve::SplineCurve;
 use crate::illumination::Paint;
 use crate::illumination::distribution::{FacetError, FacetTable};
+use crate::memory;
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, FnPtr, Map, NativeCallContext};
 use std::cell::RefCell;
@@ -28,8 +30,10 @@ const MAX_ELEMENTS: usize = 1 << 14;
 const MAX_CALLS: usize = 64;
 /// Deepest nesting of expressions, outside and inside functions.
 const MAX_NESTING: (usize, usize) = (64, 48);
-/// Most lines that a script may print.
-const MAX_PRINTED: usize = 10_000;
+/// How many of the operations look at the memory: one of so many.
+const LOOKS_AT_MEMORY: u64 = 64;
+/// Part of the memory that is kept for what is made of the scene, when a script is refused: one of so many.
+const KEPT: u64 = 16;
 /// Words that scripts may not use: they run text and load other files.
 const FORBIDDEN: [&str; 2] = ["eval", "import"];
 
@@ -42,21 +46,16 @@ type State = Rc<RefCell<Builder>>;
 /// Reads a script.
 pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
     let failed = |source| ScriptError::Read { path: path.into(), source };
-    files::read_text(path, MAX_SCRIPT_BYTES).map_err(failed)
+    memory::read_text(path, MAX_SCRIPT_BYTES).map_err(failed)
 }
 
 /// Runs a script.
 pub(super) fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
     let state: State = Rc::new(RefCell::new(Builder::new(folder.into(), given)));
-    let printed = Rc::new(RefCell::new(Vec::new()));
+    let printed = Rc::new(RefCell::new(Printed::default()));
     let mut engine = limited();
     let lines = Rc::clone(&printed);
-    engine.on_print(move |line| {
-        let mut lines = lines.borrow_mut();
-        if lines.len() < MAX_PRINTED {
-            lines.push(line.to_owned());
-        }
-    });
+    engine.on_print(move |text| lines.borrow_mut().add(text));
     engine.on_debug(|_, _, _| {});
     engine.register_type_with_name::<Handle>("object");
     engine.register_type_with_name::<ControlMeaning>("spline");
@@ -81,7 +80,7 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definitio
     }
     let scene = state.borrow().finish();
     scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
-    let printed = printed.borrow().clone();
+    let printed = printed.take().finish();
     Ok(Evaluated { scene, name: name.to_owned(), printed })
 }
 
@@ -96,6 +95,11 @@ fn limited() -> Engine {
         .set_max_expr_depths(MAX_NESTING.0, MAX_NESTING.1)
         .set_max_modules(0)
         .set_module_resolver(DummyModuleResolver::new());
+    engine.on_progress(|operations| {
+        let is_short = || memory::limit().is_some_and(|limit| memory::left() < limit / KEPT);
+        let ends = operations.is_multiple_of(LOOKS_AT_MEMORY) && is_short();
+        ends.then(|| Dynamic::from(OutOfMemory))
+    });
     for symbol in FORBIDDEN {
         engine.disable_symbol(symbol);
     }

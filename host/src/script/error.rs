@@ -1,6 +1,7 @@
 //! What can be wrong with a script, and where.
 
 use super::functions;
+use crate::memory;
 use crate::scene::SceneError;
 use rhai::{EvalAltResult, ParseErrorType, Position};
 use std::fmt;
@@ -73,6 +74,10 @@ impl fmt::Display for Place {
     }
 }
 
+/// Why a script is stopped when it has taken nearly all memory.
+#[derive(Clone)]
+pub(super) struct OutOfMemory;
+
 /// Turns an error of the interpreter into ours, with its place in the script.
 pub(super) fn place(error: &EvalAltResult, script: &str, file: &str) -> ScriptError {
     let (message, position) = describe(error);
@@ -96,6 +101,10 @@ pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {
         E::ErrorRuntime(value, _) => value.to_string(),
         E::ErrorFunctionNotFound(signature, _) => unknown_function(signature),
         E::ErrorVariableNotFound(name, _) => format!("unknown name {name}"),
+        E::ErrorTerminated(reason, _) if reason.is::<OutOfMemory>() => format!(
+            "the script takes more memory than there is: {} (--memory SIZE sets how much)",
+            memory::readable(memory::limit().unwrap_or_default())
+        ),
         E::ErrorTooManyOperations(_) => {
             format!("the script takes more than {} steps; does it end?", super::MAX_OPERATIONS)
         }

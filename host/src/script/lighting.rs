@@ -7,6 +7,7 @@ use super::function::{Done, Function, Kind, Parameter, parameter};
 use crate::color::{Color, Spectrum, blackbody, daylight};
 use crate::illumination::Light;
 use crate::illumination::light::{Goniometry, Patch, SkyMap};
+use crate::memory;
 use crate::picture::Picture;
 use crate::render::LUMINANCE;
 use crate::scene::MAX_LIGHTS;
@@ -104,7 +105,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         action: |builder, bound| {
             let path = builder.folder.join(bound.text("file").unwrap_or_default());
             let text =
-                files::read_text(&path, MAX_GONIOMETRY).map_err(|error| format!("{}: {error}", path.display()))?;
+                memory::read_text(&path, MAX_GONIOMETRY).map_err(|error| format!("{}: {error}", path.display()))?;
             let goniometry = Goniometry::parse(&text).map_err(|error| format!("{}: {error}", path.display()))?;
             let vector = |name, default| bound.vector(name).unwrap_or(default);
             let color = color_of_light(builder, bound, vector("factor", DVec3::ONE))?;

@@ -12,6 +12,7 @@ mod function;
 mod lighting;
 mod lists;
 mod materials;
+mod printed;
 mod sculpting;
 mod shaping;
 mod solids;

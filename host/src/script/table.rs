@@ -1,7 +1,7 @@
 //! Functions of the scene language, one row each: objects from data, placing, camera, settings.
 
 use super::argument::Bound;
-use super::builder::{Builder, value};
+use super::builder::Builder;
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
 use crate::octree::MAX_POINT_DEPTH;
@@ -151,10 +151,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         summary: "Names an object, for messages and tables.",
         parameters: &[OBJECT, parameter("text", Kind::Text, Required, "the name")],
         example: "pot.name(\"pot\");",
-        action: |builder, bound| {
-            builder.object(bound.object("object"))?.name = bound.text("text").unwrap_or_default().to_owned();
-            Ok(value(bound.object("object")))
-        },
+        action: |builder, bound| builder.name(bound.object("object"), bound.text("text").unwrap_or_default()),
     },
     Function {
         name: "camera",

@@ -1,56 +1,21 @@
 //! From meshes to solids: what must hold is checked, what does no harm is put right.
 
-use super::Solid;
-use super::boolean::{Lattice, Resolution, UnionFind, overlaps, resolve};
-use crate::mesh::{Fault, Mesh};
+use super::boolean::{Lattice, Resolution, UnionFind, resolve};
+use super::tangle::overlaps;
+use super::{Solid, SolidError};
+use crate::mesh::Mesh;
 use crate::numeric::implicit::projection;
-use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Edges that an error names.
 const NAMED: usize = 8;
 
-/// Why a mesh is no solid.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SolidError {
-    /// A number or an index is wrong.
-    #[error(transparent)]
-    Mesh(#[from] Fault),
-    /// Edges are run through more often one way than the other: there is a hole, or triangles are turned against each
-    /// other.
-    #[error("{count} edges are not closed or not consistently oriented, the first {}", list(edges))]
-    NotClosed {
-        /// How many edges.
-        count: usize,
-        /// The ends of the first of them.
-        edges: Vec<[DVec3; 2]>,
-    },
-    /// The triangles face inwards.
-    #[error("the surface faces inwards: its volume is {volume}")]
-    InsideOut {
-        /// The volume, cubic units.
-        volume: f64,
-    },
-    /// The surface crosses or covers itself, or parts of it lie in each other.
-    #[error(
-        "the surface crosses or covers itself ({overlaps} pairs of triangles): near {near} it winds {winding} times around a point"
-    )]
-    Crossing {
-        /// How often it winds; once behind the surface of a solid.
-        winding: i32,
-        /// Where.
-        near: DVec3,
-        /// Pairs of triangles that have more in common than corners and edges; 0 if parts only lie in each other.
-        overlaps: usize,
-    },
-}
-
 impl SolidError {
     /// The same error of the mesh that was put on a lattice.
     fn brought_back(mut self, lattice: &Lattice) -> SolidError {
         match &mut self {
-            SolidError::Mesh(_) => {}
+            SolidError::Mesh(_) | SolidError::Tangled { .. } => {}
             SolidError::NotClosed { edges, .. } => {
                 edges.iter_mut().flatten().for_each(|end| *end = lattice.place(*end));
             }
@@ -59,10 +24,6 @@ impl SolidError {
         }
         self
     }
-}
-
-fn list(edges: &[[DVec3; 2]]) -> String {
-    edges.iter().map(|[a, b]| format!("{a} to {b}")).collect::<Vec<_>>().join(", ")
 }
 
 /// Checks and cleans a mesh. Where its surface crosses itself, that of what it bounds is given, and the error.
@@ -87,7 +48,7 @@ fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidE
         return Err(SolidError::InsideOut { volume });
     }
     let solid = Solid::of(mesh);
-    let overlaps = overlaps(solid.mesh(), solid.sorted()).len();
+    let overlaps = overlaps(solid.mesh(), solid.sorted())?.len();
     if overlaps == 0 && sheets == 1 {
         return Ok((solid, None));
     }

@@ -1,6 +1,8 @@
 //! Solids: closed surfaces with an inside, and what can be done with them.
 
 pub mod boolean;
+mod error;
+mod tangle;
 mod import;
 mod mass;
 mod repair;
@@ -12,9 +14,9 @@ mod rounded;
 
 pub use body::{Body, Face, Measures};
 pub use boolean::{Counts, Expression, Outcome};
+pub use error::SolidError;
 pub use exact::{ExactSolid, moved};
 pub use glue::GlueError;
-pub use import::SolidError;
 pub use mass::Mass;
 pub use primitive::{Primitive, PrimitiveError};
 pub use repair::Repair;

@@ -4,7 +4,7 @@ mod binary;
 mod transfer;
 
 pub use binary::{MAX_LOOKUP_ENTRIES, MAX_RUNS, RasterOpcode, decode, encode, record};
-pub use transfer::{linear_from_srgb, srgb_from_linear, srgb_from_linear_each};
+pub use transfer::{light_of_srgb, linear_from_srgb, srgb_from_linear, srgb_from_linear_each};
 
 /// Width of the raster screen, in pixels. \[M\], size class \[S\].
 pub const RASTER_WIDTH: u32 = 640;

@@ -59,20 +59,24 @@ struct Encoding {
 }
 
 /// Light of every byte.
-static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| decode(byte as f64 / 255.0)));
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|byte| light_of_srgb(byte as f64 / 255.0) as f32));
 
 static ENCODING: LazyLock<Encoding> = LazyLock::new(|| {
-    let half_step = |byte: usize| if byte < 255 { decode((byte as f64 + 0.5) / 255.0) } else { f32::INFINITY };
+    let half_step =
+        |byte: usize| if byte < 255 { light_of_srgb((byte as f64 + 0.5) / 255.0) as f32 } else { f32::INFINITY };
     let thresholds: [f32; BYTES] = std::array::from_fn(half_step);
     let passed = |light: f32| thresholds.partition_point(|threshold| *threshold <= light);
     // At most 255 thresholds are passed, so that the count fits a byte.
     Encoding { thresholds, starts: std::array::from_fn(|step| passed((step as f32 - 0.5) / STEPS as f32) as u32) }
 });
 
-/// The transfer function of sRGB, encoded 0..=1 to linear 0..=1.
-fn decode(encoded: f64) -> f32 {
-    let linear = if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) };
-    linear as f32
+/// Linear light, 0..=1, of a number that is encoded as sRGB, 0..=1.
+///
+/// # Source
+/// IEC 61966-2-1.
+pub fn light_of_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]
@@ -112,7 +116,7 @@ mod tests {
     #[test]
     fn every_byte_begins_exactly_at_its_half_step() {
         for byte in 1..=255_u8 {
-            let threshold = decode((f64::from(byte) - 0.5) / 255.0);
+            let threshold = light_of_srgb((f64::from(byte) - 0.5) / 255.0) as f32;
             assert_eq!(srgb_from_linear(threshold), byte);
             assert_eq!(srgb_from_linear(threshold.next_down()), byte - 1);
         }

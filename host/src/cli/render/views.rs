@@ -3,7 +3,8 @@
 use super::saved::Saved;
 use super::{Arguments, Kind};
 use crate::cli::interrupts::{self, Keeping};
-use crate::cli::{Exit, Failure, progress};
+use crate::cli::{Exit, Failure, progress, say};
+use crate::memory;
 use crate::picture::Picture;
 use crate::render::radiosity::Report;
 use crate::render::ray_tracing::Checkpoints;
@@ -44,8 +45,8 @@ impl Views<'_> {
         let ended = self.render_all(render, &mut reports);
         match self.arguments.views {
             _ if !self.arguments.json || reports.is_empty() => {}
-            Some(_) => say!("{}", serde_json::to_string_pretty(&reports)?),
-            None => say!("{}", serde_json::to_string_pretty(&reports.pop())?),
+            Some(_) => say::report(Value::Array(reports)),
+            None => say::report(reports.pop().unwrap_or_default()),
         }
         ended
     }
@@ -159,7 +160,8 @@ impl Views<'_> {
             most,
             rendering.film.standard_error()
         );
-        say!("{} triangles, built in {build_seconds:.3} s", self.prepared.triangles.len());
+        let memory = memory::readable(memory::peak());
+        say!("{} triangles, built in {build_seconds:.3} s; at most {memory} of memory", self.prepared.triangles.len());
         if let Some(balance) = &rendering.balance {
             say!("{balance}");
         }

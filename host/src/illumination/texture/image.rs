@@ -1,32 +1,37 @@
 //! Images as textures: smaller and smaller copies of them, from which the mean over a part is had quickly.
 
 use super::Place;
+use super::texels::{Kind, Texels};
+use crate::memory;
+use crate::picture::source::{Precision, Source, Texel};
 use crate::picture::{Picture, PictureError};
 use glam::{DVec2, DVec3};
+use protocol::raster::light_of_srgb;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Most looks at an image for one mean, side by side along the longer side of the part.
 const MOST_LOOKS: f64 = 16.0;
-/// What a fraction of 1 is stored as.
-const WHOLE: f64 = 65_535.0;
 
 /// An image of fractions, 0..=1 in three bands, row 0 at the top (v = 1).
 ///
-/// Eight bytes for each pixel: fractions are rounded to 1/65535, and there are copies of half the size, of a quarter, and so
-/// on to one pixel, all with the same mean.
-#[derive(Clone, Debug)]
+/// Bytes of a file are held as they are; other fractions are rounded to 1/65535, those of images with three bands of more
+/// than eight bits and more than 4096 x 4096 pixels to a thousandth of what they are. There are copies of half the size, of a
+/// quarter, and so on to one pixel, all with the same mean. With them a pixel takes 5 bytes, 2.7 where it is grey, 8 where
+/// three bands have sixteen bits, and 5.3 in the large ones.
+#[derive(Clone)]
 pub struct Image {
     name: String,
     levels: Arc<Vec<Level>>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Level {
     width: usize,
     height: usize,
-    texels: Vec<[u16; 3]>,
+    texels: Texels,
 }
 
 /// What the numbers of an image mean.
@@ -38,23 +43,67 @@ pub enum Content {
     Numbers,
 }
 
+impl fmt::Debug for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (size, mean) = (self.size(), self.mean());
+        f.debug_struct("Image")
+            .field("name", &self.name)
+            .field("size", &size)
+            .field("mean", &mean)
+            .finish_non_exhaustive()
+    }
+}
+
 impl PartialEq for Image {
     fn eq(&self, other: &Image) -> bool {
-        self.name == other.name && (Arc::ptr_eq(&self.levels, &other.levels) || self.levels == other.levels)
+        self.name == other.name && (Arc::ptr_eq(&self.levels, &other.levels) || self.is_like(other))
     }
 }
 
 impl Image {
-    /// Reads a PNG or EXR file, as [`Image::of_picture`].
+    /// Reads a PNG or EXR file. What is below 0 or above 1 is cut off; coverage is not heeded.
     ///
     /// # Errors
-    /// [`PictureError`].
+    /// [`PictureError`], also for a file with a number that is not finite, and where the image would take more memory than
+    /// there is.
     pub fn read(path: &Path, content: Content) -> Result<Image, PictureError> {
-        let picture = Picture::read_finite(path)?;
+        let source = Source::open(path)?;
+        let [width, height] = source.size();
+        let kind = match (source.precision(), content) {
+            (Precision::Eight, Content::Color) => Kind::Light,
+            (Precision::Eight, Content::Numbers) => Kind::Numbers,
+            (Precision::Sixteen { grey: true } | Precision::Float { grey: true }, _) => Kind::Grey,
+            (Precision::Sixteen { .. } | Precision::Float { .. }, _) => Kind::Bands,
+        };
+        let pixels = Picture::pixels_of(width, height)?;
+        memory::ask(bytes_of(kind, pixels), || format!("{}: an image of {width} x {height} pixels", path.display()))?;
+        let mut finest = Level { width: width as usize, height: height as usize, texels: Texels::new(kind, pixels) };
+        let mut wrong = None;
+        source.each(|x, y, texel| {
+            let at = y as usize * finest.width + x as usize;
+            match texel {
+                // Nothing shines where nothing covers.
+                Texel::Eight([.., 0]) | Texel::Sixteen([.., 0]) => {}
+                Texel::Eight([r, g, b, _]) => finest.texels.set_bytes(at, [r, g, b]),
+                Texel::Sixteen([r, g, b, _]) => {
+                    let numbers = DVec3::from_array([r, g, b].map(|number| f64::from(number) / f64::from(u16::MAX)));
+                    let is_light = content == Content::Color;
+                    finest.texels.set(at, if is_light { numbers.map(light_of_srgb) } else { numbers });
+                }
+                Texel::Float([r, g, b, a, _]) => {
+                    let light = DVec3::from_array([r, g, b].map(f64::from));
+                    if !(light.is_finite() && a.is_finite()) && wrong.is_none() {
+                        wrong = Some((x, y));
+                    }
+                    finest.texels.set(at, if a > 0.0 { light / f64::from(a) } else { light });
+                }
+            }
+        })?;
+        if let Some((x, y)) = wrong {
+            return Err(PictureError::Number { path: path.into(), x, y });
+        }
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        // The bytes of an eight-bit file were decoded as if they were light.
-        let content = if Picture::is_exr(path) { Content::Color } else { content };
-        Ok(Image::of_picture(name, &picture, content))
+        Ok(Image::of(name, finest))
     }
 
     /// An image of a picture. What is below 0 or above 1 is cut off; coverage is not heeded.
@@ -72,11 +121,11 @@ impl Image {
     ///
     /// - `width`, `height`: 1 and more.
     pub fn new(name: String, width: u32, height: u32, texel: impl Fn(u32, u32) -> DVec3) -> Image {
-        let rows = 0..height.max(1);
-        let stored = |fraction: f64| (fraction.clamp(0.0, 1.0) * WHOLE).round() as u16;
-        let texels = rows.flat_map(|y| (0..width.max(1)).map(move |x| (x, y)));
-        let texels = texels.map(|(x, y)| texel(x, y).to_array().map(stored)).collect();
-        Image::of(name, Level { width: width.max(1) as usize, height: height.max(1) as usize, texels })
+        let (width, height) = (width.max(1), height.max(1));
+        let mut texels = Texels::new(Kind::Bands, width as usize * height as usize);
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        places.enumerate().for_each(|(at, (x, y))| texels.set(at, texel(x, y)));
+        Image::of(name, Level { width: width as usize, height: height as usize, texels })
     }
 
     fn of(name: String, finest: Level) -> Image {
@@ -102,9 +151,14 @@ impl Image {
         self.levels.last().map_or(DVec3::ZERO, |level| level.texel(0, 0))
     }
 
+    /// Whether every pixel is the same in sixteen bits.
+    fn is_like(&self, other: &Image) -> bool {
+        self.size() == other.size() && self.levels[0].texels.words().eq(other.levels[0].texels.words())
+    }
+
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|level| size_of_val(&level.texels[..])).sum()
+        self.levels.iter().map(|level| level.texels.bytes()).sum()
     }
 
     /// The mean over a part; the image repeats in both directions.
@@ -144,7 +198,7 @@ impl Image {
 
 impl Level {
     fn texel(&self, x: usize, y: usize) -> DVec3 {
-        DVec3::from_array(self.texels[y * self.width + x].map(|c| f64::from(c) / WHOLE))
+        self.texels.at(y * self.width + x)
     }
 
     /// Between four pixels.
@@ -166,16 +220,16 @@ impl Level {
     fn halved(&self) -> Level {
         let [width, height] = [self.width, self.height].map(|n| (n / 2).max(1));
         let (columns, rows) = (shares(self.width, width), shares(self.height, height));
-        let mut texels = Vec::with_capacity(width * height);
-        for parts in &rows {
-            for across in &columns {
+        let mut texels = Texels::new(self.texels.kind_of_means(), width * height);
+        for (row, parts) in rows.iter().enumerate() {
+            for (column, across) in columns.iter().enumerate() {
                 let mut sum = DVec3::ZERO;
                 for (y, b) in parts.clone() {
                     for (x, a) in across.clone() {
                         sum += self.texel(x, y) * (a * b);
                     }
                 }
-                texels.push(sum.to_array().map(|c| (c * WHOLE).round() as u16));
+                texels.set(row * width + column, sum);
             }
         }
         Level { width, height, texels }
@@ -194,6 +248,13 @@ fn shares(from: usize, to: usize) -> Vec<impl Iterator<Item = (usize, f64)> + Cl
         })
     };
     (0..to).map(covered).collect()
+}
+
+/// Bytes of an image and its smaller copies, a little more than it takes.
+fn bytes_of(kind: Kind, pixels: usize) -> u64 {
+    let copies = if kind == Kind::Grey { Kind::Grey } else { Kind::Bands };
+    // A copy has a quarter of the pixels; in sixteen bits there are fewer of them.
+    (Texels::bytes_of(kind, pixels) + Texels::bytes_of(copies, pixels / 3)) as u64
 }
 
 /// The number of an eight-bit file, 0..=1, whose decoded light is known.
@@ -216,7 +277,8 @@ struct Stored {
 impl Serialize for Image {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let [width, height] = self.size().map(|n| n as u32);
-        Stored { name: self.name.clone(), width, height, texels: self.levels[0].texels.clone() }.serialize(serializer)
+        Stored { name: self.name.clone(), width, height, texels: self.levels[0].texels.words().collect() }
+            .serialize(serializer)
     }
 }
 
@@ -228,7 +290,7 @@ impl<'de> Deserialize<'de> for Image {
             let problem = format!("an image of {width} x {height} has {} pixels", texels.len());
             return Err(serde::de::Error::custom(problem));
         }
-        Ok(Image::of(name, Level { width, height, texels }))
+        Ok(Image::of(name, Level { width, height, texels: Texels::of_words(texels) }))
     }
 }
 
@@ -254,7 +316,7 @@ mod tests {
         for (width, height) in [(1, 1), (1, 7), (5, 3), (64, 64), (100, 37), (16_384, 3)] {
             let image = ramp(width, height);
             assert!((image.mean() - DVec3::new(0.5, 0.5, 0.25)).abs().max_element() < 2e-4, "{width} x {height}");
-            assert_eq!(image.levels.last().map(|level| level.texels.len()), Some(1));
+            assert_eq!(image.levels.last().map(|level| level.texels.words().count()), Some(1));
         }
     }
 

@@ -8,6 +8,7 @@ mod image;
 mod motif;
 mod noise;
 mod place;
+mod texels;
 #[cfg(test)]
 mod tests;
 

@@ -48,7 +48,7 @@ mod winding;
 pub use arrangement::Counts;
 pub(crate) use contact::{Contact, Face, Key};
 pub(super) use lattice::Lattice;
-pub(super) use operand::{Operand, overlaps};
+pub(super) use operand::{Operand, overlaps_up_to};
 pub(super) use quads::mates;
 pub use result::Outcome;
 pub(super) use simple::{Resolution, resolve};

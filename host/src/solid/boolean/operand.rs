@@ -7,6 +7,7 @@ use crate::mesh::Mesh;
 use crate::octree::Sorted;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// No triangle.
 pub const NONE: u32 = u32::MAX;
@@ -179,7 +180,20 @@ impl<'a> Operands<'a> {
 ///
 /// - `sorted`: the triangles by place.
 pub fn overlaps(mesh: &Mesh, sorted: &Sorted) -> Vec<[u32; 2]> {
+    overlaps_up_to(mesh, sorted, usize::MAX)
+}
+
+/// Pairs of triangles of a mesh as [`overlaps`] gives them; if there are more than `most`, a few more of them than that.
+pub fn overlaps_up_to(mesh: &Mesh, sorted: &Sorted, most: usize) -> Vec<[u32; 2]> {
     let tile =
         |triangle: u32| Tile { names: mesh.triangles[triangle as usize], corners: mesh.corners(triangle as usize) };
-    sorted.pairs_within(|a, b| overlap(&tile(a).with_plane(), &tile(b), || tile(b).with_plane()))
+    let count = AtomicUsize::new(0);
+    let is_enough = || count.load(Ordering::Relaxed) > most;
+    sorted.pairs_within_until(is_enough, |a, b| {
+        let overlap = overlap(&tile(a).with_plane(), &tile(b), || tile(b).with_plane());
+        if overlap {
+            count.fetch_add(1, Ordering::Relaxed);
+        }
+        overlap
+    })
 }

@@ -1,4 +1,4 @@
-//! Memory in large pages.
+//! Large pages.
 
 /// Asks the system for large pages under memory that is about to be written for the first time.
 ///

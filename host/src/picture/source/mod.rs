@@ -1,0 +1,118 @@
+//! Files of pictures, pixel by pixel: whoever reads one decides what it keeps, and knows the size before.
+
+mod exr;
+mod png;
+
+use super::{Picture, PictureError};
+use image::ImageFormat;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// A picture file that is open, whose pixels are not read yet.
+pub(crate) struct Source<'a> {
+    path: &'a Path,
+    /// Columns and rows.
+    size: [u32; 2],
+    file: Format,
+}
+
+enum Format {
+    Png(Box<png::Png>),
+    Exr(Box<exr::Exr>),
+}
+
+/// How a file tells its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Precision {
+    /// Eight bits a band, encoded as sRGB.
+    Eight,
+    /// Sixteen bits a band, encoded as sRGB; `grey` where all bands are the same.
+    Sixteen {
+        /// Whether all bands are the same.
+        grey: bool,
+    },
+    /// Floating-point numbers of linear light; `grey` where all bands are the same.
+    Float {
+        /// Whether all bands are the same.
+        grey: bool,
+    },
+}
+
+/// A pixel of a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Texel {
+    /// Red, green, blue, each encoded as sRGB, and coverage.
+    Eight([u8; 4]),
+    /// Red, green, blue, each encoded as sRGB, and coverage.
+    Sixteen([u16; 4]),
+    /// Red, green, blue of linear light, premultiplied by the coverage; coverage; depth.
+    Float([f32; 5]),
+}
+
+impl<'a> Source<'a> {
+    /// Opens a PNG or EXR file.
+    ///
+    /// # Errors
+    /// [`PictureError`] for a file that is missing, broken, of another format or too large.
+    pub(crate) fn open(path: &'a Path) -> Result<Source<'a>, PictureError> {
+        let format = format_of(path)?;
+        let file = files::open(path).map_err(|source| PictureError::Open { path: path.into(), source })?;
+        let file = BufReader::new(file);
+        let broken = |problem: String| PictureError::Broken { path: path.into(), problem };
+        let (size, file) = match format {
+            ImageFormat::Png => {
+                let png = png::Png::open(file).map_err(broken)?;
+                (png.size(), Format::Png(Box::new(png)))
+            }
+            _ => {
+                let exr = exr::Exr::open(file).map_err(broken)?;
+                (exr.size(), Format::Exr(Box::new(exr)))
+            }
+        };
+        Picture::pixels_of(size[0], size[1])?;
+        Ok(Source { path, size, file })
+    }
+
+    /// Columns and rows.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// How pixels are told.
+    pub(crate) fn precision(&self) -> Precision {
+        match &self.file {
+            Format::Png(png) => png.precision(),
+            Format::Exr(exr) => Precision::Float { grey: exr.is_grey() },
+        }
+    }
+
+    /// Whether there is a depth for each pixel.
+    pub(crate) fn has_depth(&self) -> bool {
+        matches!(&self.file, Format::Exr(exr) if exr.has_depth())
+    }
+
+    /// Reads every pixel, in the order of the file: column from the left, row from the top.
+    ///
+    /// # Errors
+    /// [`PictureError::Broken`]; some pixels may have been told then.
+    pub(crate) fn each(self, mut tell: impl FnMut(u32, u32, Texel)) -> Result<(), PictureError> {
+        let read = match self.file {
+            Format::Png(png) => png.each(&mut tell),
+            Format::Exr(exr) => exr.each(&mut tell),
+        };
+        read.map_err(|problem| PictureError::Broken { path: self.path.into(), problem })
+    }
+}
+
+/// The format of a picture's name.
+pub(super) fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("png") => Ok(ImageFormat::Png),
+        Some("exr") => Ok(ImageFormat::OpenExr),
+        _ => Err(PictureError::Format { path: path.into() }),
+    }
+}
+
+/// What is read of a file.
+type Buffered = BufReader<File>;

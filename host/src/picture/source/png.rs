@@ -1,0 +1,82 @@
+//! PNG files, row by row.
+
+use super::{Buffered, Precision, Texel};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
+
+/// Most bytes that the decoder may take for what is no pixel, and for rows.
+const MOST_BESIDE: usize = 256 << 20;
+/// Longest row, bytes.
+const MOST_OF_ROW: usize = 64 << 20;
+
+/// The passes of an interlaced file: first column, first row, and the steps between columns and rows.
+///
+/// # Source
+/// PNG specification, section 8.2 (Adam7).
+const PASSES: [[u32; 4]; 7] =
+    [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
+/// The only pass of another file.
+const WHOLE: [[u32; 4]; 1] = [[0, 0, 1, 1]];
+
+/// A PNG file that is open.
+pub(super) struct Png(Reader<Buffered>);
+
+impl Png {
+    pub(super) fn open(file: Buffered) -> Result<Png, String> {
+        let said = |error: DecodingError| error.to_string();
+        let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MOST_BESIDE });
+        decoder.set_transformations(Transformations::EXPAND);
+        decoder.set_ignore_text_chunk(true);
+        decoder.set_ignore_iccp_chunk(true);
+        let row = decoder.read_header_info().map_err(said)?.raw_row_length();
+        if row > MOST_OF_ROW {
+            return Err(format!("its rows of {row} bytes are longer than {MOST_OF_ROW}"));
+        }
+        decoder.read_info().map(Png).map_err(said)
+    }
+
+    pub(super) fn size(&self) -> [u32; 2] {
+        [self.0.info().width, self.0.info().height]
+    }
+
+    pub(super) fn precision(&self) -> Precision {
+        match self.0.output_color_type() {
+            (color, BitDepth::Sixteen) => Precision::Sixteen { grey: bands_of(color) < 3 },
+            _ => Precision::Eight,
+        }
+    }
+
+    pub(super) fn each(mut self, tell: &mut impl FnMut(u32, u32, Texel)) -> Result<(), String> {
+        let [width, height] = self.size();
+        let (color, depth) = self.0.output_color_type();
+        let (bands, interlaced) = (bands_of(color), self.0.info().interlaced);
+        for [left, top, across, down] in if interlaced { &PASSES[..] } else { &WHOLE } {
+            // A pass without columns has no rows either.
+            for y in (*top..height).step_by(*down as usize).filter(|_| *left < width) {
+                let row = self.0.next_row().map_err(|error| error.to_string())?.ok_or("rows are missing")?;
+                let columns = (*left..width).step_by(*across as usize);
+                if depth == BitDepth::Sixteen {
+                    for (x, pixel) in columns.zip(row.data().chunks_exact(2 * bands)) {
+                        let band = |at: usize| u16::from_be_bytes([pixel[2 * at], pixel[2 * at + 1]]);
+                        tell(x, y, Texel::Sixteen(spread(bands, band, u16::MAX)));
+                    }
+                } else {
+                    for (x, pixel) in columns.zip(row.data().chunks_exact(bands)) {
+                        tell(x, y, Texel::Eight(spread(bands, |at| pixel[at], u8::MAX)));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Numbers of a pixel, once palettes are looked up.
+fn bands_of(color: ColorType) -> usize {
+    color.samples()
+}
+
+/// Red, green, blue and coverage of a pixel with one to four numbers.
+fn spread<T: Copy>(bands: usize, band: impl Fn(usize) -> T, covered: T) -> [T; 4] {
+    let alpha = if bands.is_multiple_of(2) { band(bands - 1) } else { covered };
+    if bands < 3 { [band(0), band(0), band(0), alpha] } else { [band(0), band(1), band(2), alpha] }
+}
