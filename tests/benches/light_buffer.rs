@@ -17,7 +17,7 @@ fn main() {
     // `cargo bench` passes `--bench`; without it the proof is enough.
     let is_bench = std::env::args().any(|argument| argument == "--bench");
     let samples = if is_bench { 16 } else { 2 };
-    let mut scene = host::script::load("room", &[]).expect("a scene that ships").scene;
+    let mut scene = host::script::load("room", &host::script::Inputs::default()).expect("a scene that ships").scene;
     if !is_bench {
         scene.settings.width = 48;
         scene.settings.height = 30;

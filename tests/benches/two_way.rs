@@ -32,7 +32,7 @@ const TURN: f64 = 36.0;
 fn main() {
     // `cargo bench` passes `--bench`; without it the proof is enough.
     let is_bench = std::env::args().any(|argument| argument == "--bench");
-    let mut scene = host::script::load("caustic", &[]).expect("a scene that ships").scene;
+    let mut scene = host::script::load("caustic", &host::script::Inputs::default()).expect("a scene that ships").scene;
     let (side, most) = if is_bench { (256, 2048) } else { (24, 64) };
     (scene.settings.width, scene.settings.height) = (side, side);
     let with = |(photons, samples, points, carried): (u32, u32, u32, bool), seed: u64| {

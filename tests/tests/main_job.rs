@@ -78,7 +78,7 @@ fn a_study_leaves_table_and_plot() {
 
 #[test]
 fn the_view_that_dials_set_reads_back_as_its_closed_form() {
-    let scene = script::evaluate(SCENE, "silhouette", Path::new(""), &[]).unwrap().scene;
+    let scene = script::evaluate(SCENE, "silhouette", Path::new(""), &script::Inputs::default()).unwrap().scene;
     let mut machine = Machine::start(PS340, &[]);
     let mut production = begin(&machine, &scene, &Drawing::default());
     let turns = [0.13, -0.37, 0.05, 0.4, 0.02, -0.01, 0.03];
@@ -188,8 +188,8 @@ impl Mask {
 #[test]
 fn a_wide_picture_is_the_middle_band_of_the_vector_screen() {
     let wide = SCENE.replace("512, 512", "200, 100");
-    let wide = script::evaluate(&wide, "wide", Path::new(""), &[]).unwrap().scene;
-    let square = script::evaluate(SCENE, "square", Path::new(""), &[]).unwrap().scene;
+    let wide = script::evaluate(&wide, "wide", Path::new(""), &script::Inputs::default()).unwrap().scene;
+    let square = script::evaluate(SCENE, "square", Path::new(""), &script::Inputs::default()).unwrap().scene;
     let machine = Machine::start(PS340, &[]);
     let mut matrices = [&wide, &square].map(|scene| {
         let mut production = begin(&machine, scene, &Drawing::default());
@@ -203,7 +203,7 @@ fn a_wide_picture_is_the_middle_band_of_the_vector_screen() {
 #[test]
 fn the_render_of_the_view_has_the_silhouette_of_the_vector_screen() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = script::evaluate(SCENE, "silhouette", Path::new(""), &[]).unwrap().scene;
+    let scene = script::evaluate(SCENE, "silhouette", Path::new(""), &script::Inputs::default()).unwrap().scene;
     let mut machine = Machine::start(PS340, &[]);
     let drawing = Drawing { lines: Lines::All, tolerance: 1.0 / 4000.0, ..Drawing::default() };
     let mut production = begin(&machine, &scene, &drawing);

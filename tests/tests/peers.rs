@@ -7,7 +7,7 @@ use host::render::ray_tracing::RayTracer;
 use host::render::scan_line::ScanLine;
 use host::render::{LUMINANCE, Order, Renderer, Watch};
 use host::scene::Prepared;
-use host::script::{Definition, load_file};
+use host::script::{Definition, Inputs, load_file};
 use serde_json::Value;
 use std::path::Path;
 
@@ -31,13 +31,14 @@ fn means_of_blocks_are_those_of_mitsuba_within_the_errors_of_both() {
     assert!(cases.len() >= 2);
     for (name, case) in cases {
         let told = case["told"].as_object().expect("what the script is told");
-        let mut given: Vec<Definition> = told
+        let mut definitions: Vec<Definition> = told
             .iter()
             .map(|(name, value)| Definition { name: name.clone(), value: value.as_str().expect("text").to_owned() })
             .collect();
-        given.push(Definition { name: "count".into(), value: "64".into() });
+        definitions.push(Definition { name: "count".into(), value: "64".into() });
         let script = folder.join(case["script"].as_str().expect("a script"));
-        let scene = load_file(&script, &given).unwrap_or_else(|error| panic!("{error}")).scene;
+        let inputs = Inputs { definitions, ..Inputs::default() };
+        let scene = load_file(&script, &inputs).unwrap_or_else(|error| panic!("{error}")).scene;
         let prepared = Prepared::new(&scene).expect("a scene");
         let view = prepared.view();
         let plan = Plan::new(&prepared, &view);
@@ -79,7 +80,7 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
     let text = std::fs::read_to_string(folder.join("peers/radiosity.json")).expect("the values");
     let kept: Value = serde_json::from_str(&text).expect("JSON");
     let theirs: Vec<Vec<[f64; 3]>> = serde_json::from_value(kept["regions"].clone()).expect("regions");
-    let mut scene = load_file(&folder.join("../host/scenes/cornell.rhai"), &[]).expect("the box").scene;
+    let mut scene = load_file(&folder.join("../host/scenes/cornell.rhai"), &Inputs::default()).expect("the box").scene;
     (scene.settings.width, scene.settings.height) = (128, 128);
     scene.settings.interreflection = true;
     let prepared = Prepared::new(&scene).expect("a scene");

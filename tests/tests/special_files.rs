@@ -92,3 +92,24 @@ fn what_is_no_ordinary_file_is_refused_wherever_one_is_written() {
         std::os::unix::fs::FileTypeExt::is_char_device(&std::fs::metadata("/dev/null").expect("there").file_type());
     assert!(is_device && !folder.join("a.png").exists());
 }
+
+#[test]
+fn a_script_of_somebody_else_reads_below_its_folder_and_commands_no_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [own, other] = ["scenes", "other"].map(|name| folder.path().join(name));
+    std::fs::create_dir(&own).and_then(|()| std::fs::create_dir(&other)).expect("made");
+    std::fs::write(other.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    symlink(other.join("a.obj"), own.join("link.obj")).expect("a link");
+    for outside in ["../other/a.obj", "link.obj"] {
+        std::fs::write(own.join("a.rhai"), format!("mesh(\"{outside}\");")).expect("written");
+        let refused = run(PERIS, &own, &["plan", "a.rhai"]);
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert!(!refused.status.success() && said.contains("a.rhai:1:1") && said.contains("--allow"), "{said}");
+        assert!(run(PERIS, &own, &["plan", "a.rhai", "--allow", "../other"]).status.success());
+    }
+    std::fs::write(own.join("a.rhai"), "print(\"a\\x1b]0;b\\x07\"); mesh(\"\\x1b[2Jnone.obj\");").expect("written");
+    let Output { stdout, stderr, .. } = run(PERIS, &own, &["plan", "a.rhai"]);
+    let said = String::from_utf8_lossy(&stderr);
+    assert!(said.contains("\\u{1b}]0;b\\u{7}") && said.contains("\\u{1b}[2Jnone.obj"), "{said}");
+    assert!(![stdout, stderr].concat().contains(&0x1b));
+}

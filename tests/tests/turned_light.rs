@@ -72,7 +72,7 @@ fn the_light_of_a_solution_is_seen_on_the_workstation_from_wherever_the_dials_tu
     let [elements, polygons] = ["elements", "polygons"].map(|key| sent["light"][key].as_u64().unwrap());
     assert!(polygons > 500 && polygons < elements, "{polygons} polygons for {elements} elements");
 
-    let scene = script::evaluate(&cornell(), "box", Path::new(""), &[]).unwrap().scene;
+    let scene = script::evaluate(&cornell(), "box", Path::new(""), &script::Inputs::default()).unwrap().scene;
     let mut prepared = Prepared::new(&scene).unwrap();
     prepared.settings.interreflection = true;
     let plan = Plan::new(&prepared, &prepared.view());

@@ -1,6 +1,6 @@
 //! `peris compose`: two pictures made one.
 
-use super::{Exit, Failure, Row, say};
+use super::{Exit, Failure, Row, say, warn};
 use crate::picture::{self, Deep, Operator, Picture};
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -87,9 +87,9 @@ fn warn_of_background(arguments: &Arguments, pictures: [(bool, &Picture); 2]) {
     for (path, (as_matte, picture)) in [&arguments.a, &arguments.b].into_iter().zip(pictures) {
         if as_matte && !picture.is_matte() {
             let name = path.display();
-            eprintln!(
-                "warning: {name} has light where it covers nothing, which is added; peris render --matte leaves it out"
-            );
+            warn(&format!(
+                "{name} has light where it covers nothing, which is added; peris render --matte leaves it out"
+            ));
         }
     }
 }

@@ -120,7 +120,7 @@ pub fn main() -> ExitCode {
     match ended {
         Ok(()) => Exit::Done.into(),
         Err(failure) => {
-            eprintln!("peris {name}: {}", story(&failure.error));
+            say::tell(&format!("peris {name}: {}", story(&failure.error)));
             failure.exit.into()
         }
     }
@@ -136,8 +136,7 @@ fn story(error: &anyhow::Error) -> String {
 
 /// Says on standard error what is probably not meant.
 fn warn(text: &str) {
-    progress::clear();
-    eprintln!("warning: {text}");
+    say::tell(&format!("warning: {text}"));
 }
 
 /// Says on standard error what makes a picture empty or black.

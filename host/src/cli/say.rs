@@ -1,17 +1,44 @@
-//! Text for standard output that nobody may be reading any more.
+//! Text for standard output, which nobody may be reading any more, and for standard error.
+//!
+//! Texts may come from a script or a file of somebody else: characters that would command the terminal are shown as
+//! escapes.
 
 use super::{Exit, progress};
 use crate::memory;
 use serde_json::Value;
-use std::{fmt::Arguments, io::Write};
+use std::{borrow::Cow, fmt::Arguments, io::Write};
 
 /// Writes to standard output. When the reader has gone, as in `peris ... | head`, the program ends quietly.
 pub(super) fn write(text: Arguments<'_>) {
     progress::clear();
     let mut out = std::io::stdout().lock();
-    if out.write_fmt(text).and_then(|()| out.flush()).is_err() {
+    if out.write_all(harmless(&text.to_string()).as_bytes()).and_then(|()| out.flush()).is_err() {
         std::process::exit(Exit::Done as i32);
     }
+}
+
+/// Writes a line to standard error.
+pub(super) fn tell(text: &str) {
+    progress::clear();
+    eprintln!("{}", harmless(text));
+}
+
+/// A text whose control characters are escapes, but for the ends of lines and tabulators.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if !text.contains(is_control) {
+        return text.into();
+    }
+    text.chars()
+        .fold(String::with_capacity(text.len()), |mut shown, c| {
+            if is_control(c) {
+                shown.extend(c.escape_default())
+            } else {
+                shown.push(c)
+            }
+            shown
+        })
+        .into()
 }
 
 /// Writes what `--json` asks for: what a command found, one object or several, and the most memory that it held.
@@ -38,4 +65,15 @@ macro_rules! say_on {
     ($($text:tt)*) => {
         $crate::cli::say::write(format_args!($($text)*))
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_would_command_a_terminal_is_shown_as_an_escape() {
+        assert_eq!(harmless("a\tb\nc ä"), "a\tb\nc ä");
+        assert_eq!(harmless("\x1b[2J\u{9b}31m\r\x07"), "\\u{1b}[2J\\u{9b}31m\\r\\u{7}");
+    }
 }

@@ -1,23 +1,26 @@
 //! Where a scene comes from: a script file, or a name.
 
-use super::{Exit, Failure, progress};
+use super::{Exit, Failure, progress, say};
 use crate::mesh;
 use crate::octree::Octree;
 use crate::scene::Scene;
-use crate::script::{self, Definition, Evaluated};
+use crate::script::{self, Definition, Evaluated, Inputs};
 use clap::Args;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Help for the argument SCRIPT.
 pub const SCRIPT_HELP: &str = "A scene script (.rhai), a mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), an octree that was kept (.octree), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal, manifold, materials, textures, room, cornell, caustic, ring, spectrum, mirror, flowers, pool, afternoon, vases, corner, motion";
 
-/// Values for parameters of the script.
+/// What the script is given.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Definitions {
     /// Sets a parameter of the script; may be given more than once. A name that the script does not ask for is an error
     /// that lists those that it asks for
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE")]
     given: Vec<Definition>,
+    /// Lets the script read below another folder than its own, too; may be given more than once
+    #[arg(long, value_name = "FOLDER")]
+    allow: Vec<PathBuf>,
 }
 
 impl Definitions {
@@ -58,11 +61,10 @@ pub fn load(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure>
         return Ok(Evaluated { scene: Scene::of_mesh(path), name: stem(name).into(), printed: Vec::new() });
     }
     progress::stage("while evaluating the script");
-    let evaluated = script::load(name, &definitions.given)?;
+    let inputs = Inputs { definitions: definitions.given.clone(), allowed: definitions.allow.clone() };
+    let evaluated = script::load(name, &inputs)?;
     progress::clear();
-    for line in &evaluated.printed {
-        eprintln!("{line}");
-    }
+    evaluated.printed.iter().for_each(|line| say::tell(line));
     Ok(evaluated)
 }
 

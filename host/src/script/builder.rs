@@ -1,13 +1,13 @@
 //! The scene while a script builds it.
 
 use super::definition::{Definition, Definitions};
+use super::folders::Folders;
 use super::function::Done;
 use crate::database::Library;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Scene, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 /// Longest name of an object.
 const MOST_LETTERS: usize = 200;
@@ -27,8 +27,8 @@ pub(super) struct Builder {
     of_kind: HashMap<&'static str, u32>,
     /// When the shutter opens and closes.
     pub(super) shutter: [f64; 2],
-    /// Where relative paths begin.
-    pub(super) folder: PathBuf,
+    /// Below which it reads.
+    pub(super) folders: Folders,
     /// Values of parameters.
     pub(super) definitions: Definitions,
     /// Where names of reflectances, spectra, materials, lights and geometry are looked up.
@@ -37,14 +37,14 @@ pub(super) struct Builder {
 
 impl Builder {
     /// An empty scene.
-    pub(super) fn new(folder: PathBuf, given: &[Definition]) -> Builder {
+    pub(super) fn new(folders: Folders, given: &[Definition]) -> Builder {
         Builder {
             scene: Scene::default(),
             objects: Vec::new(),
             motions: Vec::new(),
             of_kind: HashMap::new(),
             shutter: [0.0, 1.0],
-            folder,
+            folders,
             definitions: Definitions::new(given),
             library: Library::default(),
         }

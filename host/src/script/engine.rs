@@ -4,10 +4,11 @@ use super::argument::Bound;
 use super::builder::{Builder, Handle};
 use super::definition::Definition;
 use super::error::{self, OutOfMemory, ScriptError};
+use super::folders::Folders;
 use super::function::{Function, Kind};
 use super::printed::Printed;
 use super::spline::ControlMeaning;
-use super::{Evaluated, functions};
+use super::{Evaluated, Inputs, functions};
 use crate::curve::SplineCurve;
 use crate::illumination::Paint;
 use crate::illumination::distribution::{FacetError, FacetTable};
@@ -50,8 +51,8 @@ pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
 }
 
 /// Runs a script.
-pub(super) fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
-    let state: State = Rc::new(RefCell::new(Builder::new(folder.into(), given)));
+pub(super) fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
+    let state: State = Rc::new(RefCell::new(Builder::new(Folders::new(folder, &inputs.allowed), &inputs.definitions)));
     let printed = Rc::new(RefCell::new(Printed::default()));
     let mut engine = limited();
     let lines = Rc::clone(&printed);

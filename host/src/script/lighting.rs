@@ -103,7 +103,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         ],
         example: "luminaire(#{ at: [0, 3, 0], file: \"downlight.ies\", factor: 5 });",
         action: |builder, bound| {
-            let path = builder.folder.join(bound.text("file").unwrap_or_default());
+            let path = builder.folders.file(bound.text("file").unwrap_or_default())?;
             let text =
                 memory::read_text(&path, MAX_GONIOMETRY).map_err(|error| format!("{}: {error}", path.display()))?;
             let goniometry = Goniometry::parse(&text).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -179,7 +179,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let map = match bound.text("file") {
                 None => None,
                 Some(file) => {
-                    let path = builder.folder.join(file);
+                    let path = builder.folders.file(file)?;
                     let picture = Picture::read(&path).map_err(|error| error.to_string())?;
                     Some(SkyMap { file: file.to_owned(), picture: Some(Arc::new(picture)) })
                 }

@@ -8,6 +8,7 @@ mod builder;
 mod definition;
 mod engine;
 mod error;
+mod folders;
 mod function;
 mod lighting;
 mod lists;
@@ -34,7 +35,7 @@ pub use error::ScriptError;
 pub use function::{Function, Kind, Parameter};
 
 use crate::scene::Scene;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
@@ -173,6 +174,15 @@ pub const EMBEDDED: [Embedded; 21] = [
     },
 ];
 
+/// What a script is given.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// Values for parameters that it asks for.
+    pub definitions: Vec<Definition>,
+    /// Folders below which it may read, beside its own.
+    pub allowed: Vec<PathBuf>,
+}
+
 /// What a script made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluated {
@@ -186,14 +196,14 @@ pub struct Evaluated {
 
 /// Runs the embedded scene of this name, or else the script in the file of this name.
 ///
-/// - `given`: values for parameters that the script asks for.
+/// - `inputs`: what it is given.
 ///
 /// # Errors
 /// [`ScriptError`] if the file cannot be read, the script is wrong, or it does not ask for what is given.
-pub fn load(name: &str, given: &[Definition]) -> Result<Evaluated, ScriptError> {
+pub fn load(name: &str, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
     match EMBEDDED.iter().find(|e| e.name == name) {
-        Some(embedded) => evaluate(embedded.text, embedded.name, Path::new(""), given),
-        None => load_file(Path::new(name), given),
+        Some(embedded) => evaluate(embedded.text, embedded.name, Path::new(""), inputs),
+        None => load_file(Path::new(name), inputs),
     }
 }
 
@@ -201,9 +211,9 @@ pub fn load(name: &str, given: &[Definition]) -> Result<Evaluated, ScriptError> 
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_file(path: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
+pub fn load_file(path: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
     let text = engine::read(path)?;
-    evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")), given)
+    evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")), inputs)
 }
 
 /// Runs a script.
@@ -211,12 +221,12 @@ pub fn load_file(path: &Path, given: &[Definition]) -> Result<Evaluated, ScriptE
 /// - `text`: the script.
 /// - `name`: what messages call it.
 /// - `folder`: where the relative paths in it begin.
-/// - `given`: values for parameters that it asks for.
+/// - `inputs`: what it is given.
 ///
 /// # Errors
 /// [`ScriptError`], with line and column where there are any.
-pub fn evaluate(text: &str, name: &str, folder: &Path, given: &[Definition]) -> Result<Evaluated, ScriptError> {
-    engine::evaluate(text, name, folder, given)
+pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
+    engine::evaluate(text, name, folder, inputs)
 }
 
 /// The reference of all functions, as Markdown.

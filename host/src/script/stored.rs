@@ -20,7 +20,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("file", Kind::Text, Required, "its path; relative to the folder of the script")],
         example: "use_database(\"studio.redb\");",
         action: |builder, bound| {
-            let path = builder.folder.join(bound.text("file").unwrap_or_default());
+            let path = builder.folders.file(bound.text("file").unwrap_or_default())?;
             builder.library.open(&path).map_err(|error| error.to_string())?;
             Ok(Dynamic::UNIT)
         },

@@ -404,7 +404,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
 ];
 
 fn add_mesh(builder: &mut Builder, bound: &Bound) -> Done {
-    let path = builder.folder.join(bound.text("file").unwrap_or_default());
+    let path = builder.folders.file(bound.text("file").unwrap_or_default())?;
     if !path.is_file() {
         return Err(format!("there is no file {}", path.display()));
     }

@@ -10,11 +10,11 @@ use crate::surface::Tolerance;
 use glam::DVec3;
 
 pub(super) fn run(text: &str) -> Evaluated {
-    evaluate(text, "test.rhai", Path::new(""), &[]).unwrap_or_else(|e| panic!("{e}"))
+    evaluate(text, "test.rhai", Path::new(""), &Inputs::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 pub(super) fn problem(text: &str) -> (usize, usize, String) {
-    match evaluate(text, "test.rhai", Path::new(""), &[]) {
+    match evaluate(text, "test.rhai", Path::new(""), &Inputs::default()) {
         Err(ScriptError::Place(place)) => (place.line, place.column, place.message),
         other => panic!("{text}: no error with a place, but {other:?}"),
     }
@@ -70,7 +70,7 @@ fn what_moves_stands_where_it_is_in_the_middle_of_the_shutter() {
         ("cube(1).moving(#{ axis: [0, 0, 0] });", "axis must be"),
         ("cube(1).emits(3).moving([1, 0, 0]);", ""),
     ] {
-        let result = evaluate(script, "a", Path::new(""), &[]);
+        let result = evaluate(script, "a", Path::new(""), &Inputs::default());
         let message = result.err().map(|error| error.to_string()).unwrap_or_default();
         assert!(message.contains(problem), "{message}");
     }
@@ -103,14 +103,19 @@ fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
         ("3", "must be a function", 0),
     ] {
         let script = format!("\nuser_distribution({area});");
-        let error = evaluate(&script, "a", Path::new(""), &[]).expect_err(area);
+        let error = evaluate(&script, "a", Path::new(""), &Inputs::default()).expect_err(area);
         let ScriptError::Place(place) = &error else { panic!("{area}: {error}") };
         assert!(place.line == 2 && place.message.contains(problem), "{area}: {error}");
         assert!(column == 0 || place.column == column, "{area}: {error}");
     }
     let own =
         "let own = user_distribution(|angle| 1); cube(1).shaped(#{ reflectance: 1, distribution: own, roughness: 1 });";
-    assert!(evaluate(own, "a", Path::new(""), &[]).expect_err("two").to_string().contains("has no roughness"));
+    assert!(
+        evaluate(own, "a", Path::new(""), &Inputs::default())
+            .expect_err("two")
+            .to_string()
+            .contains("has no roughness")
+    );
 }
 
 #[test]
@@ -212,15 +217,15 @@ fn no_script_runs_forever_or_eats_the_memory() {
     assert!(problem("let s = \"x\"; loop { s += s; }").2.contains("too large"));
     assert!(problem("let a = [0]; loop { a += a; }").2.contains("too large"));
     for forbidden in ["sleep(10);", "timestamp();", "eval(\"1\");", "import \"x\" as y;"] {
-        assert!(evaluate(forbidden, "t", Path::new(""), &[]).is_err(), "{forbidden}");
+        assert!(evaluate(forbidden, "t", Path::new(""), &Inputs::default()).is_err(), "{forbidden}");
     }
     let deep = "(".repeat(5000);
-    assert!(evaluate(&deep, "t", Path::new(""), &[]).is_err());
+    assert!(evaluate(&deep, "t", Path::new(""), &Inputs::default()).is_err());
 }
 
 #[test]
 fn a_message_shows_the_line_and_points_at_the_column() {
-    let error = evaluate("cube(1);\n  cube(0);", "a.rhai", Path::new(""), &[]).expect_err("wrong");
+    let error = evaluate("cube(1);\n  cube(0);", "a.rhai", Path::new(""), &Inputs::default()).expect_err("wrong");
     let shown = error.to_string();
     assert!(shown.starts_with("a.rhai:2:3: cube: size must be"), "{shown}");
     assert!(shown.ends_with("2 |   cube(0);\n  |   ^"), "{shown}");
@@ -232,15 +237,15 @@ fn a_script_finds_meshes_beside_itself() {
     std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
     let script = folder.path().join("s.rhai");
     std::fs::write(&script, "mesh(\"a.obj\");").expect("written");
-    let made = load_file(&script, &[]).expect("a scene");
+    let made = load_file(&script, &Inputs::default()).expect("a scene");
     assert_eq!(made.scene.objects[0].shape, Shape::Mesh { path: folder.path().join("a.obj") });
-    assert!(matches!(load("no such file.rhai", &[]), Err(ScriptError::Read { .. })));
+    assert!(matches!(load("no such file.rhai", &Inputs::default()), Err(ScriptError::Read { .. })));
 }
 
 #[test]
 fn the_embedded_scenes_are_right() {
     for embedded in EMBEDDED {
-        let made = load(embedded.name, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let made = load(embedded.name, &Inputs::default()).unwrap_or_else(|e| panic!("{e}"));
         assert!(!made.scene.objects.is_empty() && !made.scene.lights.is_empty());
     }
 }
@@ -253,7 +258,7 @@ fn parameters_take_the_kind_of_their_default() {
     ";
     let with = |given: &[&str]| {
         let given: Vec<Definition> = given.iter().map(|text| text.parse().expect("a definition")).collect();
-        evaluate(script, "door.rhai", Path::new(""), &given)
+        evaluate(script, "door.rhai", Path::new(""), &Inputs { definitions: given, ..Inputs::default() })
     };
     assert_eq!(with(&[]).expect("defaults").printed, ["3", "2.5", "false", "none"]);
     let given = ["count=1", "count=-4", "width=1e3", "open=true", "title=a = b"];

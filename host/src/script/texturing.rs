@@ -158,7 +158,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
 /// An image from a file or, if there is none of that name, from the databases.
 fn read(builder: &Builder, bound: &Bound, content: Content) -> Result<Image, String> {
     let name = bound.text("file").unwrap_or_default();
-    let path = builder.folder.join(name);
+    let path = builder.folders.file(name)?;
     match builder.library.record(database::Kind::Texture, name) {
         Ok((Record { content: database::Content::Texture(picture), .. }, _)) if !path.exists() => {
             Ok(Image::of_picture(name.to_owned(), &picture, content))

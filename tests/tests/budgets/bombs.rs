@@ -197,15 +197,22 @@ struct Kind {
     rows: u32,
 }
 
-fn png(folder: &Path, [width, height]: [u32; 2], kind: Kind) {
+fn png(folder: &Path, size: [u32; 2], kind: Kind) {
+    write(folder, "a.png", &zero_png(size, kind.color, kind.depth, kind.rows));
+}
+
+/// A PNG file of zeros, whose last rows may be missing.
+///
+/// - `color`: 0 for grey, 2 for red, green and blue, 6 for these and coverage.
+/// - `depth`: bits of a number.
+pub fn zero_png([width, height]: [u32; 2], color: u8, depth: u8, rows: u32) -> Vec<u8> {
     let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
-    let header = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[kind.depth, kind.color, 0, 0, 0]].concat();
-    chunk(&mut bytes, b"IHDR", &header);
-    let bands = [1, 0, 3, 0, 0, 0, 4][usize::from(kind.color)];
-    let row = 1 + u64::from(width) * bands * u64::from(kind.depth / 8);
-    chunk(&mut bytes, b"IDAT", &zeros(row * u64::from(kind.rows)));
+    chunk(&mut bytes, b"IHDR", &[&width.to_be_bytes()[..], &height.to_be_bytes(), &[depth, color, 0, 0, 0]].concat());
+    let bands = [1, 0, 3, 0, 0, 0, 4][usize::from(color)];
+    let row = 1 + u64::from(width) * bands * u64::from(depth / 8);
+    chunk(&mut bytes, b"IDAT", &zeros(row * u64::from(rows)));
     chunk(&mut bytes, b"IEND", &[]);
-    write(folder, "a.png", &bytes);
+    bytes
 }
 
 fn png_with_text(folder: &Path, length: u64) {

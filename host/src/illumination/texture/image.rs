@@ -18,7 +18,7 @@ const MOST_LOOKS: f64 = 16.0;
 /// An image of fractions, 0..=1 in three bands, row 0 at the top (v = 1).
 ///
 /// Bytes of a file are held as they are; other fractions are rounded to 1/65535, those of images with three bands of more
-/// than eight bits and more than 4096 x 4096 pixels to a thousandth of what they are. There are copies of half the size, of a
+/// than eight bits and more than 1024 x 1024 pixels to a thousandth of what they are. There are copies of half the size, of a
 /// quarter, and so on to one pixel, all with the same mean. With them a pixel takes 5 bytes, 2.7 where it is grey, 8 where
 /// three bands have sixteen bits, and 5.3 in the large ones.
 #[derive(Clone)]

@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 const WHOLE: f64 = 65_535.0;
 /// Bits of the bands of a packed pixel, and where each begins.
 const PACKED: [(u32, u32); 3] = [(11, 0), (11, 11), (10, 22)];
-/// Most pixels of three bands that are held in sixteen bits each: those of 4096 x 4096.
-const MOST_WORDS: usize = 1 << 24;
+/// Most pixels of three bands that are held in sixteen bits each: those of 1024 x 1024.
+const MOST_WORDS: usize = 1 << 20;
 
 /// Light of each byte of sRGB.
 static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|byte| light_of_srgb(byte as f64 / 255.0)));

@@ -89,7 +89,7 @@ fn meanings_of(header: &Header) -> Option<Vec<Vec<usize>>> {
         _ if has(LUMINANCE) => true,
         _ => return None,
     };
-    let meaning = |channel: &ChannelDescription| match CHANNELS.iter().position(|name| channel.name.eq(*name)) {
+    let meaning = |channel: &ChannelDescription| match CHANNELS.iter().position(|name| channel.name.eq(name)) {
         Some(band @ 0..3) if !is_grey => vec![band],
         Some(beside @ 3..) => vec![beside],
         _ if is_grey && channel.name.eq(LUMINANCE) => vec![0, 1, 2],
