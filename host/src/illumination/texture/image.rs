@@ -220,7 +220,7 @@ impl Level {
     fn halved(&self) -> Level {
         let [width, height] = [self.width, self.height].map(|n| (n / 2).max(1));
         let (columns, rows) = (shares(self.width, width), shares(self.height, height));
-        let mut texels = Texels::new(self.texels.kind_of_means(), width * height);
+        let mut texels = self.texels.for_means(width * height);
         for (row, parts) in rows.iter().enumerate() {
             for (column, across) in columns.iter().enumerate() {
                 let mut sum = DVec3::ZERO;

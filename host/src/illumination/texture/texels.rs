@@ -70,11 +70,12 @@ impl Texels {
             }
     }
 
-    /// How means of these pixels are held, of which there are fewer: bytes are too coarse for them.
-    pub(super) fn kind_of_means(&self) -> Kind {
+    /// Black pixels for means of these, of which there are fewer. Bytes are too coarse for means.
+    pub(super) fn for_means(&self, count: usize) -> Texels {
         match self {
-            Texels::Grey(_) => Kind::Grey,
-            _ => Kind::Bands,
+            Texels::Grey(_) => Texels::new(Kind::Grey, count),
+            Texels::Packed(_) => Texels::Packed(vec![0; count]),
+            Texels::Bytes { .. } | Texels::Words(_) => Texels::new(Kind::Bands, count),
         }
     }
 
