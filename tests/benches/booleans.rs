@@ -116,7 +116,7 @@ fn cases(large: bool) -> Vec<Case> {
         let meshes = vec![sphere(size, DVec3::ZERO), sphere(size, DVec3::new(0.5, 0.3, 0.2))];
         cases.push(Case { name: format!("sphere less sphere, 2 x {size}"), meshes, is_difference: true });
     }
-    let bunny = bunny();
+    let bunny = bunny().expect("it ships");
     let shifted = moved(&bunny, DAffine3::from_translation(DVec3::new(0.1, 0.05, 0.02)));
     cases.push(Case { name: "bunny less shifted bunny".into(), meshes: vec![bunny, shifted], is_difference: true });
     for size in [1_000, 10_000] {

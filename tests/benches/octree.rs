@@ -17,7 +17,7 @@ const TRIALS: usize = 5;
 fn main() {
     println!("milliseconds, least of {TRIALS}\n");
     for divisions in [0, 1, 2] {
-        let mesh = (0..divisions).fold(bunny(), |mesh, _| mesh.subdivided_smoothly());
+        let mesh = (0..divisions).fold(bunny().expect("it ships"), |mesh, _| mesh.subdivided_smoothly());
         edits(&mesh);
         whole(&mesh);
     }
@@ -26,8 +26,9 @@ fn main() {
 /// A small object beside a large one: what it costs to put it in and to take it out again.
 fn edits(large: &Mesh) {
     let bounds = large.bounds().expect("vertices");
-    let small: Vec<DVec3> = bunny().vertices.iter().map(|p| (*p - bounds.center()) * 0.1 + bounds.max * 0.9).collect();
-    let triangles = bunny().triangles.into_iter().step_by(7).collect();
+    let small: Vec<DVec3> =
+        bunny().expect("it ships").vertices.iter().map(|p| (*p - bounds.center()) * 0.1 + bounds.max * 0.9).collect();
+    let triangles = bunny().expect("it ships").triangles.into_iter().step_by(7).collect();
     let small = Mesh { vertices: small, triangles, ..Mesh::default() };
     let frame = bounds.union(small.bounds().expect("vertices"));
     println!("{} triangles, and {} more", large.triangles.len(), small.triangles.len());

@@ -86,7 +86,7 @@ fn shaded(name: &str, polygons: &[Polygon], above: &[Operation]) {
 }
 
 fn main() {
-    let bunny = mesh::bunny();
+    let bunny = mesh::bunny().expect("it ships");
     let above = view(DVec3::new(0.8, 1.0, -3.2));
     shaded("bunny, 69,666 small", &polygons(&bunny, true), &above);
     shaded("200 large", &large(200), &[]);

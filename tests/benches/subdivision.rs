@@ -16,7 +16,7 @@ use host::subdivision::Polyhedron;
 const RUNS: usize = 7;
 
 fn main() {
-    let mesh = bunny();
+    let mesh = bunny().expect("it ships");
     // `cargo bench` passes `--bench`; without it one step proves the result.
     let (runs, steps) = if std::env::args().any(|argument| argument == "--bench") { (RUNS, 2) } else { (1, 1) };
     prove(&mesh, steps);

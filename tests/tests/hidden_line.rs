@@ -285,7 +285,7 @@ fn facing(polygons: &[Polygon], from: DVec3) -> usize {
 
 #[test]
 fn of_the_bunny_no_line_shows_through_and_none_is_missing() {
-    let polygons = polygons(&mesh::bunny(), false);
+    let polygons = polygons(&mesh::bunny().expect("it ships"), false);
     for from in [DVec3::new(0.8, 1.0, -3.2), DVec3::new(-2.9, -0.7, 1.9), DVec3::new(0.1, 3.3, -0.2)] {
         for solid in [true, false] {
             let counts = check(&polygons, &lines(&polygons, solid, from, Rendering::HiddenLine), from);
@@ -297,8 +297,12 @@ fn of_the_bunny_no_line_shows_through_and_none_is_missing() {
 
 #[test]
 fn of_a_bunny_with_holes_the_inside_is_seen_through_them() {
-    let polygons: Vec<Polygon> =
-        polygons(&mesh::bunny(), false).into_iter().enumerate().filter(|(k, _)| k % 7 != 0).map(|(_, p)| p).collect();
+    let polygons: Vec<Polygon> = polygons(&mesh::bunny().expect("it ships"), false)
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| k % 7 != 0)
+        .map(|(_, p)| p)
+        .collect();
     for from in [DVec3::new(-0.8, 1.0, 3.2), DVec3::new(2.9, -0.7, 1.9)] {
         let counts = check(&polygons, &lines(&polygons, false, from, Rendering::HiddenLine), from);
         assert!(counts.seen > 200_000 && counts.hidden > 200_000, "{counts:?}");

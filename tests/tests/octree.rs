@@ -60,7 +60,7 @@ fn compare(name: &str, mesh: &Mesh) {
 
 #[test]
 fn a_million_rays_hit_the_bunny_where_all_its_triangles_say() {
-    compare("bunny", &bunny());
+    compare("bunny", &bunny().expect("it ships"));
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn a_million_rays_hit_the_teapot_where_all_its_triangles_say() {
 
 #[test]
 fn no_ray_leaves_the_bunny_through_a_vertex_or_an_edge() {
-    let mesh = bunny();
+    let mesh = bunny().expect("it ships");
     assert!(mesh.edge_report().is_closed());
     let octree = Octree::build(&mesh.vertices, &mesh.triangles, &Settings::default()).expect("the octree is built");
     let bounds = mesh.bounds().expect("the mesh has vertices");

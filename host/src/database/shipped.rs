@@ -13,7 +13,13 @@ const BUNNY: &str = "bunny";
 /// The names of a kind, in the order of their tables.
 pub fn names(kind: Kind) -> Vec<&'static str> {
     match kind {
-        Kind::Geometry => vec![BUNNY],
+        Kind::Geometry => {
+            if cfg!(feature = "bunny") {
+                vec![BUNNY]
+            } else {
+                Vec::new()
+            }
+        }
         Kind::Material => [shipped::metals(), shipped::glasses()].concat(),
         Kind::Spectrum => {
             [shipped::lights(), shipped::metals(), shipped::reflectances(), shipped::functions()].concat()
@@ -40,21 +46,23 @@ pub fn record(kind: Kind, name: &str) -> Result<Record, DatabaseError> {
 /// A record; none if there is none of that name.
 ///
 /// # Errors
-/// [`DatabaseError::Record`] if what is in the program is damaged.
+/// [`DatabaseError::Record`] if what is in the program is damaged, or was left out when it was built.
 pub fn find(kind: Kind, name: &str) -> Result<Option<Record>, DatabaseError> {
+    if (kind, name) == (Kind::Geometry, BUNNY) {
+        return bunny().map(Some);
+    }
     if !names(kind).contains(&name) {
         return Ok(None);
     }
     let failed = |error: ColorError| DatabaseError::Record { kind, name: name.into(), problem: error.to_string() };
     let origin = shipped::origin(name).unwrap_or_default();
     let made = match kind {
-        Kind::Geometry => return Ok(Some(bunny())),
         Kind::Material if shipped::metals().contains(&name) => {
             shipped::metal(name).map(|shipped::Metal { n, k }| polished(n, k))
         }
         Kind::Material => shipped::glass(name).map(clear),
         Kind::Spectrum => curves(name).map(Content::Spectrum),
-        Kind::Texture | Kind::Light | Kind::CaughtLight => return Ok(None),
+        Kind::Geometry | Kind::Texture | Kind::Light | Kind::CaughtLight => return Ok(None),
     };
     Ok(Some(Record { name: name.into(), origin, content: made.map_err(failed)? }))
 }
@@ -82,7 +90,13 @@ fn clear(glass: crate::color::Glass) -> Content {
     Content::Material(Box::new(Body::Transparent(body).into()))
 }
 
-fn bunny() -> Record {
+fn bunny() -> Result<Record, DatabaseError> {
+    let left_out = |error: mesh::NoBunny| DatabaseError::Record {
+        kind: Kind::Geometry,
+        name: BUNNY.into(),
+        problem: error.to_string(),
+    };
+    let mesh = mesh::bunny().map_err(left_out)?;
     let origin = Origin {
         what: "The Stanford bunny, closed, about 2 units high.".into(),
         source: "Stanford 3D Scanning Repository, scan of Greg Turk and Marc Levoy, 1994; its holes are filled.".into(),
@@ -91,5 +105,5 @@ fn bunny() -> Record {
                 use without its permission."
                 .into(),
     };
-    Record { name: BUNNY.into(), origin, content: Content::Geometry(Box::new(mesh::bunny().into())) }
+    Ok(Record { name: BUNNY.into(), origin, content: Content::Geometry(Box::new(mesh.into())) })
 }

@@ -270,8 +270,9 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn all_edges_of_bunny_and_sphere_come_once_in_the_fewest_runs() {
-        for mesh in [super::super::bunny(), ball(31, 17)] {
+        for mesh in [super::super::bunny().expect("it ships"), ball(31, 17)] {
             check(&mesh, &Selection::ALL);
             check(&mesh, &Selection::grid(30.0));
             check(&mesh, &Selection::drawing(30.0, Eye::Direction(DVec3::new(1.0, 2.0, 3.0))));

@@ -250,8 +250,9 @@ mod tests {
     use crate::mesh;
 
     #[test]
+    #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn a_bunny_of_two_thousand_triangles_is_still_closed_and_as_large() {
-        let bunny = mesh::bunny();
+        let bunny = mesh::bunny().expect("it ships");
         let small = bunny.simplified(2_000);
         assert_eq!(small.triangles.len(), 2_000);
         assert!(small.is_closed() && small.validate().is_ok());
@@ -280,6 +281,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn what_cannot_be_made_smaller_stays() {
         let tetrahedron = Mesh {
             vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
@@ -289,7 +291,7 @@ mod tests {
         assert_eq!(tetrahedron.simplified(0), tetrahedron.simplified(4));
         assert_eq!(tetrahedron.simplified(0).triangles.len(), 4);
         assert_eq!(Mesh::default().simplified(0), Mesh::default());
-        let bunny = mesh::bunny();
+        let bunny = mesh::bunny().expect("it ships");
         assert_eq!(bunny.simplified(100_000).triangles.len(), bunny.triangles.len());
     }
 }

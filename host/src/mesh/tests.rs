@@ -131,8 +131,9 @@ fn the_compact_form_refuses_what_it_cannot_hold() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn the_bunny_is_closed_and_faces_outwards() {
-    let mesh = bunny();
+    let mesh = bunny().expect("it ships");
     let report = mesh.edge_report();
     assert_eq!((report.vertices, report.triangles, report.edges), (34_835, 69_666, 104_499));
     assert!(report.is_closed() && report.collapsed + report.slivers == 0);
@@ -200,4 +201,10 @@ proptest! {
             let _ = parse(&noisy, format);
         }
     }
+}
+
+#[test]
+#[cfg(not(feature = "bunny"))]
+fn a_program_without_the_bunny_says_which_feature_it_lacks() {
+    assert!(bunny().expect_err("it was left out").to_string().contains("feature `bunny`"));
 }

@@ -224,6 +224,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn an_open_shape_is_named() {
         let operands = vec![object(Shape::Teapot, DMat4::IDENTITY), object(Shape::Bunny, DMat4::IDENTITY)];
         let error = composite(Operation::Union, operands).made(within(0.01)).err().unwrap();

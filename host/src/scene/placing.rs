@@ -146,6 +146,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn a_mesh_without_parameters_has_those_of_its_faces() {
         let prepared = textured(Shape::Bunny, DMat4::IDENTITY);
         for triangle in (0..prepared.triangles.len() as u32).step_by(97) {

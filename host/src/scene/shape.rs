@@ -9,7 +9,7 @@ use super::sculpture::{Sculpture, SculptureError};
 use crate::database::{Content, DatabaseError, Kind, Library};
 use crate::intersection::Precision;
 use crate::memory;
-use crate::mesh::{self, Mesh, MeshError, Polylines, edges::EdgeTable};
+use crate::mesh::{self, Mesh, MeshError, NoBunny, Polylines, edges::EdgeTable};
 use crate::octree::{self, Octree};
 use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError};
 use crate::subdivision::SubdivisionError;
@@ -31,6 +31,9 @@ pub enum ShapeError {
     /// The mesh cannot be read.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The Stanford bunny was left out of the program.
+    #[error(transparent)]
+    NoBunny(#[from] NoBunny),
     /// The octree cannot be read.
     #[error("{}: {problem}", path.display())]
     Octree {
@@ -166,7 +169,9 @@ impl Shape {
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             // What sculptured surfaces are made of was checked; whether they can be tessellated is seen then.
-            Shape::Teapot | Shape::Bunny | Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Sculpture(_) => Ok(()),
+            Shape::Teapot | Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Sculpture(_) => Ok(()),
+            Shape::Bunny if cfg!(feature = "bunny") => Ok(()),
+            Shape::Bunny => Err(NoBunny.to_string()),
             Shape::Subdivision(cage) => cage.polyhedron().map(|_| ()).map_err(|error| error.to_string()),
             Shape::Solid(primitive) => primitive.body().map(|_| ()).map_err(|error| error.to_string()),
             Shape::HalfSpace { normal, .. } if normal.try_normalize().is_some() => Ok(()),
@@ -238,7 +243,7 @@ impl Shape {
                 Ok(Made { lines, ..Made::default() })
             }
             Shape::Rounded(rounded) => rounded.made(tolerance),
-            Shape::Bunny => Ok(Made { mesh: mesh::bunny(), ..Made::default() }),
+            Shape::Bunny => Ok(Made { mesh: mesh::bunny()?, ..Made::default() }),
             Shape::Mesh { path } => Ok(Made { mesh: mesh_of(path)?, ..Made::default() }),
             Shape::Stored { database, name } => {
                 let (record, _) = Library::of(database.as_deref())?.record(Kind::Geometry, name)?;

@@ -115,8 +115,9 @@ fn cubes_in_every_position() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn a_solid_less_itself_is_empty() {
-    for mesh in [cube(DVec3::ZERO, DVec3::ONE), ball(DVec3::ONE, 2.0, 0.01), bunny()] {
+    for mesh in [cube(DVec3::ZERO, DVec3::ONE), ball(DVec3::ONE, 2.0, 0.01), bunny().expect("it ships")] {
         let [union, common, less, either] = all(&mesh, &mesh);
         assert!(less.mesh.triangles.is_empty() && either.mesh.triangles.is_empty());
         for result in [union, common] {
@@ -126,13 +127,14 @@ fn a_solid_less_itself_is_empty() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn spheres_and_bunnies_that_overlap() {
     let (one, two) = (ball(DVec3::ZERO, 1.0, 1e-3), ball(DVec3::new(0.7, 0.2, 0.1), 1.0, 1e-3));
     let common = check(&one, &two);
     let d = DVec3::new(0.7, 0.2, 0.1).length();
     let lens = std::f64::consts::PI * (2.0 - d).powi(2) * (d * d + 4.0 * d) / (12.0 * d);
     assert!((common / lens - 1.0).abs() < 3e-3, "{common} {lens}");
-    let bunny = bunny();
+    let bunny = bunny().expect("it ships");
     check(&bunny, &moved(&bunny, DAffine3::from_translation(DVec3::new(0.1, 0.05, 0.02))));
 }
 

@@ -80,6 +80,7 @@ fn steps_of_subdivision_come_nearer_to_the_limit() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn adaptive_triangles_keep_their_tolerance() {
     let options = Options { settings: 3, ..row("surface").options };
     let study = (row("surface").run)(&sphere(), &options, &Watch::NOBODY).expect("a study");

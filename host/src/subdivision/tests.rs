@@ -334,8 +334,9 @@ fn two_solids_that_touch_in_a_vertex_come_apart() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn the_bunny_is_smoothed_the_same_with_any_number_of_threads() {
-    let start = Polyhedron::from_mesh(&crate::mesh::bunny()).unwrap();
+    let start = Polyhedron::from_mesh(&crate::mesh::bunny().expect("it ships")).unwrap();
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| start.subdivided(1).unwrap())

@@ -163,6 +163,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn polygons_run_clockwise_from_outside_and_edges_within_a_plane_are_soft() {
         let square = Mesh {
             vertices: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 2.0)).to_vec(),
@@ -192,7 +193,10 @@ mod tests {
         assert!(all.iter().flat_map(|polygon| &polygon.vertices).all(|vertex| !vertex.soft));
         let far = Mesh { vertices: vec![DVec3::splat(1e40), DVec3::X, DVec3::Y], triangles: vec![[0, 1, 2]], ..square };
         assert!(super::polygons(&far, &Selection::ALL, &[], &named).unwrap_err().contains("too far away"));
-        assert_eq!(super::polygons(&mesh::bunny(), &Selection::ALL, &[], &named).unwrap()[0].len(), 69_666);
+        assert_eq!(
+            super::polygons(&mesh::bunny().expect("it ships"), &Selection::ALL, &[], &named).unwrap()[0].len(),
+            69_666
+        );
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub fn pot(chord: f64) -> Shape {
 
 /// The Stanford bunny, with each triangle divided into four so many times.
 pub fn rabbit(divisions: u32) -> Shape {
-    Shape::new("bunny", (0..divisions).fold(bunny(), |mesh, _| mesh.subdivided_smoothly()))
+    Shape::new("bunny", (0..divisions).fold(bunny().expect("it ships"), |mesh, _| mesh.subdivided_smoothly()))
 }
 
 /// A mesh from a file.

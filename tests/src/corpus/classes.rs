@@ -124,7 +124,7 @@ fn spheres_turned(random: &mut Pcg64Mcg) -> Case {
 }
 
 fn bunnies_turned(random: &mut Pcg64Mcg) -> Case {
-    let bunny = bunny().simplified(500);
+    let bunny = bunny().expect("it ships").simplified(500);
     let angle = power(random, -15.0, -1.0);
     pair(bunny.clone(), turned(&bunny, random, angle))
 }

@@ -286,6 +286,7 @@ fn highlights_that_spread_light_sees_are_cut_off_unless_caustics_count() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn the_light_buffer_changes_no_picture_and_spares_rays() {
     // A lamp, the sun and a large light over a bunny, walls with a hole, and a pane of red glass.
     let sheet = |width: f64, x: f64, material: Classic| {

@@ -144,6 +144,7 @@ fn all_kinds_of_sharp_lights_give_what_ray_tracing_gives() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn the_bunny_and_its_shadow_are_those_of_ray_tracing() {
     let bunny = object(Shape::Bunny, DMat4::from_translation(DVec3::Y), diffuse(0.7));
     agrees("bunny", &scene(vec![ground(20.0), bunny], vec![lamp(DVec3::new(3.0, 5.0, 4.0))], usual()), None);
@@ -253,6 +254,7 @@ fn a_diffuse_floor_under_a_lamp_follows_its_closed_form() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
     let bunny = object(Shape::Bunny, DMat4::from_translation(DVec3::Y), diffuse(0.7));
     let mut objects = boxes();
