@@ -1,9 +1,10 @@
 //! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
-//! conformance suite; the corpus of Boolean operations.
+//! conformance suite; the corpus of Boolean operations; the notices of crates of others.
 
 pub mod conformance;
 pub mod corpus;
 pub mod facets;
+pub mod notices;
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
