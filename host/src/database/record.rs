@@ -275,8 +275,12 @@ impl Record {
         }
     }
 
-    /// Its bytes; the same record gives the same bytes.
-    pub(super) fn to_bytes(&self) -> Result<Vec<u8>, DatabaseError> {
+    /// Its bytes as a database holds them; the same record gives the same bytes.
+    ///
+    /// # Errors
+    /// [`DatabaseError::Name`], [`DatabaseError::Record`] for content that is wrong, [`DatabaseError::TooLarge`] beyond
+    /// [`MAX_RECORD`].
+    pub fn to_bytes(&self) -> Result<Vec<u8>, DatabaseError> {
         let (kind, name) = (self.kind(), self.name.clone());
         let failed = |problem: String| DatabaseError::Record { kind, name: name.clone(), problem };
         check_name(&self.name)?;
@@ -295,8 +299,12 @@ impl Record {
         Ok(bytes)
     }
 
-    /// What [`Record::to_bytes`] wrote.
-    pub(super) fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Record, DatabaseError> {
+    /// Reads what [`Record::to_bytes`] wrote, for the same kind and name.
+    ///
+    /// # Errors
+    /// [`DatabaseError::Record`] for bytes that are damaged or of another record, [`DatabaseError::Newer`] for those of a
+    /// later program.
+    pub fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Record, DatabaseError> {
         let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
         let (Head { what, source, terms, .. }, content) = head(kind, name, bytes)?;
         if checksum(kind, name, bytes).to_le_bytes() != bytes[4..BEFORE] {

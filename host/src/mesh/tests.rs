@@ -131,6 +131,16 @@ fn the_compact_form_refuses_what_it_cannot_hold() {
 }
 
 #[test]
+fn the_compact_form_of_the_smallest_meshes_can_be_read() {
+    for size in [5e-324, 1e-323, 3.1e-319, 1e-310] {
+        let mut small = super::samples::tetrahedron();
+        small.vertices.iter_mut().for_each(|vertex| *vertex *= size);
+        let back = parse(&print(&small, Format::Compact).unwrap(), Format::Compact);
+        assert_eq!(back.map(|mesh| mesh.triangles.len()), Ok(4), "{size}");
+    }
+}
+
+#[test]
 #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
 fn the_bunny_is_closed_and_faces_outwards() {
     let mesh = bunny().expect("it ships");

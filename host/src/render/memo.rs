@@ -5,7 +5,7 @@
 //! are little-endian. A last record that is not whole, as after a crash, is written anew.
 
 use super::StateError;
-use bincode::config::{Configuration, Fixint, LittleEndian, standard};
+use bincode::config::{Configuration, Fixint, Limit, LittleEndian, standard};
 use bincode::serde::{decode_from_slice, encode_to_vec};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -20,7 +20,10 @@ use std::sync::{Mutex, PoisonError};
 const MAGIC: [u8; 8] = *b"PERISM\x00\x01";
 /// Bytes before the first record.
 const HEAD: u64 = 12;
-const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
+/// Most bytes of a record; a length in it that says more is no length.
+const MOST: usize = 1 << 30;
+const ENCODING: Configuration<LittleEndian, Fixint, Limit<MOST>> =
+    standard().with_fixed_int_encoding().with_limit::<MOST>();
 /// Results of a record: computed in about a tenth of a second, and enough for many threads.
 const CHUNK: usize = 8192;
 
@@ -212,6 +215,18 @@ mod tests {
         assert_eq!(Memo::next(None, || Ok::<_, ()>(4)), Ok(4));
         second.remove();
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_length_that_no_record_has_takes_no_memory() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("memo");
+        // The content is the length of a text, eight bytes, and nothing behind it.
+        let content = u64::MAX.to_le_bytes();
+        let record = [&8_u64.to_le_bytes()[..], &crc32fast::hash(&content).to_le_bytes(), &content].concat();
+        std::fs::write(&path, [&MAGIC[..], &7_u32.to_le_bytes(), &record].concat()).expect("written");
+        let memo = Memo::open(&path, 7).expect("a memo");
+        assert_eq!(Memo::next(Some(&memo), || Ok::<_, ()>("new".to_owned())), Ok("new".to_owned()));
     }
 
     /// Squares of numbers, and how many of them were computed.

@@ -152,7 +152,9 @@ pub(super) fn print(mesh: &Mesh) -> Result<Vec<u8>, Fault> {
     }
     let bounds = mesh.bounds().ok_or_else(|| unsuited("the mesh is empty"))?;
     let step = bounds.size().max_element() / STEPS;
-    let quantised = |p: &DVec3| ((*p - bounds.min) / step).round().as_i64vec3();
+    // The step of a mesh that is smaller than the least normal number is rounded so much that the far side lies beyond it.
+    let far = I64Vec3::splat(STEPS as i64);
+    let quantised = |p: &DVec3| ((*p - bounds.min) / step).round().as_i64vec3().clamp(I64Vec3::ZERO, far);
     let positions = mesh.vertices.iter().map(quantised).collect();
     let mut encoder = Encoder::new(mesh, positions);
     encoder
