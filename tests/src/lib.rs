@@ -1,10 +1,11 @@
 //! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
-//! conformance suite; the corpus of Boolean operations; the notices of crates of others.
+//! conformance suite; the corpus of Boolean operations; the notices of crates of others; every reader of bytes.
 
 pub mod conformance;
 pub mod corpus;
 pub mod facets;
 pub mod notices;
+pub mod readers;
 
 use std::{
     io::{BufRead, BufReader, Read, Write},

@@ -1,0 +1,46 @@
+//! Readers of meshes in each format, and of octrees.
+
+use super::sums;
+use host::mesh::{Format, parse_grouped, print_grouped};
+use host::octree::Octree;
+
+pub fn obj(bytes: &[u8]) {
+    mesh(bytes, Format::Obj);
+}
+
+pub fn stl(bytes: &[u8]) {
+    mesh(bytes, Format::Stl);
+}
+
+pub fn ply(bytes: &[u8]) {
+    mesh(bytes, Format::Ply);
+}
+
+pub fn gltf(bytes: &[u8]) {
+    mesh(bytes, Format::Gltf);
+}
+
+pub fn glb(bytes: &[u8]) {
+    mesh(bytes, Format::Glb);
+}
+
+pub fn compact(bytes: &[u8]) {
+    mesh(bytes, Format::Compact);
+}
+
+/// What is read is sound; what can be written of it is read again with as many triangles.
+fn mesh(bytes: &[u8], format: Format) {
+    let Ok(read) = parse_grouped(bytes, format) else { return };
+    read.mesh.validate().expect("what is read is sound");
+    let Ok(written) = print_grouped(&read, format) else { return };
+    let again = parse_grouped(&written, format).unwrap_or_else(|fault| panic!("what was written is refused: {fault}"));
+    assert_eq!(again.mesh.triangles.len(), read.mesh.triangles.len());
+}
+
+/// What is read is written as it is read.
+pub fn octree(bytes: &[u8]) {
+    let Ok(octree) = Octree::from_bytes(&sums::octree(bytes)) else { return };
+    let written = octree.to_bytes().expect("what is read is sound");
+    let again = Octree::from_bytes(&written).expect("what was written is read");
+    assert_eq!(again.to_bytes().as_ref(), Ok(&written));
+}

@@ -1,0 +1,42 @@
+//! Readers of pictures: PNG, EXR, EXR with layers, and what surrounds a scene.
+
+use super::place::with_file;
+use glam::DVec3;
+use host::color::{Color, Wavelengths};
+use host::illumination::light::{Sky, SkyMap};
+use host::picture::{Deep, Picture};
+use std::sync::Arc;
+
+pub fn png(bytes: &[u8]) {
+    picture("a.png", bytes);
+}
+
+pub fn exr(bytes: &[u8]) {
+    picture("a.exr", bytes);
+}
+
+/// What is read has all its pixels, and goes out as bytes.
+fn picture(name: &str, bytes: &[u8]) {
+    if let Ok(picture) = with_file(name, bytes, Picture::read) {
+        let count = picture.width() as usize * picture.height() as usize;
+        assert_eq!((picture.pixels().len(), picture.to_srgb8().len()), (count, 3 * count));
+    }
+}
+
+pub fn layers(bytes: &[u8]) {
+    if let Ok(deep) = with_file("a.exr", bytes, Deep::read) {
+        assert!(deep.picture().is_finite() && deep.depth().iter().all(|z| !z.is_nan()));
+        assert_eq!(deep.depth().len(), deep.picture().pixels().len());
+    }
+}
+
+pub fn environment(bytes: &[u8]) {
+    let Ok(picture) = with_file("a.exr", bytes, Picture::read) else { return };
+    let is_right = picture.pixels().iter().all(|p| p.radiance.iter().all(|band| (0.0..=1e30).contains(band)));
+    let map = SkyMap { file: "a.exr".into(), picture: Some(Arc::new(picture)) };
+    let sky = Sky::new(Some(&map), &Color::Bands(DVec3::ONE), 30.0, &Wavelengths::bands());
+    for towards in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.6, 0.0, -0.8)] {
+        let radiance = sky.radiance(towards, 0);
+        assert!(!is_right || radiance.max() >= 0.0, "{radiance:?}");
+    }
+}
