@@ -131,7 +131,7 @@ fn every_kind_of_record_comes_back_to_the_last_bit() {
 #[test]
 fn everything_that_ships_is_whole_and_tells_its_source() {
     let all = shipped::entries(None);
-    assert_eq!(all.len(), 1 + 9 + 5 + 5 + 70 + 2);
+    assert_eq!(all.len(), usize::from(cfg!(feature = "bunny")) + 9 + 5 + 5 + 70 + 2);
     for entry in &all {
         assert!(!entry.source.is_empty() && !entry.terms.is_empty() && !entry.summary.is_empty(), "{entry:?}");
         let record = shipped::record(entry.kind, &entry.name).expect("it ships");
@@ -140,6 +140,14 @@ fn everything_that_ships_is_whole_and_tells_its_source() {
     }
     let message = shipped::record(Kind::Material, "walnut").expect_err("unknown").to_string();
     assert!(message.starts_with("no material is called \"walnut\"; there are copper, gold,"), "{message}");
+}
+
+#[test]
+#[cfg(not(feature = "bunny"))]
+fn a_bunny_that_was_left_out_is_told_with_the_feature() {
+    assert_eq!(shipped::names(Kind::Geometry), [""; 0]);
+    let error = shipped::find(Kind::Geometry, "bunny").expect_err("it was left out").to_string();
+    assert!(error.contains("feature `bunny`"), "{error}");
 }
 
 #[test]
