@@ -72,7 +72,7 @@ fn is_of(pattern: &str, path: &str) -> bool {
 
 #[test]
 fn every_file_of_data_has_its_terms_and_every_row_its_file() {
-    let text = read(".licences/DATA.md");
+    let text = read(".cargo/licences/DATA.md");
     let patterns: Vec<&str> = rows(&text)
         .filter(|row| row[0].starts_with('`'))
         .flat_map(|row| row[0].split(", ").map(|name| name.trim_matches('`')))
@@ -80,7 +80,7 @@ fn every_file_of_data_has_its_terms_and_every_row_its_file() {
     let files: Vec<String> = ["host", "ps340", "protocol", "tests"].into_iter().flat_map(data).collect();
     assert!(files.len() > 60, "only {} files were found: the test is blind", files.len());
     let without: Vec<&String> = files.iter().filter(|file| !patterns.iter().any(|row| is_of(row, file))).collect();
-    assert!(without.is_empty(), "no row in .licences/DATA.md: {without:?}");
+    assert!(without.is_empty(), "no row in .cargo/licences/DATA.md: {without:?}");
     let empty: Vec<&&str> = patterns.iter().filter(|row| !files.iter().any(|file| is_of(row, file))).collect();
-    assert!(empty.is_empty(), "rows of .licences/DATA.md without a file: {empty:?}");
+    assert!(empty.is_empty(), "rows of .cargo/licences/DATA.md without a file: {empty:?}");
 }

@@ -9,7 +9,7 @@ pub use crates::{Locked, carried};
 pub use print::print;
 
 /// Where the notices are, from the root of the workspace.
-pub const PATH: &str = ".licences/CRATES.md";
+pub const PATH: &str = ".cargo/licences/CRATES.md";
 
 /// Why the notices cannot be made.
 #[derive(Debug, thiserror::Error)]
