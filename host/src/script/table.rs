@@ -23,7 +23,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     Function {
         name: "bunny",
-        summary: "Adds the Stanford bunny, about 2 high, facing the viewer; 69,666 triangles.",
+        summary: "Adds the Stanford bunny, about 2 high, facing the viewer; 69,666 triangles. No commercial use without permission of Stanford.",
         parameters: &[],
         example: "bunny().translate(0, 1, 0);",
         action: |builder, _| builder.add(Shape::Bunny, None).map(Dynamic::from),

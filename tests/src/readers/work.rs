@@ -44,5 +44,6 @@ pub fn memo(bytes: &[u8]) {
 
 /// A scene is made, within the limits of scripts.
 pub fn script(bytes: &[u8]) {
-    let _ = script::evaluate(&String::from_utf8_lossy(bytes), "script", Path::new("no folder"), &[]);
+    let _ =
+        script::evaluate(&String::from_utf8_lossy(bytes), "script", Path::new("no folder"), &script::Inputs::default());
 }
