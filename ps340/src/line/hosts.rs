@@ -4,59 +4,25 @@ use super::{
     Interface, LineEvent, LineId, Surroundings,
     conditions::{Flow, INPUT_QUEUE, XOFF, XON, leave},
     pace::Pace,
+    places::Presence,
+    writer::{Waiting, Writer},
 };
 use protocol::{address::Conditions, capture::Event};
-use std::{
-    io,
-    sync::{
-        Arc,
-        atomic::{AtomicUsize, Ordering},
-    },
-};
+use std::{io, sync::Arc};
 use tokio::{
     io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt},
-    sync::{mpsc, watch},
+    sync::watch,
     time::{Instant, sleep_until},
 };
 
-/// Bytes that wait for a host that does not read; what comes on top is dropped and counted.
-pub const MAX_WAITING_BYTES: usize = 16 << 20;
-/// Hosts that may be attached at once; each may hold an open statement and an open vector list.
-pub const MAX_HOSTS: usize = 64;
 /// Bytes taken from a line at a time.
 const READ_BYTES: usize = 256 << 10;
 
-/// The way to a host.
-#[derive(Clone, Debug)]
-pub struct Writer {
-    queue: mpsc::UnboundedSender<Vec<u8>>,
-    waiting: Arc<AtomicUsize>,
-}
-
-impl Writer {
-    fn new() -> (Writer, mpsc::UnboundedReceiver<Vec<u8>>) {
-        let (queue, queued) = mpsc::unbounded_channel();
-        (Writer { queue, waiting: Arc::default() }, queued)
-    }
-
-    /// Queues bytes for the host; returns false if they are dropped, because the host does not read.
-    pub fn send(&self, bytes: Vec<u8>) -> bool {
-        let size = bytes.len();
-        if self.waiting.load(Ordering::Relaxed) + size > MAX_WAITING_BYTES {
-            return false;
-        }
-        self.waiting.fetch_add(size, Ordering::Relaxed);
-        self.queue.send(bytes).is_ok()
-    }
-}
-
 /// The way to a host that is not there: what it is told is captured, and that is all. Needs a tokio runtime.
 pub(super) fn silent_writer(line: LineId, around: Surroundings) -> Writer {
-    let (writer, mut queued) = Writer::new();
-    let waiting = writer.waiting.clone();
+    let (writer, mut waiting) = Writer::new();
     tokio::spawn(async move {
-        while let Some(bytes) = queued.recv().await {
-            waiting.fetch_sub(bytes.len(), Ordering::Relaxed);
+        while let Some(bytes) = waiting.next().await {
             around.tap(line, || Event::ToHost(bytes));
         }
     });
@@ -74,9 +40,18 @@ pub(super) struct Host {
     pub(super) conditions: Conditions,
     /// Whether it can close its side and still be told what it asked for.
     pub(super) half_closes: bool,
+    /// Whether it has spoken, and whether somebody else wants its place.
+    pub(super) presence: Arc<Presence>,
 }
 
-/// Serves a host until it has closed its side and was told everything.
+impl Host {
+    /// A host that speaks text and packets, on a line that closes in each direction by itself.
+    pub(super) fn stream(peer: String, conditions: Conditions) -> Host {
+        Host { peer, interface: Interface::Stream, conditions, half_closes: true, presence: Arc::default() }
+    }
+}
+
+/// Serves a host until it has closed its side and was told everything, or its place is wanted.
 pub(super) async fn serve(
     stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static,
     host: Host,
@@ -84,23 +59,29 @@ pub(super) async fn serve(
 ) {
     let line = LineId::next();
     let (read, write) = tokio::io::split(stream);
-    let (writer, queued) = Writer::new();
-    let waiting = writer.waiting.clone();
+    let (writer, waiting) = Writer::new();
     if !around.attach(line, host.peer, host.interface, writer).await {
         return;
     }
     let (flow, followed) = watch::channel(Flow::default());
     let sender = Sender { write, line, conditions: host.conditions, flow: followed, around: around.clone() };
-    let sending = tokio::spawn(sender.run(queued, waiting));
-    let error = receive(read, line, host.conditions, &flow, &around).await;
+    let mut sending = tokio::spawn(sender.run(waiting));
+    let presence = &host.presence;
+    let (error, is_unwanted) = tokio::select! {
+        error = receive(read, line, host.conditions, presence, &flow, &around) => (error, false),
+        () = presence.is_unwanted() => (Some(io::Error::other("it never spoke, and its place was wanted")), true),
+    };
     // Without the receiver, nothing that the host holds can be released.
     drop(flow);
-    if !host.half_closes {
+    if is_unwanted || !host.half_closes {
         sending.abort();
     }
     around.close(line, error).await;
     // The machine drops its writer when it sees the end; what is queued is still written.
-    let _ = sending.await;
+    tokio::select! {
+        _ = &mut sending => {}
+        () = presence.is_unwanted() => sending.abort(),
+    }
 }
 
 /// Takes what the host sends, until it closes its side; returns why, if not by a plain end.
@@ -108,6 +89,7 @@ async fn receive(
     mut read: impl AsyncRead + Unpin,
     line: LineId,
     conditions: Conditions,
+    presence: &Presence,
     flow: &watch::Sender<Flow>,
     around: &Surroundings,
 ) -> Option<io::Error> {
@@ -123,7 +105,10 @@ async fn receive(
         tokio::select! {
             result = read.read_buf(&mut arriving), if open && arriving.is_empty() && queue.len() < limit => match result {
                 Ok(0) => open = false,
-                Ok(count) => at = begin + pace.pass(count, begin.elapsed()),
+                Ok(count) => {
+                    presence.note_speech();
+                    at = begin + pace.pass(count, begin.elapsed());
+                }
                 Err(reason) => (open, error) = (false, Some(reason)),
             },
             () = sleep_until(at), if !arriving.is_empty() && conditions.speed.is_some() => {
@@ -180,7 +165,7 @@ struct Sender<W> {
 }
 
 impl<W: AsyncWrite + Unpin> Sender<W> {
-    async fn run(mut self, mut queued: mpsc::UnboundedReceiver<Vec<u8>>, waiting: Arc<AtomicUsize>) {
+    async fn run(mut self, mut waiting: Waiting) {
         let begin = Instant::now();
         let mut pace = Pace::new(self.conditions.speed);
         let (mut bytes, mut sent) = (Vec::new(), 0);
@@ -197,7 +182,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             if sent == bytes.len() || flow.host_holds {
                 tokio::select! {
                     changed = self.flow.changed(), if followed => followed = changed.is_ok(),
-                    next = queued.recv(), if sent == bytes.len() => match next {
+                    next = waiting.next(), if sent == bytes.len() => match next {
                         Some(next) => {
                             (bytes, sent) = (next, 0);
                             leave(self.conditions, &mut bytes);
@@ -214,7 +199,6 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
             }
             self.around.tap(self.line, || Event::ToHost(piece.to_vec()));
             sent += piece.len();
-            waiting.fetch_sub(piece.len(), Ordering::Relaxed);
             if self.conditions.speed.is_some() {
                 sleep_until(begin + pace.pass(piece.len(), begin.elapsed())).await;
             }

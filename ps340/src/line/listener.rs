@@ -1,11 +1,20 @@
 //! Listening sockets.
 
 use super::Address;
-use std::io;
+use std::{
+    io,
+    os::unix::fs::{FileTypeExt, MetadataExt},
+    path::{Path, PathBuf},
+    time::Duration,
+};
 use tokio::{
     io::{AsyncRead, AsyncWrite},
     net::{TcpListener, UnixListener, UnixStream},
+    time::timeout,
 };
+
+/// How long a process that listens at a path may take to answer before it counts as one that does not end.
+const ANSWER_TIME: Duration = Duration::from_secs(2);
 
 /// Bytes of a socket, whatever its kind.
 pub(super) trait Stream: AsyncRead + AsyncWrite + Send + Unpin {}
@@ -20,13 +29,51 @@ pub enum Listener {
     Unix(UnixListener, SocketFile),
 }
 
-/// Removes the file of a Unix socket when dropped.
+/// Removes the file of a Unix socket when dropped, unless another file has its name by then.
 #[derive(Debug)]
-pub struct SocketFile(std::path::PathBuf);
+pub struct SocketFile {
+    path: PathBuf,
+    /// Which file it is: device and number; none if the system does not tell.
+    identity: Option<(u64, u64)>,
+}
+
+impl SocketFile {
+    fn new(path: &Path) -> SocketFile {
+        SocketFile { path: path.into(), identity: identity(path) }
+    }
+}
 
 impl Drop for SocketFile {
     fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
+        if identity(&self.path) == self.identity {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    std::fs::symlink_metadata(path).ok().map(|found| (found.dev(), found.ino()))
+}
+
+/// Begins to listen at a path. A socket that nobody answers was left by a process that was killed, and gives way.
+///
+/// # Errors
+/// Those of the system, or what else is there.
+async fn bind_unix(path: &Path) -> io::Result<UnixListener> {
+    let in_use = |text: &str| Err(io::Error::new(io::ErrorKind::AddrInUse, text));
+    match UnixListener::bind(path) {
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {}
+        bound => return bound,
+    }
+    if !std::fs::symlink_metadata(path)?.file_type().is_socket() {
+        return in_use("a file that is no socket has this name, and stays");
+    }
+    match timeout(ANSWER_TIME, UnixStream::connect(path)).await {
+        Ok(Err(error)) if error.kind() == io::ErrorKind::ConnectionRefused => {
+            std::fs::remove_file(path)?;
+            UnixListener::bind(path)
+        }
+        _ => in_use("another process listens there"),
     }
 }
 
@@ -39,15 +86,8 @@ impl Listener {
         match address {
             Address::Tcp(at) => Ok(Listener::Tcp(TcpListener::bind(at.as_str()).await?)),
             Address::Unix(path) => {
-                let bound = match UnixListener::bind(path) {
-                    // A file that nobody listens at was left by a process that was killed.
-                    Err(e) if e.kind() == io::ErrorKind::AddrInUse && UnixStream::connect(path).await.is_err() => {
-                        std::fs::remove_file(path)?;
-                        UnixListener::bind(path)
-                    }
-                    bound => bound,
-                };
-                Ok(Listener::Unix(bound?, SocketFile(path.clone())))
+                let bound = bind_unix(path).await?;
+                Ok(Listener::Unix(bound, SocketFile::new(path)))
             }
         }
     }
@@ -56,7 +96,7 @@ impl Listener {
     pub fn address(&self) -> io::Result<Address> {
         match self {
             Listener::Tcp(listener) => Ok(Address::Tcp(listener.local_addr()?.to_string())),
-            Listener::Unix(_, file) => Ok(Address::Unix(file.0.clone())),
+            Listener::Unix(_, file) => Ok(Address::Unix(file.path.clone())),
         }
     }
 
@@ -69,7 +109,7 @@ impl Listener {
             }
             Listener::Unix(listener, file) => {
                 let (stream, _) = listener.accept().await?;
-                Ok((Box::new(stream), format!("unix:{}", file.0.display())))
+                Ok((Box::new(stream), format!("unix:{}", file.path.display())))
             }
         }
     }

@@ -6,18 +6,21 @@ mod conditions;
 mod capture;
 mod listener;
 mod terminal;
+mod writer;
+mod places;
 mod hosts;
 mod replay;
 mod source;
 mod operator;
 
 pub use capture::Capture;
-pub use hosts::{MAX_HOSTS, MAX_WAITING_BYTES, Writer};
 pub use listener::{Listener, SocketFile};
 pub use operator::{OperatorLine, Reply, serve_operators, serve_stdio, serve_window};
+pub use places::MAX_HOSTS;
 pub use protocol::address::{Address, AddressError, LineAddress};
 pub use source::Source;
 pub use terminal::{PseudoTerminal, open_serial};
+pub use writer::{MAX_WAITING_BYTES, Writer};
 
 use protocol::capture::Event;
 use std::{
@@ -27,7 +30,7 @@ use std::{
 use tokio::sync::mpsc;
 
 /// Which host line; numbers are never used twice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineId(pub u64);
 
 impl LineId {

@@ -2,7 +2,8 @@
 
 use super::{
     Interface, LineEvent, LineId, OperatorLine, Surroundings,
-    hosts::{Host, MAX_HOSTS, serve, silent_writer},
+    hosts::{Host, serve, silent_writer},
+    places::MAX_HOSTS,
 };
 use protocol::{
     address::Conditions,
@@ -75,7 +76,7 @@ pub(super) async fn replay(path: &Path, file: File, timed: bool, conditions: Con
         let (mut answers, questions) = tokio::io::split(near);
         // Nobody reads what the machine answers.
         tokio::spawn(async move { tokio::io::copy(&mut answers, &mut tokio::io::sink()).await });
-        let host = Host { peer: peer.clone(), interface: Interface::Stream, conditions, half_closes: true };
+        let host = Host::stream(peer.clone(), conditions);
         tokio::join!(feed(&peer, beginning, pieces, questions), serve(far, host, around));
     }
 }

@@ -2,8 +2,9 @@
 
 use super::{
     Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, Surroundings,
-    hosts::{Host, MAX_HOSTS, serve},
+    hosts::{Host, serve},
     open_serial,
+    places::{MAX_HOSTS, Places, turn_away},
     replay::{PARALLEL, feed, pieces, replay},
     terminal::Terminal,
 };
@@ -26,6 +27,8 @@ use tokio::{
 const TERMINAL_PAUSE: Duration = Duration::from_millis(20);
 /// How long to wait after a failure before the next try.
 const FAILURE_PAUSE: Duration = Duration::from_millis(100);
+/// Hosts that are told at the same time that there is no place for them.
+const MAX_FAREWELLS: usize = 64;
 /// How long to wait before a serial device is opened again.
 const DEVICE_PAUSE: Duration = Duration::from_secs(1);
 /// Bytes that are on their way to and from the standard streams.
@@ -106,28 +109,38 @@ impl Source {
 }
 
 async fn serve_sockets(listener: Listener, interface: Interface, conditions: Conditions, around: Surroundings) {
-    let places = Arc::new(Semaphore::new(MAX_HOSTS));
+    let mut places = Places::new();
+    let farewells = Arc::new(Semaphore::new(MAX_FAREWELLS));
     while !around.events.is_closed() {
-        match listener.accept().await {
-            Ok((stream, peer)) => match places.clone().try_acquire_owned() {
-                Ok(place) => {
-                    let around = around.clone();
-                    let peer = match interface {
-                        Interface::Stream => peer,
-                        Interface::Parallel => format!("{PARALLEL}{peer}"),
-                    };
-                    tokio::spawn(async move {
-                        serve(stream, Host { peer, interface, conditions, half_closes: true }, around).await;
-                        drop(place);
-                    });
-                }
-                Err(_) => tracing::warn!("{peer} was turned away: {MAX_HOSTS} hosts are attached"),
-            },
+        let (stream, peer) = match listener.accept().await {
+            Ok(accepted) => accepted,
             Err(error) => {
                 tracing::warn!("a host could not attach: {error}");
                 sleep(FAILURE_PAUSE).await;
+                continue;
             }
-        }
+        };
+        let Some(place) = places.take().await else {
+            tracing::warn!("{peer} was turned away: {MAX_HOSTS} hosts are attached, and all have spoken");
+            // Of a crowd, not everybody is told why.
+            if let Ok(farewell) = farewells.clone().try_acquire_owned() {
+                tokio::spawn(async move {
+                    turn_away(stream).await;
+                    drop(farewell);
+                });
+            }
+            continue;
+        };
+        let peer = match interface {
+            Interface::Stream => peer,
+            Interface::Parallel => format!("{PARALLEL}{peer}"),
+        };
+        let host = Host { interface, presence: place.presence.clone(), ..Host::stream(peer, conditions) };
+        let around = around.clone();
+        tokio::spawn(async move {
+            serve(stream, host, around).await;
+            drop(place);
+        });
     }
 }
 
@@ -138,7 +151,7 @@ async fn serve_terminal(terminal: PseudoTerminal, conditions: Conditions, around
         match terminal.is_open().and_then(|open| if open { terminal.stream().map(Some) } else { Ok(None) }) {
             Ok(None) => sleep(TERMINAL_PAUSE).await,
             Ok(Some(stream)) => {
-                let host = Host { peer: peer.clone(), interface: Interface::Stream, conditions, half_closes: false };
+                let host = Host { half_closes: false, ..Host::stream(peer.clone(), conditions) };
                 serve(stream, host, around.clone()).await;
                 terminal.forget_output();
             }
@@ -157,7 +170,7 @@ async fn serve_device(serial: Serial, device: OwnedFd, conditions: Conditions, a
     while !around.events.is_closed() {
         match opened.and_then(Terminal::new) {
             Ok(stream) => {
-                let host = Host { peer: peer.clone(), interface: Interface::Stream, conditions, half_closes: false };
+                let host = Host { half_closes: false, ..Host::stream(peer.clone(), conditions) };
                 serve(stream, host, around.clone()).await;
             }
             Err(error) => tracing::debug!("{peer}: {error}"),
@@ -184,7 +197,7 @@ async fn serve_standard_streams(conditions: Conditions, around: Surroundings) {
         }
         let _ = done.send(());
     });
-    let host = Host { peer: peer.clone(), interface: Interface::Stream, conditions, half_closes: true };
+    let host = Host::stream(peer.clone(), conditions);
     let input = pieces(io::stdin());
     tokio::join!(feed(&peer, Vec::new(), input, questions), serve(far, host, around));
     let _ = finished.await;

@@ -1,7 +1,7 @@
 //! Carrying out what the function network wants of the rest of the machine.
 
 use super::{
-    Machine, Output,
+    Machine,
     renderings::Renderings,
     requests::{Pick, TransformRequest, Waiting},
 };
@@ -60,8 +60,7 @@ impl Machine {
             }
             Effect::Host { bytes, binary } => self.send_to_host(&bytes, binary),
             Effect::HostCharacters(bytes) => {
-                let lines = self.writers.keys();
-                self.outputs.extend(lines.map(|line| Output { line: *line, bytes: bytes.to_vec() }));
+                self.writers.keys().for_each(|line| self.outputs.push(*line, bytes.to_vec()));
             }
             Effect::Terminal(text) => self.show_text(None, &text),
             Effect::TerminalColor { hue, saturation } => {

@@ -64,7 +64,7 @@ impl Machine {
 
     /// The oldest message to the host that was not taken here before.
     pub fn take_message(&mut self) -> Option<Vec<u8>> {
-        self.to_host.pop_front()
+        self.to_host.pop()
     }
 
     /// Objects, structure and network, to look at.

@@ -344,7 +344,7 @@ impl Machine {
         if let (Some(line), false) = (host, bytes.is_empty()) {
             let room = MAX_TYPED.saturating_sub(self.keyboard.typed.len());
             self.keyboard.typed.extend_from_slice(&bytes[..bytes.len().min(room)]);
-            self.outputs.push(super::Output { line, bytes });
+            self.outputs.push(line, bytes);
         }
     }
 

@@ -9,6 +9,7 @@ mod host_line;
 mod initial;
 mod inspection;
 mod keyboard;
+mod outgoing;
 mod parallel;
 mod panel;
 mod renderings;
@@ -24,6 +25,7 @@ pub use counters::Counters;
 pub use devices::Event;
 pub use host_line::PlainText;
 pub use keyboard::{Key, KeyboardMode};
+pub use outgoing::Output;
 pub use panel::Panel;
 pub use speech::REPORTS_PER_FRAME;
 pub use tablet::TabletEvent;
@@ -35,11 +37,13 @@ use crate::{
 use devices::Devices;
 use host_line::HostLine;
 use keyboard::Keyboard;
+use outgoing::Outgoing;
 use parallel::{Mailbox, ParallelLine};
 use protocol::wire::MessageWriter;
 use renderings::Renderings;
 use requests::Waiting;
 use sight::Sight;
+use speech::Kept;
 use std::collections::{BTreeMap, VecDeque};
 use streams::Streams;
 use tube::Tube;
@@ -67,15 +71,6 @@ pub enum Input {
     Detach(LineId),
     /// Something that a person does.
     Event(Event),
-}
-
-/// Bytes for a host.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Output {
-    /// On which line.
-    pub line: LineId,
-    /// What.
-    pub bytes: Vec<u8>,
 }
 
 /// Settings that do not change while the machine runs.
@@ -121,8 +116,8 @@ pub struct Machine {
     disk: Disk,
     messages: Vec<Message>,
     log: VecDeque<String>,
-    to_host: VecDeque<Vec<u8>>,
-    outputs: Vec<Output>,
+    to_host: Kept,
+    outputs: Outgoing,
     counters: Counters,
 }
 
@@ -156,8 +151,8 @@ impl Machine {
             disk: Disk::default(),
             messages: Vec::new(),
             log: VecDeque::new(),
-            to_host: VecDeque::new(),
-            outputs: Vec::new(),
+            to_host: Kept::default(),
+            outputs: Outgoing::default(),
             counters: Counters::default(),
         };
         machine.switch_keyboard(settings.keyboard);
@@ -178,7 +173,7 @@ impl Machine {
                     let mut bytes = Vec::new();
                     let parallel = ParallelLine::new(line, self.settings.plain_text, &mut bytes);
                     self.parallels.insert(line, parallel);
-                    self.outputs.push(Output { line, bytes });
+                    self.outputs.push(line, bytes);
                 }
                 Input::Bytes(line, bytes) => self.receive(line, &bytes),
                 Input::Detach(line) => self.detach(line),
@@ -190,7 +185,7 @@ impl Machine {
             self.next_frame();
         }
         self.with_parallels(|parallel, machine, out| parallel.serve_mail(machine, out));
-        std::mem::take(&mut self.outputs)
+        self.outputs.take()
     }
 
     /// Something that a person does. Dials speak at the next frame, everything else at once.
@@ -290,7 +285,7 @@ impl Machine {
 
     fn answer(&mut self, line: LineId, bytes: Vec<u8>) {
         if !bytes.is_empty() {
-            self.outputs.push(Output { line, bytes });
+            self.outputs.push(line, bytes);
         }
     }
 

@@ -17,7 +17,7 @@ const TRANSFER_FRAMES: u64 = 1800;
 /// Messages that wait for RDNET; later ones are dropped. Ours.
 const MAX_MESSAGES: usize = 1000;
 /// Bytes of messages that wait for RDNET. Ours.
-const MAX_MESSAGE_BYTES: usize = 16 << 20;
+const MAX_MESSAGE_BYTES: usize = 8 << 20;
 /// Where the memory of objects begins, and the step between their addresses. Ours.
 const FIRST_ADDRESS: u32 = 0x0001_0000;
 const ADDRESS_STEP: u32 = 0x100;

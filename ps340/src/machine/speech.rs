@@ -1,8 +1,9 @@
 //! What the machine says: messages to its hosts, and its own numbered messages.
 
-use super::{Machine, Output};
+use super::Machine;
 use crate::interpreter::{Class, Message};
 use protocol::{Value, wire::MessageForm};
+use std::collections::VecDeque;
 
 /// Messages of the machine that reach ERROR, WARNING, INFORMATION and the terminal between two frames; the rest are logged and
 /// counted only, so that a message that causes messages ends.
@@ -13,15 +14,41 @@ const LOGGED_PER_FRAME: u64 = 20;
 const LOG_LINES: usize = 1000;
 /// Messages to the host that wait for the operator.
 const KEPT_MESSAGES: usize = 1000;
+/// Bytes of them; but the latest is always kept.
+const KEPT_BYTES: usize = 1 << 20;
+
+/// The latest messages to the host, for the operator.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    messages: VecDeque<Vec<u8>>,
+    bytes: usize,
+}
+
+impl Kept {
+    /// One more message; the oldest give way.
+    fn push(&mut self, message: &[u8]) {
+        while self.messages.len() >= KEPT_MESSAGES || self.bytes + message.len() > KEPT_BYTES {
+            if self.pop().is_none() {
+                break;
+            }
+        }
+        self.bytes += message.len();
+        self.messages.push_back(message.to_vec());
+    }
+
+    /// The oldest message.
+    pub(super) fn pop(&mut self) -> Option<Vec<u8>> {
+        let oldest = self.messages.pop_front()?;
+        self.bytes -= oldest.len();
+        Some(oldest)
+    }
+}
 
 impl Machine {
     /// A message to the host goes to every host that is attached; a `binary` one without an end of line.
     pub(super) fn send_to_host(&mut self, message: &[u8], binary: bool) {
         self.counters.messages_out += 1;
-        if self.to_host.len() >= KEPT_MESSAGES {
-            self.to_host.pop_front();
-        }
-        self.to_host.push_back(message.to_vec());
+        self.to_host.push(message);
         self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
         for (line, writer) in &self.writers {
             let mut bytes = Vec::new();
@@ -32,7 +59,7 @@ impl Machine {
                 writer.write(message, &mut bytes).is_ok()
             };
             if written {
-                self.outputs.push(Output { line: *line, bytes });
+                self.outputs.push(*line, bytes);
             }
         }
     }

@@ -16,7 +16,12 @@ fn told(text: &str) -> Machine {
 
 fn tell(machine: &mut Machine, text: &str) -> Vec<String> {
     let outputs = machine.step([Input::Bytes(LINE, text.as_bytes().to_vec())], 0);
-    outputs.iter().map(|o| String::from_utf8_lossy(&o.bytes).into_owned()).collect()
+    outputs.iter().flat_map(messages).collect()
+}
+
+/// The messages of an output, with their line ends.
+fn messages(output: &Output) -> Vec<String> {
+    String::from_utf8_lossy(&output.bytes).split_inclusive('\n').map(str::to_owned).collect()
 }
 
 fn strokes(machine: &mut Machine) -> Vec<Stroke> {
@@ -28,7 +33,7 @@ fn frames(machine: &mut Machine, count: usize) -> Vec<String> {
     let mut said = Vec::new();
     for _ in 0..count {
         let until = time_of_frame(machine.frame() + 1);
-        said.extend(machine.step([], until).iter().map(|o| String::from_utf8_lossy(&o.bytes).into_owned()));
+        said.extend(machine.step([], until).iter().flat_map(messages));
     }
     said
 }

@@ -206,10 +206,10 @@ impl Turns {
             if let Some(mirror) = &self.mirror {
                 mirror.pass(output.line, false, &output.bytes, &self.machine);
             }
-            if let Some((_, writer)) = self.writers.get(&output.line)
-                && !writer.send(output.bytes)
-            {
-                *self.lost.entry(output.line).or_default() += 1;
+            let refused = self.writers.get(&output.line).is_some_and(|(_, writer)| !writer.send(output.bytes));
+            let lost = output.lost + if refused { output.messages } else { 0 };
+            if lost > 0 {
+                *self.lost.entry(output.line).or_default() += lost;
             }
         }
         if until > 0 {

@@ -4,6 +4,7 @@ use super::*;
 use protocol::address::LineAddress;
 use std::time::Duration;
 use tokio::io::{DuplexStream, ReadHalf, WriteHalf};
+use tokio::sync::mpsc;
 
 /// The machine's end of a line: what it is told, and the way to the host.
 struct Line {
@@ -17,9 +18,11 @@ async fn attach(conditions: &str, room: usize) -> Line {
     let address: LineAddress = format!("pty:,{conditions}").parse().unwrap();
     let (sender, mut events) = mpsc::channel(room);
     let (near, far) = tokio::io::duplex(1 << 20);
-    let host =
-        Host { peer: "pipe".into(), interface: Interface::Stream, conditions: address.conditions, half_closes: true };
-    tokio::spawn(serve(far, host, Surroundings { events: sender, capture: None }));
+    tokio::spawn(serve(
+        far,
+        Host::stream("pipe".into(), address.conditions),
+        Surroundings { events: sender, capture: None },
+    ));
     let Some(LineEvent::Attached { writer, .. }) = events.recv().await else { panic!("it attaches first") };
     let (from_machine, to_machine) = tokio::io::split(near);
     Line { events, writer: Some(writer), from_machine, to_machine }
