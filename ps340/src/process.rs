@@ -6,7 +6,7 @@ use crate::{
     cli,
     line::LineAddress,
     machine::{KeyboardMode, PlainText, Settings},
-    shell::{Clock, End, Operator, Options, run},
+    shell::{Clock, End, INTERRUPTED, Operator, Options, run},
 };
 use clap::Parser;
 use protocol::address::Place;
@@ -72,6 +72,10 @@ struct Arguments {
     #[cfg(feature = "window")]
     #[arg(long, value_name = "N", requires = "window", value_parser = scale)]
     scale: Option<f32>,
+    /// Ends at once when the program that started it ends, even if that is killed. For programs that have a PS 340 of their
+    /// own; what else is there to clean up stays. Only on Linux.
+    #[arg(long)]
+    with_parent: bool,
     /// Threads that draw; all cores by default.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -91,6 +95,12 @@ pub fn main() -> ExitCode {
         .with_target(false)
         .without_time()
         .init();
+    if arguments.with_parent
+        && let Err(error) = processes::end_with_parent()
+    {
+        eprintln!("ps340: --with-parent: {error}");
+        return ExitCode::from(1);
+    }
     if let Some(threads) = arguments.threads
         && let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()
     {
@@ -155,7 +165,7 @@ pub fn main() -> ExitCode {
     let ended = run(&options, None, say).map_err(|error| error.to_string());
     match ended {
         Ok(End::Quit) => ExitCode::SUCCESS,
-        Ok(End::Interrupted) => ExitCode::from(130),
+        Ok(End::Interrupted) => ExitCode::from(INTERRUPTED as u8),
         Err(error) => {
             eprintln!("ps340: {error}");
             ExitCode::from(1)

@@ -34,10 +34,11 @@ struct Crate {
 
 const CRATES: &[Crate] = &[
     Crate { name: "files", folder: "protocol/files", below: &[] },
+    Crate { name: "processes", folder: "protocol/processes", below: &[] },
     Crate { name: "protocol", folder: "protocol", below: &[] },
-    Crate { name: "ps340", folder: "ps340", below: &["protocol", "files"] },
-    Crate { name: "host", folder: "host", below: &["protocol", "files"] },
-    Crate { name: "tests", folder: "tests", below: &["protocol", "files", "ps340", "host"] },
+    Crate { name: "ps340", folder: "ps340", below: &["protocol", "files", "processes"] },
+    Crate { name: "host", folder: "host", below: &["protocol", "files", "processes"] },
+    Crate { name: "tests", folder: "tests", below: &["protocol", "files", "processes", "ps340", "host"] },
 ];
 
 fn root() -> PathBuf {

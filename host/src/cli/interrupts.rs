@@ -41,8 +41,9 @@ fn state() -> MutexGuard<'static, State> {
 pub(super) fn begin(name: &str, most: Option<u64>) {
     // A file that grows beyond a limit is an error of its writer, and no reason to end without a word.
     let is_refused = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).err();
-    let wanted = [Some(SIGINT), Some(SIGTERM), Some(SIGUSR1), (!hangups_are_ignored()).then_some(SIGHUP)];
-    let signals = match (Signals::new(wanted.into_iter().flatten()), is_refused) {
+    let hangup = (!processes::is_ignored(SIGHUP as u32)).then_some(SIGHUP);
+    let wanted = [SIGINT, SIGTERM, SIGUSR1].into_iter().chain(hangup);
+    let signals = match (Signals::new(wanted), is_refused) {
         (Ok(signals), None) => signals,
         (Err(error), _) | (_, Some(error)) => {
             return tracing::warn!("Ctrl-C will end the process at once: {error}");
@@ -99,13 +100,6 @@ fn end_for_memory(wanted: u64) -> ! {
         std::thread::sleep(PATIENCE);
     }
     signal_hook::low_level::exit(Exit::Failed as i32)
-}
-
-/// Whether the process was started so that it outlives its terminal, as `nohup` does.
-fn hangups_are_ignored() -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> (SIGHUP - 1) & 1 == 1)
 }
 
 /// What an interruption says from now on of what is kept already.

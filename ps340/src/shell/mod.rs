@@ -1,6 +1,7 @@
 //! The process around the machine: opens the lines, and runs the thread that brings them and the machine together.
 
 mod mirror;
+mod signals;
 mod turns;
 
 pub use mirror::{ArcShown, Asked, FunctionShown, InputShown, Mirror, NodeShown, Passed, Shown};
@@ -14,12 +15,18 @@ use crate::{
     machine::Settings,
 };
 use protocol::address::Place;
+use signals::Signals;
 use std::{io, path::PathBuf, sync::Arc, time::Duration};
 use tokio::sync::{mpsc, oneshot};
 use turns::Turns;
 
 /// Events that wait for the machine; with [`LineEvent::Bytes`] of a quarter megabyte this bounds memory.
 const WAITING_EVENTS: usize = 16;
+
+/// How long the machine may take to end after a signal.
+const END_TIME: Duration = Duration::from_millis(500);
+/// Exit code of a process that a signal ended.
+pub const INTERRUPTED: i32 = 130;
 
 /// Where the time of the machine comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -75,46 +82,50 @@ pub enum End {
     Interrupted,
 }
 
+/// What stands open before hosts and operators can come.
+struct Opened {
+    capture: Option<Capture>,
+    sources: Vec<Source>,
+    operators: Option<Listener>,
+}
+
 /// Runs the machine until its end.
 ///
-/// A `window` sees and gives orders, if there is one. `ready` is told each address in use, as a line of text, before the first event is taken. Without an operator the
-/// machine ends when all its lines are files or standard input, and these have ended.
+/// A `window` sees and gives orders, if there is one. `ready` is told each address in use, as a line of text, when signals
+/// are taken and before the first event is. Without an operator the machine ends when all its lines are files or standard
+/// input, and these have ended.
 ///
 /// # Errors
 /// If it cannot listen, or cannot write the capture: the address or the file, and the reason.
 pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str)) -> io::Result<End> {
     let (events, inbox) = mpsc::channel(WAITING_EVENTS);
     let io_runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    let failed = |address: &dyn std::fmt::Display, e: io::Error| {
-        io::Error::new(e.kind(), format!("cannot listen on {address}: {e}"))
-    };
-    let capture = options.capture.as_deref().map(|path| {
-        let is_read = |line: &LineAddress| matches!(&line.place, Place::File { path: read, .. } if read == path);
-        let created = match options.listen.iter().any(is_read) {
-            true => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is to be played")),
-            false => Capture::create(path),
-        };
-        created.map_err(|e| io::Error::new(e.kind(), format!("capture {}: {e}", path.display())))
+    // Whatever is made from here on is cleaned up.
+    let opened = io_runtime.block_on(async {
+        let mut signals = Signals::begin()?;
+        tokio::select! {
+            opened = open(options) => opened.map(|opened| Some((signals, opened))),
+            () = signals.next() => Ok(None),
+        }
     });
-    let capture = capture.transpose()?;
+    let Some((signals, Opened { capture, sources, operators })) = opened? else {
+        // A name may still be looked up.
+        io_runtime.shutdown_background();
+        return Ok(End::Interrupted);
+    };
     let around = Surroundings { events: events.clone(), capture: capture.clone() };
-    for address in &options.listen {
-        let source = io_runtime.block_on(Source::open(address)).map_err(|e| failed(address, e))?;
+    for source in sources {
         ready(&format!("ready line {}", source.address()?));
         io_runtime.spawn(source.serve(around.clone()));
     }
     drop(around);
-    match &options.operator {
-        Operator::None => {}
-        Operator::Stdio => {
-            let events = events.clone();
-            std::thread::spawn(move || serve_stdio(&events));
-        }
-        Operator::Socket(address) => {
-            let listener = io_runtime.block_on(Listener::bind(address)).map_err(|e| failed(address, e))?;
-            ready(&format!("ready operator {}", listener.address()?));
-            io_runtime.spawn(serve_operators(listener, events.clone()));
-        }
+    if options.operator == Operator::Stdio {
+        let events = events.clone();
+        std::thread::spawn(move || serve_stdio(&events));
+    }
+    if let Some(listener) = operators {
+        ready(&format!("ready operator {}", listener.address()?));
+        io_runtime.spawn(serve_operators(listener, events.clone()));
     }
     let mirror = window.map(|Window { mirror, orders }| {
         let events = events.clone();
@@ -122,14 +133,23 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
         mirror
     });
     let (stop, stopped) = oneshot::channel::<()>();
+    let captured = capture.clone();
     let lines = std::thread::spawn(move || {
-        io_runtime.block_on(async {
-            tokio::spawn(watch_signals(events));
-            let _ = stopped.await;
-            // Replies and bytes that are on their way may still leave.
-            tokio::time::sleep(Duration::from_millis(50)).await;
+        let is_overdue = io_runtime.block_on(async {
+            tokio::select! {
+                () = is_overdue(signals, events) => true,
+                _ = stopped => {
+                    // Replies and bytes that are on their way may still leave.
+                    tokio::time::sleep(Duration::from_millis(50)).await;
+                    false
+                }
+            }
         });
+        // The files of sockets go with what listens at them.
         io_runtime.shutdown_background();
+        if is_overdue {
+            end_at_once(captured.as_ref());
+        }
     });
     ready("ready");
     let end = Turns::new(options, mirror, capture.clone(), inbox)?.run();
@@ -141,12 +161,53 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
     Ok(end)
 }
 
-async fn watch_signals(events: Events) {
-    use tokio::signal::unix::{SignalKind, signal};
-    let Ok(mut terminate) = signal(SignalKind::terminate()) else { return };
-    tokio::select! {
-        _ = tokio::signal::ctrl_c() => {}
-        _ = terminate.recv() => {}
+/// Opens everything that the options name.
+async fn open(options: &Options) -> io::Result<Opened> {
+    let failed = |address: &dyn std::fmt::Display, e: io::Error| {
+        io::Error::new(e.kind(), format!("cannot listen on {address}: {e}"))
+    };
+    let mut sources = Vec::new();
+    for address in &options.listen {
+        sources.push(Source::open(address).await.map_err(|e| failed(address, e))?);
     }
-    let _ = events.send(LineEvent::Interrupted).await;
+    let operators = match &options.operator {
+        Operator::Socket(address) => Some(Listener::bind(address).await.map_err(|e| failed(address, e))?),
+        Operator::None | Operator::Stdio => None,
+    };
+    // Last, without a wait behind it: an interruption leaves no part of it.
+    let capture = options.capture.as_deref().map(|path| {
+        let is_read = |line: &LineAddress| matches!(&line.place, Place::File { path: read, .. } if read == path);
+        let created = match options.listen.iter().any(is_read) {
+            true => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is to be played")),
+            false => Capture::create(path),
+        };
+        created.map_err(|e| io::Error::new(e.kind(), format!("capture {}: {e}", path.display())))
+    });
+    let capture = capture.transpose()?;
+    Ok(Opened { capture, sources, operators })
+}
+
+/// Waits for a signal, asks the machine to end, and returns when that takes too long, or at the next signal.
+async fn is_overdue(mut signals: Signals, events: Events) {
+    signals.next().await;
+    let asked = async {
+        let _ = events.send(LineEvent::Interrupted).await;
+        std::future::pending::<()>().await;
+    };
+    tokio::select! {
+        () = asked => {}
+        () = signals.next() => {}
+        () = tokio::time::sleep(END_TIME) => {}
+    }
+}
+
+/// Ends the process though the machine is busy.
+fn end_at_once(capture: Option<&Capture>) {
+    tracing::warn!("the machine is busy, and ends without finishing that");
+    if let Some(capture) = capture {
+        capture.finish();
+    }
+    // A picture on its way to its name gets there.
+    let _naming = files::naming();
+    std::process::exit(INTERRUPTED);
 }
