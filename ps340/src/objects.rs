@@ -161,6 +161,12 @@ impl Objects {
         self.free.clear();
     }
 
+    /// Gives back the room of objects that have gone.
+    pub fn shrink(&mut self) {
+        self.identities.shrink_to_fit();
+        self.free.shrink_to_fit();
+    }
+
     /// How many objects there are, the system's included.
     pub fn len(&self) -> usize {
         self.identities.len() - self.free.len()

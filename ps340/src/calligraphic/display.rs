@@ -117,6 +117,11 @@ impl Display {
         }
     }
 
+    /// Gives back the room for strokes, which grows again with the next ones.
+    pub fn shrink(&mut self) {
+        self.bins = Bins::default();
+    }
+
     /// Whether [`Display::show`] would change anything.
     pub fn awaits(&self, version: u64, frame: u64) -> bool {
         let Some(written) = self.written else { return true };

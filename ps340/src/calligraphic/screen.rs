@@ -106,6 +106,13 @@ impl Screen {
         see(Seen { display, shown: *shown, goes_on })
     }
 
+    /// Gives back the room that the display keeps for pictures as large as those before.
+    pub fn shrink(&self) {
+        if let Some(standing) = &mut *self.lock() {
+            standing.display.shrink();
+        }
+    }
+
     /// A thread that panicked with the lock leaves a display that can be shown again.
     fn lock(&self) -> MutexGuard<'_, Option<Standing>> {
         self.standing.lock().unwrap_or_else(PoisonError::into_inner)

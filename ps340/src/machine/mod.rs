@@ -12,6 +12,7 @@ mod keyboard;
 mod outgoing;
 mod parallel;
 mod panel;
+mod relief;
 mod renderings;
 mod requests;
 mod sight;
@@ -40,6 +41,7 @@ use keyboard::Keyboard;
 use outgoing::Outgoing;
 use parallel::{Mailbox, ParallelLine};
 use protocol::wire::MessageWriter;
+use relief::Relief;
 use renderings::Renderings;
 use requests::Waiting;
 use sight::Sight;
@@ -112,6 +114,7 @@ pub struct Machine {
     /// What functions want of the next update.
     waiting: Waiting,
     renderings: Renderings,
+    relief: Relief,
     streams: Streams,
     disk: Disk,
     messages: Vec<Message>,
@@ -147,6 +150,7 @@ impl Machine {
             updated: None,
             waiting: Waiting::default(),
             renderings: Renderings::default(),
+            relief: Relief::default(),
             streams: Streams::default(),
             disk: Disk::default(),
             messages: Vec::new(),
@@ -222,6 +226,7 @@ impl Machine {
         self.settle();
         self.update_overlay();
         self.follow_frame();
+        self.relieve();
     }
 
     /// The number of frames that have passed.

@@ -131,6 +131,21 @@ impl Machine {
         self.look(size, Display::picture)
     }
 
+    /// Lets nothing refer to strokes of before, and gives the room of them back.
+    pub(super) fn shrink_sight(&mut self) {
+        match self.sight.screen.size() {
+            Some(_) => self.look(None, |_| ()),
+            None => drop(self.scene()),
+        }
+        self.sight.screen.shrink();
+    }
+
+    /// How many strokes the latest scene has.
+    #[cfg(test)]
+    pub(super) fn sight_strokes(&self) -> usize {
+        self.sight.scene.strokes.len()
+    }
+
     /// Looks at the display with the scene of now.
     fn look<T>(&mut self, size: Option<[u32; 2]>, see: impl FnOnce(&Display) -> T) -> T {
         self.scene();

@@ -280,6 +280,13 @@ impl MassMemory {
         self.restore_arcs();
     }
 
+    /// Gives back the room of what has gone.
+    pub fn shrink(&mut self) {
+        self.structures.shrink();
+        self.objects.shrink();
+        self.effects.shrink_to_fit();
+    }
+
     /// RESERVE_WORKING_STORAGE: a larger request takes the place of one before.
     ///
     /// # Errors

@@ -97,6 +97,9 @@ impl Turns {
             let next = time_of_frame(self.machine.frame() + 1);
             let until = if self.frame_is_due() { next } else { 0 };
             self.step(None, until);
+            if self.machine.was_relieved() {
+                processes::return_memory();
+            }
             self.poll_waits();
         }
     }

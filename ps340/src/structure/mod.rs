@@ -327,6 +327,18 @@ impl Structures {
         self.version += 1;
     }
 
+    /// Gives back the room of nodes that have gone.
+    pub fn shrink(&mut self) {
+        let end = self.nodes.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        self.nodes.truncate(end);
+        self.nodes.shrink_to_fit();
+        let nodes = &self.nodes;
+        self.homes.retain(|_, home| nodes.get(home.index()).is_some_and(Option::is_some));
+        self.homes.shrink_to_fit();
+        self.aliases.shrink_to_fit();
+        self.places.shrink_to_fit();
+    }
+
     /// The members that follow a named member in the structure where it was defined; none if it stands in none.
     ///
     /// An operate node there applies to them also when something else refers to it.

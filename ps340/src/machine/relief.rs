@@ -1,0 +1,59 @@
+//! Giving memory back when a picture or a structure was much larger than it is now.
+//!
+//! Lists of strokes, tables of nodes and the like keep their room from frame to frame, since the next one is usually as
+//! large. When much of what was there has gone, as after INITIALIZE, that room is given back.
+
+use super::Machine;
+
+/// Bytes by which structures and strokes must have become fewer, since they were most.
+const RELIEF_BYTES: usize = 8 << 20;
+
+/// How much there was, and whether the process should give memory back.
+#[derive(Debug, Default)]
+pub(super) struct Relief {
+    /// Bytes of structures and strokes when they were most since the latest relief.
+    most: usize,
+    is_due: bool,
+}
+
+impl Machine {
+    /// Gives back the room of what has gone, if that is much.
+    pub(super) fn relieve(&mut self) {
+        let burden = self.memory.bytes() + size_of_val(self.update.strokes.as_slice());
+        if burden + RELIEF_BYTES > self.relief.most {
+            self.relief.most = self.relief.most.max(burden);
+            return;
+        }
+        self.relief = Relief { most: burden, is_due: true };
+        self.memory.shrink();
+        self.update.strokes.shrink_to_fit();
+        self.shrink_sight();
+    }
+
+    /// Whether much memory was freed since this was asked last, so that the process may give it back to the system.
+    pub fn was_relieved(&mut self) -> bool {
+        std::mem::take(&mut self.relief.is_due)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{line::LineId, machine::*};
+
+    #[test]
+    fn the_room_of_a_large_picture_goes_with_it() {
+        let mut machine = Machine::new(Settings::default());
+        machine.step([Input::Attach(LineId(1))], 0);
+        let mut tell = |text: &str| {
+            machine.step([Input::Bytes(LineId(1), text.as_bytes().to_vec())], 0);
+            machine.next_frame();
+            let shown = machine.vector_picture(Some([64, 64])).pixels().iter().any(|pixel| pixel[1] > 0.0);
+            (machine.was_relieved(), shown, machine.update.strokes.capacity(), machine.sight_strokes())
+        };
+        let vectors = "-1,0 1,0 ".repeat(200_000);
+        let (relieved, shown, room, seen) = tell(&format!("A := VECTOR_LIST {vectors}; DISPLAY A;"));
+        assert!(!relieved && shown && room > 300_000 && seen > 300_000);
+        assert_eq!(tell("INITIALIZE;"), (true, false, 0, 0));
+        assert!(!tell("A := VECTOR_LIST -1,0 1,0; DISPLAY A;").0);
+    }
+}
