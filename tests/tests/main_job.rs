@@ -6,7 +6,7 @@ use host::{
     production::{Production, difference, view_of_dials},
     render::{Order, Watch},
     script,
-    workstation::{Drawing, Lines},
+    workstation::{Drawing, Lines, Patience, Session},
 };
 use std::{collections::BTreeMap, fs, path::Path, time::Duration};
 use tests::{Ended, Machine, run};
@@ -30,7 +30,7 @@ fn peris(arguments: &[&str], folder: &Path) -> Ended {
 
 fn begin(machine: &Machine, scene: &host::scene::Scene, drawing: &Drawing) -> Production {
     let line = format!("tcp:{}", machine.line).parse().unwrap();
-    Production::begin(scene, &line, drawing).unwrap()
+    Production::begin(scene, Session::attach(&line, Patience::default()).unwrap(), drawing).unwrap()
 }
 
 /// All pictures of a folder.

@@ -8,7 +8,7 @@ use host::{
     render::{Order, Renderer, Watch, radiosity::Radiosity, scan_line::ScanLine},
     scene::{Prepared, Projection, View},
     script,
-    workstation::Session,
+    workstation::{Patience, Session},
 };
 use std::{fs, path::Path, time::Duration};
 use tests::{Machine, run};
@@ -77,7 +77,7 @@ fn the_light_of_a_solution_is_seen_on_the_workstation_from_wherever_the_dials_tu
     prepared.settings.interreflection = true;
     let plan = Plan::new(&prepared, &prepared.view());
     let solution = Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, &Watch::NOBODY).unwrap();
-    let mut session = Session::attach(&to.parse().unwrap()).unwrap();
+    let mut session = Session::attach(&to.parse().unwrap(), Patience::default()).unwrap();
     let mut pictures = Vec::new();
     for turn in ["dial 8 0.1", "dial 2 0.08"] {
         machine.order(turn);

@@ -1,13 +1,13 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
-use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load, load_lit, progress};
+use super::{Definitions, Failure, Row, SCRIPT_HELP, Waits, interrupts, load, load_lit, progress};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
     render::Order,
     scene::Scene,
     study::{Options, Technique, renderers},
-    workstation::{Drawing, Emulator},
+    workstation::{Drawing, Emulator, Session},
 };
 use clap::{Args, FromArgMatches};
 use files::{Folder, WriteError};
@@ -65,6 +65,8 @@ struct Common {
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    waits: Waits,
 }
 
 #[derive(Args, Debug)]
@@ -167,10 +169,11 @@ impl Job<'_> {
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
         super::warn_of_darkness(&self.scene);
+        let patience = self.common.waits.patience();
         let (mut emulator, line) = match self.to {
             Some(line) => (None, line.clone()),
             None => {
-                let emulator = Emulator::start()?;
+                let emulator = Emulator::start(patience)?;
                 let (process, line) = (emulator.process(), emulator.line().clone());
                 let known = json!({ "process": process, "line": line.to_string() });
                 self.note("workstation", known, format_args!("workstation: process {process}, host line {line}"));
@@ -179,7 +182,8 @@ impl Job<'_> {
         };
         let process = std::process::id();
         self.note("host", json!({ "process": process }), format_args!("host: process {process}"));
-        let mut production = Production::begin(&self.scene, &line, &Drawing::default())?;
+        let session = Session::attach(&line, patience)?;
+        let mut production = Production::begin(&self.scene, session, &Drawing::default())?;
         let (prepared, Sent { lines, points, seconds }) = (production.prepared(), production.sent());
         let (title, objects, triangles) = (self.title, prepared.objects.len(), prepared.triangles.len());
         let known = json!({ "objects": objects, "triangles": triangles, "vectors": lines, "points": points, "seconds": seconds });

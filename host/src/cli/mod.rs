@@ -25,10 +25,12 @@ mod source;
 mod study;
 mod study_render;
 mod tessellate;
+mod waits;
 
 pub use exit::{Exit, Failure};
 use source::load_lit;
 pub use source::{Definitions, SCRIPT_HELP, load};
+use waits::Waits;
 
 use crate::illumination::Bands;
 use crate::memory;

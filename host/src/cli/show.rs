@@ -1,18 +1,23 @@
 //! `peris show`: a scene on a workstation, with dials and keys, until someone ends it.
 
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load_lit, progress};
+use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, Waits, load_lit, progress};
 use crate::{
     production::{Production, ProductionError, Sent, tiling},
     render::{Order, tiles::Tiling},
     scene::Scene,
     workstation::{
-        Drawing, Emulator, Lines, WorkstationError,
+        Drawing, Emulator, Lines, Session, WorkstationError,
         network::{KEY_PREFIX, KEYS, Key},
     },
 };
 use clap::{Args, FromArgMatches};
 use protocol::address::Address;
-use std::{io::BufRead, num::NonZeroUsize, sync::mpsc, time::Duration};
+use std::{
+    io::BufRead,
+    num::NonZeroUsize,
+    sync::mpsc,
+    time::{Duration, Instant},
+};
 
 pub(super) const ROW: Row = Row {
     name: "show",
@@ -60,6 +65,8 @@ struct Arguments {
     /// Threads that render [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    waits: Waits,
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -74,15 +81,17 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     let light = if arguments.radiosity { Some(solve(&scene, arguments)?) } else { None };
+    let patience = arguments.waits.patience();
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
         None => {
-            let emulator = Emulator::start()?;
+            let emulator = Emulator::start(patience)?;
             let line = emulator.line().clone();
             (Some(emulator), line)
         }
     };
-    let mut production = Production::lit(&scene, &line, &drawing, light.as_ref())?;
+    let session = Session::attach(&line, patience)?;
+    let mut production = Production::lit(&scene, session, &drawing, light.as_ref())?;
     report(arguments, &line, production.sent(), light.as_ref());
     if arguments.once {
         return Ok(());
@@ -132,12 +141,15 @@ fn serve(
 ) -> Result<(), Failure> {
     let orders = emulator.as_ref().map(|_| read_orders());
     let mut unanswered = 0_u64;
+    // When it was last seen at work on an order.
+    let mut at_work = Instant::now();
     loop {
         if let (Some(orders), Some(emulator)) = (&orders, emulator.as_mut()) {
             match orders.try_recv() {
                 Ok(order) if order == "quit" => return Ok(()),
                 Ok(order) => {
                     emulator.give(&order)?;
+                    at_work = if unanswered == 0 { Instant::now() } else { at_work };
                     unanswered += 1;
                 }
                 Err(mpsc::TryRecvError::Empty) => {}
@@ -147,10 +159,17 @@ fn serve(
             }
             if let Some(reply) = emulator.reply()? {
                 unanswered -= 1;
+                at_work = Instant::now();
                 say!("{}", reply.replace("\\n", "\n"));
             }
         }
-        let message = match production.session().message(GLANCE, "a key") {
+        let session = production.session();
+        if unanswered > 0 && at_work.elapsed() > session.patience().order {
+            // Orders such as 'frames 10000' take their time; a machine that lives answers its hosts meanwhile.
+            session.synchronize()?;
+            at_work = Instant::now();
+        }
+        let message = match session.message(GLANCE, "a key") {
             Ok(message) => message,
             Err(WorkstationError::Silent { .. }) => continue,
             Err(error) => return Err(error.into()),

@@ -14,7 +14,6 @@ use crate::{
     workstation::{Drawing, Session, WorkstationError, network, raster, structure, tiles},
 };
 use glam::{DMat4, DVec3};
-use protocol::address::Address;
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
@@ -71,28 +70,27 @@ pub struct Shot {
 }
 
 impl Production {
-    /// Models the scene, attaches to the workstation at `line`, and shows the scene there.
+    /// Models the scene and shows it on a workstation.
     ///
     /// # Errors
     /// [`ProductionError`].
-    pub fn begin(scene: &Scene, line: &Address, drawing: &Drawing) -> Result<Production, ProductionError> {
-        Production::lit(scene, line, drawing, None)
+    pub fn begin(scene: &Scene, session: Session, drawing: &Drawing) -> Result<Production, ProductionError> {
+        Production::lit(scene, session, drawing, None)
     }
 
-    /// As [`Production::begin`], and with the light of a solution, which the workstation shades whenever the dials have
-    /// stood still for a while.
+    /// Models the scene and shows it on a workstation with the light of a solution, which the workstation shades whenever the
+    /// dials have stood still for a while.
     ///
     /// # Errors
     /// [`ProductionError`].
     pub fn lit(
         scene: &Scene,
-        line: &Address,
+        mut session: Session,
         drawing: &Drawing,
         light: Option<&Tiling>,
     ) -> Result<Production, ProductionError> {
         let prepared = Prepared::new(scene)?;
         let start = Instant::now();
-        let mut session = Session::attach(line)?;
         let shown = structure::with_light(scene, &prepared.camera, &prepared.bounds, drawing, light)?;
         session.show(&shown, prepared.bounds.diagonal().max(f64::MIN_POSITIVE))?;
         if light.is_some() {

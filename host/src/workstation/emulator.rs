@@ -1,23 +1,19 @@
 //! A PS 340 process of our own: started when no line is given, and ended with us.
 
-use super::WorkstationError;
+use super::{Patience, WorkstationError};
 use protocol::address::Address;
 use std::{
     env,
     io::{BufRead, BufReader, Read, Write},
     os::unix::process::CommandExt,
     path::PathBuf,
-    process::{Child, ChildStdin, Command, Stdio},
+    process::{Child, Command, Stdio},
     sync::mpsc,
     time::{Duration, Instant},
 };
 
 /// The environment variable that says where the program `ps340` is.
 pub const PROGRAM_VARIABLE: &str = "PERIS_PS340";
-/// How long a process may take until it listens.
-const START_TIME: Duration = Duration::from_secs(30);
-/// How long an order may take.
-pub const ORDER_TIME: Duration = Duration::from_secs(120);
 /// How long a process that was told to quit may take before it is killed.
 const QUIT_TIME: Duration = Duration::from_secs(2);
 
@@ -25,22 +21,26 @@ const QUIT_TIME: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub struct Emulator {
     child: Child,
-    orders: Option<ChildStdin>,
+    orders: mpsc::Sender<String>,
+    patience: Patience,
     replies: mpsc::Receiver<String>,
     line: Address,
 }
 
 impl Emulator {
     /// Starts `ps340`: the program named by [`PROGRAM_VARIABLE`], or the one beside this program, or the one
-    /// on the search path. It listens on a free local port, and ends when we do.
+    /// on the search path. It listens on a free local port, and ends when we do: when this is dropped, and at the latest when
+    /// the thread that called this, or its process, ends.
+    ///
+    /// - `patience`: how long it may take to get ready, and to carry out orders.
     ///
     /// # Errors
     /// [`WorkstationError::Start`] names the program.
-    pub fn start() -> Result<Emulator, WorkstationError> {
+    pub fn start(patience: Patience) -> Result<Emulator, WorkstationError> {
         let program = program();
         let error = |e: std::io::Error| WorkstationError::Start { program: program.clone(), reason: e.to_string() };
         let mut child = Command::new(&program)
-            .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio"])
+            .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio", "--with-parent"])
             // A group of its own: Ctrl-C on the terminal is ours to answer, and ends it through us.
             .process_group(0)
             .env("PS340_LOG", env::var("PS340_LOG").unwrap_or_else(|_| "warn".into()))
@@ -51,22 +51,17 @@ impl Emulator {
         let (Some(orders), Some(replies)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(error(std::io::ErrorKind::BrokenPipe.into()));
         };
-        let replies = read_lines(replies);
-        let mut line = None;
-        loop {
-            let text = replies.recv_timeout(START_TIME).map_err(|e| {
-                error(std::io::Error::other(match e {
-                    mpsc::RecvTimeoutError::Timeout => "it does not get ready",
-                    mpsc::RecvTimeoutError::Disconnected => "it ended at once",
-                }))
-            })?;
-            match text.as_str() {
-                "ready" => break,
-                other => line = other.strip_prefix("ready line ").and_then(|a| a.parse().ok()).or(line),
+        let (orders, replies) = (write_lines(orders), read_lines(replies));
+        let line = match until_ready(&replies, patience.attach) {
+            Ok(line) => line,
+            Err(reason) => {
+                // It is killed because its parent gives up, not because that ends.
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(error(std::io::Error::other(reason)));
             }
-        }
-        let line = line.ok_or_else(|| error(std::io::Error::other("it does not say where it listens")))?;
-        Ok(Emulator { child, orders: Some(orders), replies, line })
+        };
+        Ok(Emulator { child, orders, patience, replies, line })
     }
 
     /// Where its host line is.
@@ -83,14 +78,15 @@ impl Emulator {
     ///
     /// # Errors
     /// [`WorkstationError::Order`] if the order is refused, [`WorkstationError::Silent`] if there is no reply within
-    /// [`ORDER_TIME`], [`WorkstationError::Ended`] if the process is gone.
+    /// [`Patience::order`], [`WorkstationError::Ended`] if the process is gone.
     pub fn order(&mut self, order: &str) -> Result<String, WorkstationError> {
         self.give(order)?;
-        match self.replies.recv_timeout(ORDER_TIME) {
+        match self.replies.recv_timeout(self.patience.order) {
             Ok(reply) => understood(order, &reply),
             Err(mpsc::RecvTimeoutError::Disconnected) => Err(WorkstationError::Ended),
             Err(mpsc::RecvTimeoutError::Timeout) => {
-                Err(WorkstationError::Silent { what: format!("the reply to '{order}'"), seconds: ORDER_TIME.as_secs() })
+                let seconds = self.patience.order.as_secs();
+                Err(WorkstationError::Silent { what: format!("the reply to '{order}'"), seconds })
             }
         }
     }
@@ -100,8 +96,7 @@ impl Emulator {
     /// # Errors
     /// [`WorkstationError::Ended`] if the process is gone.
     pub fn give(&mut self, order: &str) -> Result<(), WorkstationError> {
-        let orders = self.orders.as_mut().ok_or(WorkstationError::Ended)?;
-        writeln!(orders, "{order}").and_then(|()| orders.flush()).map_err(|_| WorkstationError::Ended)
+        self.orders.send(order.into()).map_err(|_| WorkstationError::Ended)
     }
 
     /// The next reply line, if it is there.
@@ -113,6 +108,25 @@ impl Emulator {
             Ok(reply) => Ok(Some(reply)),
             Err(mpsc::TryRecvError::Empty) => Ok(None),
             Err(mpsc::TryRecvError::Disconnected) => Err(WorkstationError::Ended),
+        }
+    }
+}
+
+/// Waits until a process that was started is ready; where its host line is.
+///
+/// # Errors
+/// What it did instead.
+fn until_ready(said: &mpsc::Receiver<String>, patience: Duration) -> Result<Address, String> {
+    let end = Instant::now() + patience;
+    let mut line = None;
+    loop {
+        let text = said.recv_timeout(end.saturating_duration_since(Instant::now())).map_err(|error| match error {
+            mpsc::RecvTimeoutError::Timeout => format!("it does not get ready within {} s", patience.as_secs()),
+            mpsc::RecvTimeoutError::Disconnected => "it ended at once".into(),
+        })?;
+        match text.as_str() {
+            "ready" => return line.ok_or_else(|| "it does not say where it listens".into()),
+            other => line = other.strip_prefix("ready line ").and_then(|a| a.parse().ok()).or(line),
         }
     }
 }
@@ -141,11 +155,22 @@ fn read_lines(from: impl Read + Send + 'static) -> mpsc::Receiver<String> {
     lines
 }
 
+/// Takes lines for a process, written by a thread of their own: one that does not read them stops nobody else.
+fn write_lines(mut to: impl Write + Send + 'static) -> mpsc::Sender<String> {
+    let (sender, lines) = mpsc::channel();
+    std::thread::spawn(move || {
+        for line in lines {
+            if writeln!(to, "{line}").and_then(|()| to.flush()).is_err() {
+                return;
+            }
+        }
+    });
+    sender
+}
+
 impl Drop for Emulator {
     fn drop(&mut self) {
-        if let Some(mut orders) = self.orders.take() {
-            let _ = writeln!(orders, "quit");
-        }
+        let _ = self.orders.send("quit".into());
         let end = Instant::now() + QUIT_TIME;
         while Instant::now() < end {
             match self.child.try_wait() {

@@ -29,7 +29,7 @@ pub enum WorkstationError {
         reason: String,
     },
     /// No answer in time.
-    #[error("the workstation did not answer within {seconds} s; waited for {what}")]
+    #[error("the workstation did not answer within {seconds} s; waited for {what} (--patience gives it more time)")]
     Silent {
         /// What was waited for.
         what: String,

@@ -1,7 +1,8 @@
 //! The host's side of the line: scenes, dial networks and images for a PS 340, and the view back from it.
 
-pub mod emulator;
 mod error;
+mod patience;
+pub mod emulator;
 pub mod facets;
 pub mod network;
 pub mod raster;
@@ -11,5 +12,6 @@ pub mod tiles;
 
 pub use emulator::Emulator;
 pub use error::WorkstationError;
+pub use patience::Patience;
 pub use session::Session;
 pub use structure::{Drawing, Lines, Shown};

@@ -1,6 +1,6 @@
 //! A session with a workstation over its host line.
 
-use super::{WorkstationError, network, structure};
+use super::{Patience, WorkstationError, network, structure};
 use glam::DMat4;
 use protocol::{
     Value,
@@ -17,11 +17,11 @@ use std::{
     io::{self, Read, Write},
     net::TcpStream,
     os::unix::net::UnixStream,
+    sync::mpsc,
+    thread,
     time::{Duration, Instant},
 };
 
-/// How long an answer may take.
-pub const ANSWER_TIME: Duration = Duration::from_secs(30);
 /// Bytes that are gathered before they go to the line.
 const BUFFER_BYTES: usize = 256 << 10;
 
@@ -51,9 +51,29 @@ impl Line for UnixStream {
     }
 }
 
+/// A wait for something from the workstation.
+struct Wait<'a> {
+    what: &'a str,
+    patience: Duration,
+    end: Instant,
+}
+
+impl<'a> Wait<'a> {
+    fn begin(what: &'a str, patience: Duration) -> Wait<'a> {
+        Wait { what, patience, end: Instant::now() + patience }
+    }
+
+    /// The time that is left.
+    fn left(&self) -> Result<Duration, WorkstationError> {
+        let left = self.end.checked_duration_since(Instant::now()).filter(|time| !time.is_zero());
+        left.ok_or_else(|| WorkstationError::Silent { what: self.what.into(), seconds: self.patience.as_secs() })
+    }
+}
+
 /// An attached workstation.
 pub struct Session {
     line: Box<dyn Line>,
+    patience: Patience,
     out: Vec<u8>,
     reader: MessageReader,
     messages: VecDeque<Vec<u8>>,
@@ -69,24 +89,37 @@ impl std::fmt::Debug for Session {
 impl Session {
     /// Attaches to a workstation, and asks for its messages as packets.
     ///
+    /// - `patience`: how long the workstation may take, now and later.
+    ///
     /// # Errors
     /// [`WorkstationError::Attach`].
-    pub fn attach(address: &Address) -> Result<Session, WorkstationError> {
-        let failed = |e: io::Error| WorkstationError::Attach { line: address.clone(), reason: e.to_string() };
-        let line: Box<dyn Line> = match address {
-            Address::Tcp(at) => {
-                let stream = TcpStream::connect(at.as_str()).map_err(failed)?;
-                stream.set_nodelay(true).map_err(failed)?;
-                Box::new(stream)
-            }
-            Address::Unix(path) => Box::new(UnixStream::connect(path).map_err(failed)?),
+    pub fn attach(address: &Address, patience: Patience) -> Result<Session, WorkstationError> {
+        let failed = |reason: String| WorkstationError::Attach { line: address.clone(), reason };
+        let (sender, opened) = mpsc::channel();
+        let target = address.clone();
+        // The system looks names up, and waits for those who listen and do not accept, without limits of ours.
+        thread::spawn(move || sender.send(open(&target)));
+        let line = opened.recv_timeout(patience.attach).map_err(|_| {
+            failed(format!("no answer within {} s (--patience gives it more time)", patience.attach.as_secs()))
+        })?;
+        let line = line.map_err(|e| failed(e.to_string()))?;
+        line.set_write_timeout(patience.answer).map_err(|e| failed(e.to_string()))?;
+        let mut session = Session {
+            line,
+            patience,
+            out: Vec::new(),
+            reader: MessageReader::default(),
+            messages: VecDeque::new(),
+            marks: 0,
         };
-        line.set_write_timeout(ANSWER_TIME).map_err(failed)?;
-        let mut session =
-            Session { line, out: Vec::new(), reader: MessageReader::default(), messages: VecDeque::new(), marks: 0 };
         MessageForm::Packets.write_request(&mut session.out);
         session.reader.expect(MessageForm::Packets);
         Ok(session)
+    }
+
+    /// How long the workstation may take.
+    pub fn patience(&self) -> Patience {
+        self.patience
     }
 
     /// Sends commands in binary form.
@@ -121,11 +154,17 @@ impl Session {
     /// Brings everything on its way to the workstation.
     ///
     /// # Errors
-    /// [`WorkstationError::Closed`].
+    /// [`WorkstationError::Silent`] if it does not read, [`WorkstationError::Closed`].
     pub fn flush(&mut self) -> Result<(), WorkstationError> {
         let written = self.line.write_all(&self.out).and_then(|()| self.line.flush());
         self.out.clear();
-        written.map_err(closed)
+        written.map_err(|error| match error.kind() {
+            io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
+                let what = "it to read what is sent".to_string();
+                WorkstationError::Silent { what, seconds: self.patience.answer.as_secs() }
+            }
+            _ => closed(error),
+        })
     }
 
     /// The next message from the workstation.
@@ -133,16 +172,18 @@ impl Session {
     /// # Errors
     /// [`WorkstationError::Silent`] if none comes within `patience`, [`WorkstationError::Closed`].
     pub fn message(&mut self, patience: Duration, what: &str) -> Result<Vec<u8>, WorkstationError> {
+        self.next(&Wait::begin(what, patience))
+    }
+
+    /// The next message within the time of a wait.
+    fn next(&mut self, wait: &Wait<'_>) -> Result<Vec<u8>, WorkstationError> {
         self.flush()?;
-        let end = Instant::now() + patience;
-        let silent = || WorkstationError::Silent { what: what.to_string(), seconds: patience.as_secs() };
         let mut buffer = vec![0; 64 << 10];
         loop {
             if let Some(message) = self.messages.pop_front() {
                 return Ok(message);
             }
-            let left = end.checked_duration_since(Instant::now()).filter(|t| !t.is_zero()).ok_or_else(silent)?;
-            self.line.set_read_timeout(left).map_err(closed)?;
+            self.line.set_read_timeout(wait.left()?).map_err(closed)?;
             match self.line.read(&mut buffer) {
                 Ok(0) => return Err(WorkstationError::Closed { reason: String::new() }),
                 Ok(n) => {
@@ -169,8 +210,9 @@ impl Session {
         let mark = format!("PERIS MARK {} {}", std::process::id(), self.marks);
         self.commands(&[network::send(Value::string(&mark), 1, "HOST_MESSAGE")])?;
         let mut others = VecDeque::new();
+        let wait = Wait::begin("the end of what was sent", self.patience.answer);
         let result = loop {
-            match self.message(ANSWER_TIME, "the end of what was sent") {
+            match self.next(&wait) {
                 Ok(message) if message == mark.as_bytes() => break Ok(()),
                 Ok(message) => others.push_back(message),
                 Err(error) => break Err(error),
@@ -191,8 +233,9 @@ impl Session {
         self.commands(&[network::send(Value::Boolean(true), 1, network::VIEW_TRIGGER)])?;
         let mut lines = Vec::new();
         let mut others = VecDeque::new();
+        let wait = Wait::begin("the matrix of the view", self.patience.answer);
         while lines.len() < 5 {
-            let message = self.message(ANSWER_TIME, "the matrix of the view")?;
+            let message = self.next(&wait)?;
             if lines.is_empty() && !message.starts_with(b"MATRIX_4X4") {
                 others.push_back(message);
             } else {
@@ -222,10 +265,63 @@ impl Session {
     }
 }
 
+/// Opens a line; takes as long as the system wants.
+fn open(address: &Address) -> io::Result<Box<dyn Line>> {
+    Ok(match address {
+        Address::Tcp(at) => {
+            let stream = TcpStream::connect(at.as_str())?;
+            stream.set_nodelay(true)?;
+            Box::new(stream)
+        }
+        Address::Unix(path) => Box::new(UnixStream::connect(path)?),
+    })
+}
+
 fn unsendable(error: EncodeError) -> WorkstationError {
     WorkstationError::Scene(error.to_string())
 }
 
 fn closed(error: io::Error) -> WorkstationError {
     WorkstationError::Closed { reason: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::wire::MessageWriter;
+    use std::net::TcpListener;
+
+    #[test]
+    fn a_partner_that_does_not_read_is_given_up() {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = Address::Tcp(listener.local_addr().expect("an address").to_string());
+        let mut session = Session::attach(&address, Patience::of(1)).expect("it is taken in");
+        let partner = listener.accept();
+        session.text(&"A := F:NOP; ".repeat(2_000_000)).expect("it waits here");
+        let error = session.flush().expect_err("nobody reads");
+        assert_eq!(error, WorkstationError::Silent { what: "it to read what is sent".into(), seconds: 1 });
+        drop(partner);
+    }
+
+    /// Says something else for ever.
+    fn talk(mut partner: TcpStream) -> io::Result<()> {
+        let mut writer = MessageWriter::default();
+        assert!(writer.request(MessageForm::Packets.request()), "it knows packets");
+        let mut message = Vec::new();
+        writer.write(b"SOMETHING ELSE", &mut message).map_err(io::Error::other)?;
+        loop {
+            partner.write_all(&message)?;
+            thread::sleep(Duration::from_millis(100));
+        }
+    }
+
+    #[test]
+    fn a_partner_that_talks_of_other_things_is_given_up() {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = Address::Tcp(listener.local_addr().expect("an address").to_string());
+        let mut session = Session::attach(&address, Patience::of(1)).expect("it is taken in");
+        std::thread::spawn(move || talk(listener.accept()?.0));
+        let error = session.synchronize().expect_err("it never comes to the point");
+        assert!(matches!(error, WorkstationError::Silent { seconds: 1, .. }), "{error}");
+    }
 }

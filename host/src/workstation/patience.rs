@@ -1,0 +1,31 @@
+//! How long the workstation may take.
+
+use std::time::Duration;
+
+/// How long the workstation may take before the host gives up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// Until the line is open, or until a PS 340 of our own is ready.
+    pub attach: Duration,
+    /// Until it answers, or reads more of what is sent.
+    pub answer: Duration,
+    /// Until an order of its operator is carried out.
+    pub order: Duration,
+}
+
+impl Patience {
+    /// The same time for everything.
+    ///
+    /// - `seconds`: 1 and above.
+    pub fn of(seconds: u32) -> Patience {
+        let time = Duration::from_secs(seconds.into());
+        Patience { attach: time, answer: time, order: time }
+    }
+}
+
+impl Default for Patience {
+    fn default() -> Patience {
+        let [attach, answer, order] = [30, 30, 120].map(Duration::from_secs);
+        Patience { attach, answer, order }
+    }
+}
