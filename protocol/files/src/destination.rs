@@ -6,6 +6,7 @@ use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Takes the bytes of a file that is written.
 pub type Writer<'a> = BufWriter<&'a File>;
@@ -14,12 +15,14 @@ pub type Writer<'a> = BufWriter<&'a File>;
 /// an ordinary file that may be replaced.
 ///
 /// It is tested when it is made, so that long work does not begin for a file that cannot be written.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Destination {
     /// The file, as it was called.
     path: PathBuf,
     /// The file itself, behind symbolic links.
     target: PathBuf,
+    /// The folder, where it must stay open so that `target` leads there; then links in it are not followed.
+    open: Option<Arc<File>>,
 }
 
 impl Destination {
@@ -38,8 +41,18 @@ impl Destination {
         if !is_named {
             return Err(failed(if path.is_dir() { Problem::IsAFolder } else { Problem::NoName }));
         }
-        let destination = Destination { path: path.into(), target };
+        let destination = Destination { path: path.into(), target, open: None };
         check_folder(destination.folder()).and_then(|()| destination.check_older()).map_err(failed)?;
+        Ok(destination)
+    }
+
+    /// Tests a destination in a folder that is open.
+    ///
+    /// - `path`: the file, as it was called; `target`: its path, which leads through `folder`.
+    pub(crate) fn inside(path: &Path, target: PathBuf, folder: Arc<File>) -> Result<Destination, WriteError> {
+        let destination = Destination { path: path.into(), target, open: Some(folder) };
+        let tested = check_folder(destination.folder()).and_then(|()| destination.check_older());
+        tested.map_err(|problem| destination.failed(problem))?;
         Ok(destination)
     }
 
@@ -59,6 +72,9 @@ impl Destination {
 
     /// Whether what has the name may be replaced.
     fn check_older(&self) -> Result<(), Problem> {
+        if self.open.is_some() && self.target.is_symlink() {
+            return Err(Problem::Link);
+        }
         match fs::metadata(&self.target) {
             Ok(found) if found.is_dir() => Err(Problem::IsAFolder),
             Ok(found) if !found.is_file() => Err(Problem::NotOrdinary),

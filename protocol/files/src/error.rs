@@ -35,6 +35,12 @@ pub enum Problem {
     /// A symbolic link has its name and leads nowhere.
     #[error("this is a link that leads nowhere")]
     DeadLink,
+    /// A symbolic link has its name, where none is followed.
+    #[error("this is a link, and stays as it is")]
+    Link,
+    /// It is not below the folder below which files may be.
+    #[error("this is not below {}", .0.display())]
+    Outside(PathBuf),
     /// The folder takes no files.
     #[error("the folder takes no files: {0}")]
     Closed(#[source] io::Error),

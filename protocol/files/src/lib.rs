@@ -6,9 +6,11 @@
 mod error;
 mod draft;
 mod destination;
+mod beneath;
 mod growing;
 mod read;
 
+pub use beneath::Beneath;
 pub use destination::{Destination, Folder, Writer};
 pub use draft::naming;
 pub use error::{Problem, WriteError};
