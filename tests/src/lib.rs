@@ -7,6 +7,7 @@ pub mod facets;
 pub mod notices;
 pub mod readers;
 
+use rustix::process::{Pid, Signal};
 use std::{
     io::{BufRead, BufReader, Read, Write},
     net::TcpStream,
@@ -113,6 +114,25 @@ impl Machine {
         matches!(self.child.try_wait(), Ok(None))
     }
 
+    /// Its process number.
+    pub fn process(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// Sends it a signal.
+    pub fn signal(&self, signal: Signal) {
+        send_signal(&self.child, signal);
+    }
+
+    /// Memory that it has now, in megabytes of a million bytes.
+    pub fn resident_megabytes(&self) -> f64 {
+        let path = format!("/proc/{}/status", self.child.id());
+        let status = std::fs::read_to_string(path).expect("the process runs, on Linux");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("it has memory");
+        let kibibytes = line.trim().trim_end_matches("kB").trim().parse::<f64>().expect("a number");
+        kibibytes * 1024.0 / 1e6
+    }
+
     /// Waits for the end of the process; its exit code.
     pub fn end(&mut self) -> Option<i32> {
         wait(&mut self.child)
@@ -145,6 +165,13 @@ impl Host {
         stream.set_read_timeout(Some(PATIENCE)).expect("a time limit can be set");
         let reader = BufReader::new(stream.try_clone().expect("a second handle"));
         Host { stream, reader }
+    }
+
+    /// Waits for the end of the line; what is said until then.
+    pub fn rest(&mut self) -> String {
+        let mut rest = Vec::new();
+        self.reader.read_to_end(&mut rest).expect("the end within the time limit");
+        String::from_utf8_lossy(&rest).into_owned()
     }
 
     /// Sends bytes.
@@ -207,13 +234,20 @@ pub fn run(program: &str, arguments: &[&str], environment: &[(&str, &str)], fold
     Ended { code, out: out.join().unwrap_or_default(), errors: errors.join().unwrap_or_default() }
 }
 
+/// Sends a signal to a process that was started and not yet waited for.
+pub fn send_signal(child: &Child, signal: Signal) {
+    let process = i32::try_from(child.id()).ok().and_then(Pid::from_raw).expect("a process number");
+    rustix::process::kill_process(process, signal).expect("the process can be signalled");
+}
+
 fn read_all(mut from: impl Read) -> String {
     let mut bytes = Vec::new();
     let _ = from.read_to_end(&mut bytes);
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-fn wait(child: &mut Child) -> Option<i32> {
+/// Waits for the end of a process; its exit code, none if a signal ended it.
+pub fn wait(child: &mut Child) -> Option<i32> {
     let end = Instant::now() + PATIENCE;
     while Instant::now() < end {
         if let Some(status) = child.try_wait().expect("the process can be asked") {
