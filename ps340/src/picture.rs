@@ -1,6 +1,6 @@
 //! A picture of either screen: linear red, green and blue, as PNG or OpenEXR.
 
-use files::{Destination, WriteError};
+use files::{Beneath, Destination, WriteError};
 use protocol::raster::srgb_from_linear;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
@@ -129,6 +129,16 @@ impl Picture {
     pub fn destination(path: &Path) -> Result<Destination, PictureError> {
         Format::of(path)?;
         Ok(Destination::of(path)?)
+    }
+
+    /// Where a picture will be written below a folder, tested before it is made, by the ending of its name as in
+    /// [`Picture::destination`].
+    ///
+    /// # Errors
+    /// Another ending, or that no file can be written there; each names the path.
+    pub fn destination_below(folder: &Beneath, path: &Path) -> Result<Destination, PictureError> {
+        Format::of(path)?;
+        Ok(folder.destination(path)?)
     }
 
     /// Writes the picture to a file.

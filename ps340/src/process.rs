@@ -44,8 +44,19 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     capture: Option<PathBuf>,
     /// Who gives orders: stdio, none, or an address to listen on. By default stdio if that is a terminal, else none.
+    /// A Unix socket takes orders of its owner. Over TCP the first line must be 'token TOKEN', with the token of the environment
+    /// variable PS340_TOKEN, or else the one that is printed at the start.
     #[arg(long, value_name = "stdio|none|ADDRESS")]
     operator: Option<String>,
+    /// The folder below which the operator's orders write files; no name and no link leads out of it.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    files: PathBuf,
+    /// Lets captures that are played write files and end the machine, as an operator may. Without it they use devices only.
+    #[arg(long)]
+    orders: bool,
+    /// Lets it listen where other computers reach it. Whoever does can use the machine.
+    #[arg(long)]
+    public: bool,
     /// Where time comes from.
     #[arg(long, value_enum, default_value = "real")]
     clock: Clock,
@@ -140,7 +151,17 @@ pub fn main() -> ExitCode {
     };
     #[cfg(not(feature = "window"))]
     let drawer = crate::calligraphic::Drawer::Processor;
-    let options = Options { listen, capture: arguments.capture, operator, clock: arguments.clock, settings, drawer };
+    let options = Options {
+        listen,
+        capture: arguments.capture,
+        operator,
+        clock: arguments.clock,
+        replayed_orders: arguments.orders,
+        files: arguments.files,
+        public: arguments.public,
+        settings,
+        drawer,
+    };
     // What is not for a host must not stand in its stream.
     let say = |line: &str| match stdio_lines {
         0 => {

@@ -76,12 +76,15 @@ struct Desk {
     _machine: Running,
 }
 
+/// What opens the operator's line.
+const TOKEN: &str = "window";
+
 impl Desk {
     fn open() -> Option<Desk> {
         let display = Display::open()?;
         let mut machine = display.command(env!("CARGO_BIN_EXE_ps340"));
         machine.args(["--window", "--listen", "tcp:127.0.0.1:0", "--operator", "tcp:127.0.0.1:0"]);
-        machine.env("PS340_LOG", "ps340=debug").stdout(Stdio::piped()).stderr(Stdio::piped());
+        machine.env("PS340_TOKEN", TOKEN).env("PS340_LOG", "ps340=debug").stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = machine.spawn().expect("ps340 starts");
         let (out, log) = (child.stdout.take().expect("piped"), child.stderr.take().expect("piped"));
         let machine = Running(child);
@@ -104,6 +107,7 @@ impl Desk {
         let operator = BufReader::new(connect(&operator));
         let mut desk =
             Desk { host: connect(&line), display, places, operator, window: String::new(), _machine: machine };
+        assert_eq!(desk.order(&format!("token {TOKEN}")), "ok");
         desk.place("vector screen");
         // Without a window manager nobody gives the window the keyboard; it is there a moment after its first picture.
         let search = ["search", "--onlyvisible", "--limit", "1", "--name", "^PS 340$"];

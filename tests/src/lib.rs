@@ -13,7 +13,10 @@ use std::{
     net::TcpStream,
     path::Path,
     process::{Child, ChildStdin, Command, Stdio},
-    sync::mpsc,
+    sync::{
+        atomic::{AtomicU64, Ordering},
+        mpsc,
+    },
     thread::JoinHandle,
     time::{Duration, Instant},
 };
@@ -41,7 +44,7 @@ impl Machine {
     /// If it does not start.
     pub fn start(program: &str, arguments: &[&str]) -> Machine {
         let mut child = Command::new(program)
-            .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio"])
+            .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio", "--files", "/"])
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -188,8 +191,11 @@ impl Host {
 
     /// Waits until everything sent so far is carried out.
     pub fn synchronize(&mut self) {
-        self.send("\nSEND 'ROUND' TO <1>HOST_MESSAGE;");
-        while self.message() != "ROUND" {}
+        static ROUNDS: AtomicU64 = AtomicU64::new(0);
+        // Every host gets every message: that of another host is not the end of what this one sent.
+        let mark = format!("ROUND {}", ROUNDS.fetch_add(1, Ordering::Relaxed));
+        self.send(format!("\nSEND '{mark}' TO <1>HOST_MESSAGE;"));
+        while self.message() != mark {}
     }
 }
 

@@ -84,8 +84,8 @@ fn what_is_no_ordinary_file_is_refused_wherever_one_is_written() {
     refused(PERIS, &["tessellate", "teapot", "-o", "null.stl"], device);
     refused(PERIS, &["db", "add", "null.redb", "a.txt"], device);
     std::fs::write(folder.join("a.play"), "@ picture vector null.png\n@ graph network folder.png\n").expect("written");
-    refused(PS340, &["play", "a.play", "--keep-going"], device);
-    refused(PS340, &["play", "a.play", "--keep-going"], "this is a folder");
+    refused(PS340, &["play", "a.play", "--keep-going", "--orders"], "this is a link, and stays as it is");
+    refused(PS340, &["play", "a.play", "--keep-going", "--orders"], "this is a folder");
     refused(PS340, &["play", "--example", "helix", "--picture", "folder.png"], "this is a folder");
     refused(PS340, &["play", "--example", "helix", "--transcript", "null.png"], device);
     let is_device =

@@ -15,6 +15,7 @@ use protocol::address::Address;
 use std::{
     io::BufRead,
     num::NonZeroUsize,
+    path::PathBuf,
     sync::mpsc,
     time::{Duration, Instant},
 };
@@ -65,6 +66,9 @@ struct Arguments {
     /// Threads that render [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
+    /// The folder below which orders such as 'picture vector a.png' write files
+    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "to")]
+    files: PathBuf,
     #[command(flatten)]
     waits: Waits,
 }
@@ -85,7 +89,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
         None => {
-            let emulator = Emulator::start(patience)?;
+            let emulator = Emulator::start(patience, &arguments.files)?;
             let line = emulator.line().clone();
             (Some(emulator), line)
         }

@@ -6,7 +6,7 @@ use std::{
     env,
     io::{BufRead, BufReader, Read, Write},
     os::unix::process::CommandExt,
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::mpsc,
     time::{Duration, Instant},
@@ -33,14 +33,16 @@ impl Emulator {
     /// the thread that called this, or its process, ends.
     ///
     /// - `patience`: how long it may take to get ready, and to carry out orders.
+    /// - `files`: the folder below which orders write files.
     ///
     /// # Errors
     /// [`WorkstationError::Start`] names the program.
-    pub fn start(patience: Patience) -> Result<Emulator, WorkstationError> {
+    pub fn start(patience: Patience, files: &Path) -> Result<Emulator, WorkstationError> {
         let program = program();
         let error = |e: std::io::Error| WorkstationError::Start { program: program.clone(), reason: e.to_string() };
         let mut child = Command::new(&program)
-            .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio", "--with-parent"])
+            .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio", "--with-parent", "--files"])
+            .arg(files)
             // A group of its own: Ctrl-C on the terminal is ours to answer, and ends it through us.
             .process_group(0)
             .env("PS340_LOG", env::var("PS340_LOG").unwrap_or_else(|_| "warn".into()))

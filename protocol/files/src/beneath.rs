@@ -15,7 +15,10 @@ use std::sync::Arc;
 /// folder by its open file (other systems than Linux), whoever may change folders inside it at the same time can win.
 #[derive(Debug)]
 pub struct Beneath {
+    /// Without links.
     path: PathBuf,
+    /// As it was called, seen from the root of the file system.
+    called: PathBuf,
     folder: File,
 }
 
@@ -25,11 +28,12 @@ impl Beneath {
     /// # Errors
     /// Those of the system, or that it is no folder.
     pub fn open(path: impl AsRef<Path>) -> io::Result<Beneath> {
-        let path = std::fs::canonicalize(path)?;
+        let called = std::path::absolute(path)?;
+        let path = std::fs::canonicalize(&called)?;
         if !path.is_dir() {
             return Err(io::Error::new(io::ErrorKind::NotADirectory, "this is no folder"));
         }
-        Ok(Beneath { folder: File::open(&path)?, path })
+        Ok(Beneath { folder: File::open(&path)?, path, called })
     }
 
     /// Where it is.
@@ -46,7 +50,8 @@ impl Beneath {
     pub fn destination(&self, name: impl AsRef<Path>) -> Result<Destination, WriteError> {
         let called = name.as_ref();
         let failed = |problem| WriteError { path: called.into(), problem };
-        let name = called.strip_prefix(&self.path).unwrap_or(called);
+        let inside = called.strip_prefix(&self.path).or_else(|_| called.strip_prefix(&self.called));
+        let name = inside.unwrap_or(called);
         let file = name.file_name().filter(|_| !called.as_os_str().as_encoded_bytes().ends_with(b"/"));
         let file = file.ok_or_else(|| failed(Problem::NoName))?;
         let parent = name.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -155,7 +160,10 @@ mod tests {
             write(&beneath, name).unwrap_or_else(|error| panic!("{name}: {error}"));
         }
         write(&beneath, path.join("files/inside/f")).expect("written");
-        for name in ["a", "inside/b", "c", "d", "inside/e", "inside/f"] {
+        symlink(path.join("files"), path.join("called")).expect("linked");
+        let called = Beneath::open(path.join("called")).expect("opened");
+        write(&called, path.join("called/g")).expect("written");
+        for name in ["a", "inside/b", "c", "d", "inside/e", "inside/f", "g"] {
             assert_eq!(fs::read(path.join("files").join(name)).expect("there"), b"new", "{name}");
         }
     }
@@ -203,7 +211,8 @@ mod tests {
             scope.spawn(|| {
                 while !stop.load(Ordering::Relaxed) {
                     // The folder and the link change places.
-                    for (from, to) in [("inside", "aside"), ("trap", "inside"), ("inside", "trap"), ("aside", "inside")] {
+                    for (from, to) in [("inside", "aside"), ("trap", "inside"), ("inside", "trap"), ("aside", "inside")]
+                    {
                         fs::rename(files.join(from), files.join(to)).expect("renamed");
                     }
                 }

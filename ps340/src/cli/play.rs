@@ -6,7 +6,7 @@ use crate::{
     picture::Picture,
     play::{EXAMPLES, End, Patience, Player, Script, Watcher, example},
 };
-use files::{Destination, Growing};
+use files::{Beneath, Destination, Growing};
 use std::{
     io::{self, BufWriter, IsTerminal, Write},
     path::PathBuf,
@@ -57,6 +57,12 @@ pub struct Arguments {
     /// Writes what was sent and said: > text, @ directive, = reply, < message to the host, ! message of the machine.
     #[arg(long, value_name = "FILE")]
     transcript: Option<PathBuf>,
+    /// Lets directives write files and end the machine, such as '@ picture vector a.png' and '@ quit'; 'ps340 lint' lists them.
+    #[arg(long)]
+    orders: bool,
+    /// The folder below which directives write files.
+    #[arg(long = "files", value_name = "DIR", default_value = ".")]
+    below: PathBuf,
     /// Frames that an expectation waits, if it does not say.
     #[arg(long, value_name = "N", default_value_t = 60)]
     patience: u64,
@@ -98,7 +104,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
     }
     let picture = arguments.picture.as_deref().map(Picture::destination).transpose()?;
     let patience = Patience { frames: arguments.patience, keep_going: arguments.keep_going };
-    let mut player = Player::new(Settings::default(), patience);
+    let below = || {
+        let folder = &arguments.below;
+        Beneath::open(folder).map_err(|error| Trouble::File { file: folder.display().to_string(), error })
+    };
+    let files = arguments.orders.then(below).transpose()?;
+    let mut player = Player::new(Settings::default(), patience, files);
     let mut screen = Screen::new(arguments, &scripts)?;
     let end = play(&mut player, &scripts, arguments.frames, &mut screen);
     screen.clear();

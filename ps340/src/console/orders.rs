@@ -25,7 +25,7 @@ impl Orders {
     pub fn give(&mut self, order: impl Into<String>) {
         let text = order.into();
         let (reply, answer) = oneshot::channel();
-        let sent = self.sender.send(OperatorLine { text: text.clone(), reply });
+        let sent = self.sender.send(OperatorLine { text: text.clone(), reply, is_replayed: false });
         if sent.is_ok() && self.waiting.len() < MAX_WAITING {
             self.waiting.push((text, answer));
         }

@@ -3,6 +3,7 @@
 use super::{
     Interface, LineEvent, LineId, Surroundings,
     conditions::{Flow, INPUT_QUEUE, XOFF, XON, leave},
+    http,
     pace::Pace,
     places::Presence,
     writer::{Waiting, Writer},
@@ -42,12 +43,29 @@ pub(super) struct Host {
     pub(super) half_closes: bool,
     /// Whether it has spoken, and whether somebody else wants its place.
     pub(super) presence: Arc<Presence>,
+    /// Whether it may be a page in a browser, which speaks HTTP.
+    pub(super) may_be_browser: bool,
+}
+
+/// How a line ended.
+enum End {
+    /// The host closed its side, or the line failed.
+    Closed(Option<io::Error>),
+    /// The machine wants no more of it.
+    Dropped(&'static str),
 }
 
 impl Host {
     /// A host that speaks text and packets, on a line that closes in each direction by itself.
     pub(super) fn stream(peer: String, conditions: Conditions) -> Host {
-        Host { peer, interface: Interface::Stream, conditions, half_closes: true, presence: Arc::default() }
+        Host {
+            peer,
+            interface: Interface::Stream,
+            conditions,
+            half_closes: true,
+            presence: Arc::default(),
+            may_be_browser: false,
+        }
     }
 }
 
@@ -60,22 +78,26 @@ pub(super) async fn serve(
     let line = LineId::next();
     let (read, write) = tokio::io::split(stream);
     let (writer, waiting) = Writer::new();
-    if !around.attach(line, host.peer, host.interface, writer).await {
+    if !around.attach(line, host.peer.clone(), host.interface, writer).await {
         return;
     }
     let (flow, followed) = watch::channel(Flow::default());
     let sender = Sender { write, line, conditions: host.conditions, flow: followed, around: around.clone() };
     let mut sending = tokio::spawn(sender.run(waiting));
     let presence = &host.presence;
-    let (error, is_unwanted) = tokio::select! {
-        error = receive(read, line, host.conditions, presence, &flow, &around) => (error, false),
-        () = presence.is_unwanted() => (Some(io::Error::other("it never spoke, and its place was wanted")), true),
+    let end = tokio::select! {
+        end = receive(read, line, &host, &flow, &around) => end,
+        () = presence.is_unwanted() => End::Dropped("it never spoke, and its place was wanted"),
     };
     // Without the receiver, nothing that the host holds can be released.
     drop(flow);
-    if is_unwanted || !host.half_closes {
+    if !host.half_closes || matches!(end, End::Dropped(_)) {
         sending.abort();
     }
+    let error = match end {
+        End::Closed(error) => error,
+        End::Dropped(reason) => Some(io::Error::other(reason)),
+    };
     around.close(line, error).await;
     // The machine drops its writer when it sees the end; what is queued is still written.
     tokio::select! {
@@ -84,15 +106,16 @@ pub(super) async fn serve(
     }
 }
 
-/// Takes what the host sends, until it closes its side; returns why, if not by a plain end.
+/// Takes what the host sends, until the line ends.
 async fn receive(
     mut read: impl AsyncRead + Unpin,
     line: LineId,
-    conditions: Conditions,
-    presence: &Presence,
+    host: &Host,
     flow: &watch::Sender<Flow>,
     around: &Surroundings,
-) -> Option<io::Error> {
+) -> End {
+    let conditions = host.conditions;
+    let mut requests = http::Watch::default();
     let begin = Instant::now();
     let mut pace = Pace::new(conditions.speed);
     let most = if conditions.flow { INPUT_QUEUE / 4 } else { READ_BYTES };
@@ -100,22 +123,25 @@ async fn receive(
     let limit = if conditions.flow { INPUT_QUEUE } else { READ_BYTES };
     // What waits for the machine; what is still on its way; when the latter has passed.
     let (mut queue, mut arriving, mut at) = (Vec::new(), Vec::with_capacity(piece), begin);
-    let (mut open, mut error) = (true, None);
+    let (mut open, mut end) = (true, End::Closed(None));
     while open || !arriving.is_empty() || !queue.is_empty() {
         tokio::select! {
             result = read.read_buf(&mut arriving), if open && arriving.is_empty() && queue.len() < limit => match result {
                 Ok(0) => open = false,
                 Ok(count) => {
-                    presence.note_speech();
+                    host.presence.note_speech();
                     at = begin + pace.pass(count, begin.elapsed());
+                    if host.may_be_browser && requests.finds_request(&mut arriving) {
+                        (open, end) = (false, End::Dropped("it speaks HTTP, as a page in a browser does"));
+                    }
                 }
-                Err(reason) => (open, error) = (false, Some(reason)),
+                Err(reason) => (open, end) = (false, End::Closed(Some(reason))),
             },
             () = sleep_until(at), if !arriving.is_empty() && conditions.speed.is_some() => {
                 take_in(&mut arriving, piece, &mut queue, conditions, flow);
             }
             permit = around.events.reserve(), if !queue.is_empty() => {
-                let Ok(permit) = permit else { return None };
+                let Ok(permit) = permit else { return end };
                 let bytes = std::mem::take(&mut queue);
                 around.tap(line, || Event::FromHost(bytes.clone()));
                 permit.send(LineEvent::Bytes(line, bytes));
@@ -131,7 +157,7 @@ async fn receive(
             *flow != before
         });
     }
-    error
+    end
 }
 
 /// Moves what has arrived into the queue of the machine.

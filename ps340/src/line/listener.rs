@@ -2,8 +2,9 @@
 
 use super::Address;
 use std::{
+    fs::Permissions,
     io,
-    os::unix::fs::{FileTypeExt, MetadataExt},
+    os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt},
     path::{Path, PathBuf},
     time::Duration,
 };
@@ -20,13 +21,22 @@ const ANSWER_TIME: Duration = Duration::from_secs(2);
 pub(super) trait Stream: AsyncRead + AsyncWrite + Send + Unpin {}
 impl<T: AsyncRead + AsyncWrite + Send + Unpin> Stream for T {}
 
+/// Who may come to a listening socket.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visitors {
+    /// Whoever reaches it.
+    All,
+    /// At a Unix socket only the user who runs the machine, and the administrator.
+    Owner,
+}
+
 /// A listening socket.
 #[derive(Debug)]
 pub enum Listener {
     /// TCP.
     Tcp(TcpListener),
     /// Unix socket; the file is removed at the end.
-    Unix(UnixListener, SocketFile),
+    Unix(UnixListener, SocketFile, Visitors),
 }
 
 /// Removes the file of a Unix socket when dropped, unless another file has its name by then.
@@ -82,12 +92,16 @@ impl Listener {
     ///
     /// # Errors
     /// Those of the system, e.g. the address is in use.
-    pub async fn bind(address: &Address) -> io::Result<Listener> {
+    pub async fn bind(address: &Address, visitors: Visitors) -> io::Result<Listener> {
         match address {
             Address::Tcp(at) => Ok(Listener::Tcp(TcpListener::bind(at.as_str()).await?)),
             Address::Unix(path) => {
                 let bound = bind_unix(path).await?;
-                Ok(Listener::Unix(bound, SocketFile::new(path)))
+                let file = SocketFile::new(path);
+                if visitors == Visitors::Owner {
+                    std::fs::set_permissions(path, Permissions::from_mode(0o600))?;
+                }
+                Ok(Listener::Unix(bound, file, visitors))
             }
         }
     }
@@ -96,7 +110,15 @@ impl Listener {
     pub fn address(&self) -> io::Result<Address> {
         match self {
             Listener::Tcp(listener) => Ok(Address::Tcp(listener.local_addr()?.to_string())),
-            Listener::Unix(_, file) => Ok(Address::Unix(file.path.clone())),
+            Listener::Unix(_, file, _) => Ok(Address::Unix(file.path.clone())),
+        }
+    }
+
+    /// Whether other computers may reach it.
+    pub fn is_public(&self) -> bool {
+        match self {
+            Listener::Tcp(listener) => listener.local_addr().is_ok_and(|address| !address.ip().is_loopback()),
+            Listener::Unix(..) => false,
         }
     }
 
@@ -107,8 +129,14 @@ impl Listener {
                 stream.set_nodelay(true)?;
                 Ok((Box::new(stream), format!("tcp:{peer}")))
             }
-            Listener::Unix(listener, file) => {
+            Listener::Unix(listener, file, visitors) => {
                 let (stream, _) = listener.accept().await?;
+                // Before the file had its permissions, others may have come.
+                let visitor = stream.peer_cred()?.uid();
+                if *visitors == Visitors::Owner && visitor != 0 && visitor != rustix::process::geteuid().as_raw() {
+                    let text = format!("user {visitor} is not the one who runs the machine");
+                    return Err(io::Error::new(io::ErrorKind::PermissionDenied, text));
+                }
                 Ok((Box::new(stream), format!("unix:{}", file.path.display())))
             }
         }

@@ -2,6 +2,8 @@
 //! operators.
 
 mod pace;
+mod http;
+mod token;
 mod conditions;
 mod capture;
 mod listener;
@@ -14,12 +16,13 @@ mod source;
 mod operator;
 
 pub use capture::Capture;
-pub use listener::{Listener, SocketFile};
+pub use listener::{Listener, SocketFile, Visitors};
 pub use operator::{OperatorLine, Reply, serve_operators, serve_stdio, serve_window};
 pub use places::MAX_HOSTS;
 pub use protocol::address::{Address, AddressError, LineAddress};
 pub use source::Source;
 pub use terminal::{PseudoTerminal, open_serial};
+pub use token::{TOKEN_VARIABLE, Token};
 pub use writer::{MAX_WAITING_BYTES, Writer};
 
 use protocol::capture::Event;

@@ -1,6 +1,6 @@
 //! Operator lines: one order a line, one reply a line.
 
-use super::{Events, LineEvent, Listener, listener::Stream};
+use super::{Events, LineEvent, Listener, Token, http::is_request, listener::Stream};
 use protocol::capture::MAX_ORDER;
 use std::io::{BufRead, IsTerminal, Write};
 use tokio::{
@@ -11,6 +11,10 @@ use tokio::{
 /// The reply to an order that is longer.
 const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
 
+/// The reply to one who does not know the token.
+const NO_TOKEN: &[u8] =
+    b"error the first line must be 'token TOKEN', with what the machine said behind 'ready token'\n";
+
 /// An order and the way back for its reply.
 #[derive(Debug)]
 pub struct OperatorLine {
@@ -18,6 +22,8 @@ pub struct OperatorLine {
     pub text: String,
     /// Takes the reply.
     pub reply: oneshot::Sender<Reply>,
+    /// Whether it comes from a file that is played, and from nobody who is there.
+    pub is_replayed: bool,
 }
 
 /// The reply to an order.
@@ -36,11 +42,13 @@ impl From<String> for Reply {
 }
 
 /// Takes operators in from a listener until the machine's thread is gone.
-pub async fn serve_operators(listener: Listener, events: Events) {
+///
+/// - `token`: what they must tell before their first order, if anything.
+pub async fn serve_operators(listener: Listener, token: Option<Token>, events: Events) {
     while !events.is_closed() {
         match listener.accept().await {
-            Ok((stream, _)) => {
-                tokio::spawn(serve(stream, events.clone()));
+            Ok((stream, peer)) => {
+                tokio::spawn(serve(stream, peer, token.clone(), events.clone()));
             }
             Err(error) => {
                 tracing::warn!("an operator could not attach: {error}");
@@ -50,7 +58,7 @@ pub async fn serve_operators(listener: Listener, events: Events) {
     }
 }
 
-async fn serve(stream: Box<dyn Stream>, events: Events) {
+async fn serve(stream: Box<dyn Stream>, peer: String, mut token: Option<Token>, events: Events) {
     let (read, mut write) = tokio::io::split(stream);
     let mut read = BufReader::new(read);
     let mut people = false;
@@ -67,12 +75,22 @@ async fn serve(stream: Box<dyn Stream>, events: Events) {
             }
             Ok(_) => {}
         }
+        if is_request(line.strip_suffix(b"\n").unwrap_or(&line)) {
+            return tracing::warn!("operator {peer} was dropped: it speaks HTTP, as a page in a browser does");
+        }
         let (reply, answer) = oneshot::channel();
         let text = String::from_utf8_lossy(&line).trim().to_string();
         if text.is_empty() {
             continue;
         }
-        if events.send(LineEvent::Operator(OperatorLine { text, reply })).await.is_err() {
+        if let Some(token) = token.take() {
+            let known = token.is_told_by(&text);
+            if write.write_all(if known { b"ok\n" } else { NO_TOKEN }).await.is_err() || !known {
+                return tracing::warn!("operator {peer} was dropped: it does not know the token");
+            }
+            continue;
+        }
+        if events.send(LineEvent::Operator(OperatorLine { text, reply, is_replayed: false })).await.is_err() {
             return;
         }
         let Ok(answer) = answer.await else { return };
@@ -125,7 +143,7 @@ pub fn serve_stdio(events: &Events) {
             continue;
         }
         let (reply, answer) = oneshot::channel();
-        if events.blocking_send(LineEvent::Operator(OperatorLine { text, reply })).is_err() {
+        if events.blocking_send(LineEvent::Operator(OperatorLine { text, reply, is_replayed: false })).is_err() {
             return;
         }
         let Ok(answer) = answer.blocking_recv() else { return };
@@ -172,7 +190,7 @@ mod tests {
             let (near, far) = tokio::io::duplex(1024);
             let (events, orders) = tokio::sync::mpsc::channel(4);
             tokio::spawn(answer(orders));
-            tokio::spawn(serve(Box::new(far), events));
+            tokio::spawn(serve(Box::new(far), "pipe".into(), None, events));
             let (mut read, mut write) = tokio::io::split(near);
             write.write_all(b"top\nlines on\ntop\nlines off\ntop\n").await.unwrap();
             let mut said = vec![0; 38];
@@ -180,6 +198,45 @@ mod tests {
             String::from_utf8(said).unwrap()
         });
         assert_eq!(said, "ok a\\nb\nok a\nb\nok a\nb\nok a\\nb\nok a\\nb\n");
+    }
+
+    /// What an operator line answers to a text before it closes; what reaches the machine.
+    fn told(text: &str, token: Option<Token>) -> (String, Vec<String>) {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let (mut near, far) = tokio::io::duplex(1024);
+            let (events, mut inbox) = tokio::sync::mpsc::channel(4);
+            tokio::spawn(serve(Box::new(far), "pipe".into(), token, events));
+            near.write_all(text.as_bytes()).await.unwrap();
+            near.shutdown().await.unwrap();
+            let mut orders = Vec::new();
+            while let Some(LineEvent::Operator(order)) = inbox.recv().await {
+                orders.push(order.text);
+                let _ = order.reply.send(Reply::from("ok".to_string()));
+            }
+            let mut said = String::new();
+            near.read_to_string(&mut said).await.unwrap();
+            (said, orders)
+        })
+    }
+
+    #[test]
+    fn a_request_of_http_ends_the_line_before_its_body() {
+        let (said, orders) = told("panel\r\nPOST / HTTP/1.1\r\n\r\npicture vector a.png\r\n", None);
+        assert_eq!((said.as_str(), orders), ("ok\n", vec!["panel".to_string()]));
+    }
+
+    #[test]
+    fn the_token_comes_before_the_first_order() {
+        let token = Token::begin().unwrap();
+        let text = token.to_be_told().unwrap().to_string();
+        let (said, orders) = told(&format!("token {text}\npanel\n"), Some(token.clone()));
+        assert_eq!((said.as_str(), orders), ("ok\nok\n", vec!["panel".to_string()]));
+        for wrong in ["panel\npanel\n", "token 1234\npanel\n"] {
+            let (said, orders) = told(wrong, Some(token.clone()));
+            assert!(said.starts_with("error the first line must be") && said.lines().count() == 1, "{said}");
+            assert!(orders.is_empty());
+        }
     }
 
     #[test]

@@ -144,7 +144,7 @@ async fn play(
                 Event::Order(text) => {
                     // Nobody waits for the reply.
                     let (reply, _) = oneshot::channel();
-                    around.send(LineEvent::Operator(OperatorLine { text, reply })).await
+                    around.send(LineEvent::Operator(OperatorLine { text, reply, is_replayed: true })).await
                 }
                 Event::Close => match lines.remove(&record.line) {
                     Some(line) => around.close(line, None).await,

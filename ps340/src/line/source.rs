@@ -1,7 +1,7 @@
 //! Places where hosts come from: opens them, and serves whoever comes.
 
 use super::{
-    Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, Surroundings,
+    Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, Surroundings, Visitors,
     hosts::{Host, serve},
     open_serial,
     places::{MAX_HOSTS, Places, turn_away},
@@ -57,8 +57,11 @@ impl Source {
     /// Those of the system, e.g. the address is in use, or the file does not exist.
     pub async fn open(address: &LineAddress) -> io::Result<Source> {
         let kind = match &address.place {
-            Place::Socket(at) => Kind::Sockets(Listener::bind(at).await?, Interface::Stream),
-            Place::Parallel(at) => Kind::Sockets(Listener::bind(&Address::Tcp(at.clone())).await?, Interface::Parallel),
+            Place::Socket(at) => Kind::Sockets(Listener::bind(at, Visitors::All).await?, Interface::Stream),
+            Place::Parallel(at) => {
+                let listener = Listener::bind(&Address::Tcp(at.clone()), Visitors::All).await?;
+                Kind::Sockets(listener, Interface::Parallel)
+            }
             Place::Pty(None) => Kind::Pty(PseudoTerminal::open()?),
             Place::Pty(Some(_)) => {
                 let text = "the system chooses the path; give pty: alone, or serial:PATH for a terminal that is there";
@@ -87,6 +90,11 @@ impl Source {
             Kind::File { path, timed, .. } => Place::File { path: path.clone(), timed: *timed },
         };
         Ok(LineAddress { place, conditions: self.conditions })
+    }
+
+    /// Whether other computers may reach it.
+    pub fn is_public(&self) -> bool {
+        matches!(&self.kind, Kind::Sockets(listener, _) if listener.is_public())
     }
 
     /// Serves hosts until no more can come, which it says, or until the machine's thread is gone.
@@ -135,7 +143,8 @@ async fn serve_sockets(listener: Listener, interface: Interface, conditions: Con
             Interface::Stream => peer,
             Interface::Parallel => format!("{PARALLEL}{peer}"),
         };
-        let host = Host { interface, presence: place.presence.clone(), ..Host::stream(peer, conditions) };
+        let presence = place.presence.clone();
+        let host = Host { interface, presence, may_be_browser: true, ..Host::stream(peer, conditions) };
         let around = around.clone();
         tokio::spawn(async move {
             serve(stream, host, around).await;

@@ -58,7 +58,7 @@ fn use_all() -> HashMap<(String, u16), KindSet> {
     machine.step([Input::Bytes(LINE, text.into_bytes())], 0);
     for order in USES {
         if let Ok(order) = parse(order) {
-            let _ = perform(&order, &mut machine);
+            let _ = perform(&order, &mut machine, None);
         }
         let next = time_of_frame(machine.frame() + 1);
         machine.step([], next);

@@ -18,7 +18,7 @@ const LINE: LineId = LineId(1);
 
 /// Finds what is wrong in files, which are read one after the other as if one host sent them.
 ///
-/// - `files`: name and content of each. Lines that begin with `@` are directives for the player; they are passed over.
+/// - `files`: name and content of each. Lines that begin with `@` are directives for the player; those that write files or end the machine are found, the others passed over.
 /// - Returns the findings by file and place.
 pub fn lint(files: &[(String, Vec<u8>)]) -> Vec<Finding> {
     let sources: Vec<Source> = files.iter().map(|(name, text)| Source::new(name, text)).collect();
@@ -79,6 +79,10 @@ struct Said {
 impl Reading<'_> {
     fn file(&mut self, file: usize) {
         let source = &self.sources[file];
+        for (at, directive) in &source.outgoing {
+            let text = format!("'@ {directive}' writes a file or ends the machine: 'play' does it with --orders only");
+            self.note(Place { file, at: *at }, Level::Warning, text);
+        }
         let mut reader = CommandReader::default();
         reader.push(&source.text);
         while let Some(item) = reader.next() {

@@ -1,5 +1,6 @@
 //! The files that are read, and places in them.
 
+use crate::operator::parse;
 use protocol::command::token::{Lexer, TokenKind};
 use std::ops::Range;
 
@@ -20,21 +21,28 @@ pub(super) struct Source {
     pub(super) text: Vec<u8>,
     /// Where each line begins.
     lines: Vec<usize>,
+    /// Directives that write files or end the machine, and where they stand.
+    pub(super) outgoing: Vec<(usize, String)>,
 }
 
 impl Source {
     /// A file as it was read.
     pub(super) fn new(name: &str, text: &[u8]) -> Source {
         let mut text = text.to_vec();
-        let mut lines = vec![0];
+        let (mut lines, mut outgoing) = (vec![0], Vec::new());
         for line in text.split_inclusive_mut(|byte| *byte == b'\n') {
-            lines.push(lines.last().unwrap_or(&0) + line.len());
+            let begin = *lines.last().unwrap_or(&0);
+            lines.push(begin + line.len());
             if line.first() == Some(&b'@') {
+                let directive = String::from_utf8_lossy(&line[1..]).trim().to_owned();
+                if parse(&directive).is_ok_and(|order| order.reaches_out()) {
+                    outgoing.push((begin, directive));
+                }
                 let end = line.iter().rposition(|byte| *byte != b'\n').map_or(0, |last| last + 1);
                 line[..end].fill(b' ');
             }
         }
-        Source { name: name.into(), text, lines }
+        Source { name: name.into(), text, lines, outgoing }
     }
 
     /// Line and column of an offset, from 1.

@@ -2,7 +2,7 @@
 
 use super::{
     graph::{Language, Subject, graph, title},
-    order::{Order, OrderError, OrderRow, Words},
+    order::{Order, OrderError, OrderRow, REFUSED, Words},
 };
 use crate::{
     functions::printing::print,
@@ -10,7 +10,7 @@ use crate::{
     network::{Activity, Outcome, Trace, Traced},
     port::ObjectId,
 };
-use files::Destination;
+use files::Beneath;
 use protocol::{Kind, Value};
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -145,7 +145,7 @@ fn read_graph(words: &mut Words<'_>) -> Result<Order, OrderError> {
 ///
 /// # Errors
 /// A sentence for the person.
-pub(super) fn inspect(what: &Inspection, machine: &mut Machine) -> Result<String, String> {
+pub(super) fn inspect(what: &Inspection, machine: &mut Machine, files: Option<&Beneath>) -> Result<String, String> {
     match what {
         Inspection::Trace => Ok(take_trace(machine)),
         Inspection::TraceOf(name, on) => trace_of(name.as_deref(), *on, machine),
@@ -185,7 +185,8 @@ pub(super) fn inspect(what: &Inspection, machine: &mut Machine) -> Result<String
             match file {
                 None => Ok(text),
                 Some(file) => {
-                    let destination = Destination::of(file).map_err(|error| error.to_string())?;
+                    let files = files.ok_or(REFUSED)?;
+                    let destination = files.destination(file).map_err(|error| error.to_string())?;
                     destination.write(|file| file.write_all(text.as_bytes())).map_err(|error| error.to_string())?;
                     Ok(file.clone())
                 }

@@ -104,6 +104,15 @@ pub enum Order {
 }
 
 impl Order {
+    /// Whether it writes a file or ends the machine, which nobody expects of a file that is played.
+    pub fn reaches_out(&self) -> bool {
+        match self {
+            Order::Quit | Order::Sight(SightOrder::Picture { .. }) => true,
+            Order::Inspect(Inspection::Graph { file, .. }) => file.is_some(),
+            _ => false,
+        }
+    }
+
     /// Whether somebody does something at the machine, rather than looks at it or waits for it.
     pub fn is_action(&self) -> bool {
         match self {
@@ -166,6 +175,9 @@ fn meant(word: &str) -> String {
     let near = protocol::command::spelling::nearest(word, rows().map(|row| row.word));
     near.map_or(String::new(), |near| format!("did you mean '{near}'? "))
 }
+
+/// What is said of an order of a file that is played which reaches out.
+pub(super) const REFUSED: &str = "a file that is played may not write files or end the machine without --orders";
 
 /// Frames that `idle` and `message` wait for if the order does not say: ten seconds.
 const PATIENCE: u64 = 600;

@@ -1,10 +1,11 @@
 //! Carrying out an order on a machine.
 
-use super::{Order, OrderRow, inspect::inspect, rows, sight};
+use super::{Order, OrderRow, inspect::inspect, order::REFUSED, rows, sight};
 use crate::{
     calligraphic,
     machine::{Event, Key, Machine, TabletEvent},
 };
+use files::Beneath;
 
 /// What came of an order.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +46,12 @@ impl Wait {
 }
 
 /// Carries out an order.
-pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
+///
+/// - `files`: the folder below which it writes. Without one, orders that reach out ([`Order::reaches_out`]) are refused.
+pub fn perform(order: &Order, machine: &mut Machine, files: Option<&Beneath>) -> Outcome {
+    if order.reaches_out() && files.is_none() {
+        return Outcome::Done(Err(REFUSED.into()));
+    }
     let frame = machine.frame();
     let event = match order {
         Order::Dial { dial, turns } => Event::Dial { dial: *dial, turns: *turns },
@@ -70,7 +76,7 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         }
         Order::Messages => return Outcome::Done(Ok(messages(machine))),
         Order::Lines(_) => return Outcome::Done(Ok(String::new())),
-        Order::Sight(order) => return Outcome::Done(sight::perform(order, machine)),
+        Order::Sight(order) => return Outcome::Done(sight::perform(order, machine, files)),
         Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
         Order::Strokes(most) => {
             machine.renew_picture();
@@ -78,7 +84,7 @@ pub fn perform(order: &Order, machine: &mut Machine) -> Outcome {
         }
         Order::Overlay(most) => return Outcome::Done(Ok(calligraphic::text(machine.overlay(), *most))),
         Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
-        Order::Inspect(what) => return Outcome::Done(inspect(what, machine)),
+        Order::Inspect(what) => return Outcome::Done(inspect(what, machine, files)),
         Order::Panel => {
             return Outcome::Done(Ok(format!("{}\n{}", machine.panel(), machine.switches())));
         }

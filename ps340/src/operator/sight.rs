@@ -1,12 +1,12 @@
 //! Orders for the display: knobs, phosphor, steadiness, which screen, and pictures in files.
 
-use super::order::{Order, OrderError, OrderRow, Screen, Words};
+use super::order::{Order, OrderError, OrderRow, REFUSED, Screen, Words};
 use crate::{
     calligraphic::{self, Controls, KNOBS, Knob, MAX_SIZE, PHOSPHORS, Phosphor, SCREENS},
     machine::Machine,
     picture::Picture,
 };
-use files::Destination;
+use files::Beneath;
 use std::io::Write;
 use std::path::Path;
 
@@ -150,7 +150,7 @@ fn size(word: &str) -> Option<[u32; 2]> {
 ///
 /// # Errors
 /// Why a file was not written.
-pub(super) fn perform(order: &SightOrder, machine: &mut Machine) -> Result<String, String> {
+pub(super) fn perform(order: &SightOrder, machine: &mut Machine, files: Option<&Beneath>) -> Result<String, String> {
     let mut controls = *machine.controls();
     match order {
         SightOrder::Knob(None) => {}
@@ -160,7 +160,9 @@ pub(super) fn perform(order: &SightOrder, machine: &mut Machine) -> Result<Strin
         SightOrder::Steady(on) => controls.steady = on.unwrap_or(controls.steady),
         SightOrder::Screen(screen) => controls.screen = screen.unwrap_or(controls.screen),
         SightOrder::Refresh => return Ok(refresh(machine)),
-        SightOrder::Picture { screen, file, size } => return write(machine, *screen, file, *size),
+        SightOrder::Picture { screen, file, size } => {
+            return write(machine, *screen, file, *size, files.ok_or(REFUSED)?);
+        }
     }
     machine.set_controls(controls);
     Ok(match order {
@@ -190,14 +192,20 @@ fn refresh(machine: &mut Machine) -> String {
 }
 
 /// Writes a picture or a drawing, by the ending of the file's name.
-fn write(machine: &mut Machine, screen: Screen, file: &str, size: Option<[u32; 2]>) -> Result<String, String> {
+fn write(
+    machine: &mut Machine,
+    screen: Screen,
+    file: &str,
+    size: Option<[u32; 2]>,
+    files: &Beneath,
+) -> Result<String, String> {
     let path = Path::new(file);
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     let drawing = match (screen, ending.as_deref()) {
         (Screen::Vector, Some("svg")) => calligraphic::svg,
         (Screen::Vector, Some("txt")) => |strokes: &_| calligraphic::text(strokes, usize::MAX) + "\n",
         _ => {
-            let destination = Picture::destination(path).map_err(|e| e.to_string())?;
+            let destination = Picture::destination_below(files, path).map_err(|e| e.to_string())?;
             let picture = match screen {
                 Screen::Vector => machine.vector_picture(size),
                 Screen::Raster => machine.raster_picture(),
@@ -206,7 +214,7 @@ fn write(machine: &mut Machine, screen: Screen, file: &str, size: Option<[u32; 2
             return Ok(format!("{file} {}x{}", picture.width(), picture.height()));
         }
     };
-    let destination = Destination::of(path).map_err(|e| e.to_string())?;
+    let destination = files.destination(path).map_err(|e| e.to_string())?;
     machine.renew_picture();
     let strokes = machine.visible_strokes();
     let text = drawing(&strokes);

@@ -5,6 +5,7 @@ use crate::{
     line::LineId,
     machine::{Input, Key, KeyboardMode, Machine, Settings},
 };
+use files::Beneath;
 
 #[test]
 fn every_row_has_its_own_word() {
@@ -77,12 +78,39 @@ fn a_reply_is_one_line() {
     assert_eq!(reply(&Err("no".into())), "error no");
 }
 
+/// Files may be anywhere.
+fn everywhere() -> Beneath {
+    Beneath::open("/").unwrap()
+}
+
+#[test]
+fn orders_that_reach_out_need_a_folder_for_it() {
+    let mut machine = Machine::new(Settings::default());
+    for order in ["picture vector a.png", "picture vector a.svg", "graph network a.dot", "quit"] {
+        let order = parse(order).unwrap();
+        let Outcome::Done(Err(text)) = perform(&order, &mut machine, None) else { panic!("{order:?}") };
+        assert!(text.contains("--orders"), "{text}");
+    }
+    for order in ["dial 1 0.5", "graph network dot", "knob focus 0.5", "panel"] {
+        let outcome = perform(&parse(order).unwrap(), &mut machine, None);
+        assert!(matches!(outcome, Outcome::Done(Ok(_))), "{order}: {outcome:?}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let files = Beneath::open(folder.path()).unwrap();
+    for (order, is_written) in
+        [("picture vector a.txt", true), ("picture vector ../a.txt", false), ("graph network /a.dot", false)]
+    {
+        let outcome = perform(&parse(order).unwrap(), &mut machine, Some(&files));
+        assert_eq!(matches!(outcome, Outcome::Done(Ok(_))), is_written, "{order}: {outcome:?}");
+    }
+}
+
 /// A machine that was told a text, with the replies to orders.
 fn replies(text: &str, orders: &[&str]) -> Vec<String> {
     let mut machine = Machine::new(Settings::default());
     let line = LineId(1);
     machine.step([Input::Attach(line), Input::Bytes(line, text.as_bytes().to_vec())], 0);
-    let one = |order: &&str| match parse(order).map(|order| perform(&order, &mut machine)) {
+    let one = |order: &&str| match parse(order).map(|order| perform(&order, &mut machine, Some(&everywhere()))) {
         Ok(Outcome::Done(result)) => reply(&result),
         Ok(Outcome::Waiting(wait)) => loop {
             if let Some(result) = wait.poll(&mut machine) {
@@ -181,7 +209,7 @@ fn graphs_show_functions_arcs_and_nodes() {
 }
 
 fn performed(machine: &mut Machine, order: &str) -> String {
-    match perform(&parse(order).unwrap(), machine) {
+    match perform(&parse(order).unwrap(), machine, Some(&everywhere())) {
         Outcome::Done(Ok(text)) => text,
         other => panic!("{order}: {other:?}"),
     }

@@ -6,6 +6,7 @@ use crate::{
     machine::{Input, Machine, Micros, Settings, time_of_frame},
     operator::{Outcome, perform},
 };
+use files::Beneath;
 use std::collections::VecDeque;
 
 /// The host line that the text of the files goes to.
@@ -74,6 +75,8 @@ pub enum End {
 pub struct Player {
     machine: Machine,
     patience: Patience,
+    /// The folder below which orders write; none if they may not.
+    files: Option<Beneath>,
     /// Messages of the machine that were taken from its log.
     seen: u64,
     /// Messages of the machine that no step has expected yet, with the line during which they came.
@@ -91,12 +94,15 @@ pub struct Player {
 
 impl Player {
     /// A machine as after its start, with a host on its line.
-    pub fn new(settings: Settings, patience: Patience) -> Player {
+    ///
+    /// - `files`: the folder below which orders write; without one, those that write files or end the machine fail.
+    pub fn new(settings: Settings, patience: Patience, files: Option<Beneath>) -> Player {
         let mut machine = Machine::new(settings);
         machine.step([Input::Attach(LINE)], 0);
         Player {
             machine,
             patience,
+            files,
             seen: 0,
             waiting: VecDeque::new(),
             file: String::new(),
@@ -131,7 +137,7 @@ impl Player {
                 }
                 Step::Order(order, text) => {
                     watcher.heard('@', text.as_bytes());
-                    let outcome = perform(order, &mut self.machine);
+                    let outcome = perform(order, &mut self.machine, self.files.as_ref());
                     self.step([], 0, watcher);
                     self.order(outcome, watcher)
                 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::machine::Settings;
+use files::Beneath;
 
 /// Collects the transcript.
 #[derive(Default)]
@@ -20,9 +21,14 @@ impl Watcher for Heard {
     }
 }
 
+/// Files may be anywhere.
+fn everywhere() -> Option<Beneath> {
+    Beneath::open("/").ok()
+}
+
 fn run_with(text: &str, patience: Patience) -> (End, Vec<String>, String) {
     let script = Script::read("a.ps300", text.as_bytes()).unwrap();
-    let mut player = Player::new(Settings::default(), patience);
+    let mut player = Player::new(Settings::default(), patience, everywhere());
     let mut heard = Heard::default();
     let end = player.play(&script, &mut heard);
     (end, player.take_failures().iter().map(Failure::to_string).collect(), heard.text)
@@ -93,7 +99,7 @@ fn a_run_can_go_on_after_a_failure_and_can_be_stopped() {
     let (end, failures, _) = run_with("@ expect 'a'\n@ expect 'b'\n", forgiving);
     assert_eq!((end, failures.len()), (End::Played, 2));
     let script = Script::read("a", b"@ frames 1000\n").unwrap();
-    let mut player = Player::new(Settings::default(), Patience::default());
+    let mut player = Player::new(Settings::default(), Patience::default(), everywhere());
     let end = player.play(&script, &mut Heard { stop_at: Some(10), ..Heard::default() });
     assert_eq!((end, player.machine().frame()), (End::Stopped, 10));
     assert_eq!(run("@ quit\n@ expect 'a'\n").0, End::Quit);
@@ -113,7 +119,7 @@ fn every_example_plays_without_an_error_and_says_what_it_is() {
         assert!(!e.summary().is_empty(), "{}", e.name);
         assert_eq!(example(e.name), Ok(e));
         let script = Script::read(e.name, e.text.as_bytes()).unwrap();
-        let mut player = Player::new(Settings::default(), Patience::default());
+        let mut player = Player::new(Settings::default(), Patience::default(), everywhere());
         assert_eq!(player.play(&script, &mut Heard::default()), End::Played);
         player.wait(30, &mut Heard::default());
         assert_eq!(player.take_failures(), [], "{}", e.name);

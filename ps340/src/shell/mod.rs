@@ -9,11 +9,12 @@ pub use mirror::{ArcShown, Asked, FunctionShown, InputShown, Mirror, NodeShown, 
 use crate::{
     calligraphic::Drawer,
     line::{
-        Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, Source, Surroundings,
-        serve_operators, serve_stdio, serve_window,
+        Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, Source, Surroundings, Token,
+        Visitors, serve_operators, serve_stdio, serve_window,
     },
     machine::Settings,
 };
+use files::Beneath;
 use protocol::address::Place;
 use signals::Signals;
 use std::{io, path::PathBuf, sync::Arc, time::Duration};
@@ -59,6 +60,12 @@ pub struct Options {
     pub operator: Operator,
     /// Where time comes from.
     pub clock: Clock,
+    /// Whether captures that are played may give orders that write files or end the machine.
+    pub replayed_orders: bool,
+    /// The folder below which orders write files.
+    pub files: PathBuf,
+    /// Whether it may listen where other computers reach it.
+    pub public: bool,
     /// Of the machine.
     pub settings: Settings,
     /// Who writes the light of the vector screen.
@@ -84,9 +91,10 @@ pub enum End {
 
 /// What stands open before hosts and operators can come.
 struct Opened {
+    files: Beneath,
     capture: Option<Capture>,
     sources: Vec<Source>,
-    operators: Option<Listener>,
+    operators: Option<(Listener, Option<Token>)>,
 }
 
 /// Runs the machine until its end.
@@ -108,7 +116,7 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
             () = signals.next() => Ok(None),
         }
     });
-    let Some((signals, Opened { capture, sources, operators })) = opened? else {
+    let Some((signals, Opened { files, capture, sources, operators })) = opened? else {
         // A name may still be looked up.
         io_runtime.shutdown_background();
         return Ok(End::Interrupted);
@@ -123,9 +131,12 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
         let events = events.clone();
         std::thread::spawn(move || serve_stdio(&events));
     }
-    if let Some(listener) = operators {
+    if let Some((listener, token)) = operators {
         ready(&format!("ready operator {}", listener.address()?));
-        io_runtime.spawn(serve_operators(listener, events.clone()));
+        if let Some(text) = token.as_ref().and_then(Token::to_be_told) {
+            ready(&format!("ready token {text}"));
+        }
+        io_runtime.spawn(serve_operators(listener, token, events.clone()));
     }
     let mirror = window.map(|Window { mirror, orders }| {
         let events = events.clone();
@@ -152,7 +163,7 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
         }
     });
     ready("ready");
-    let end = Turns::new(options, mirror, capture.clone(), inbox)?.run();
+    let end = Turns::new(options, files, mirror, capture.clone(), inbox)?.run();
     let _ = stop.send(());
     let _ = lines.join();
     if let Some(capture) = capture {
@@ -168,12 +179,21 @@ async fn open(options: &Options) -> io::Result<Opened> {
     };
     let mut sources = Vec::new();
     for address in &options.listen {
-        sources.push(Source::open(address).await.map_err(|e| failed(address, e))?);
+        let source = Source::open(address).await.map_err(|e| failed(address, e))?;
+        check_public(options, source.is_public()).map_err(|e| failed(address, e))?;
+        sources.push(source);
     }
     let operators = match &options.operator {
-        Operator::Socket(address) => Some(Listener::bind(address).await.map_err(|e| failed(address, e))?),
+        Operator::Socket(address) => {
+            let listener = Listener::bind(address, Visitors::Owner).await.map_err(|e| failed(address, e))?;
+            check_public(options, listener.is_public()).map_err(|e| failed(address, e))?;
+            let token = matches!(address, Address::Tcp(_)).then(Token::begin);
+            Some((listener, token.transpose()?))
+        }
         Operator::None | Operator::Stdio => None,
     };
+    let files = Beneath::open(&options.files)
+        .map_err(|e| io::Error::new(e.kind(), format!("--files {}: {e}", options.files.display())))?;
     // Last, without a wait behind it: an interruption leaves no part of it.
     let capture = options.capture.as_deref().map(|path| {
         let is_read = |line: &LineAddress| matches!(&line.place, Place::File { path: read, .. } if read == path);
@@ -184,7 +204,22 @@ async fn open(options: &Options) -> io::Result<Opened> {
         created.map_err(|e| io::Error::new(e.kind(), format!("capture {}: {e}", path.display())))
     });
     let capture = capture.transpose()?;
-    Ok(Opened { capture, sources, operators })
+    Ok(Opened { files, capture, sources, operators })
+}
+
+/// Refuses what other computers may reach, unless that was asked for.
+fn check_public(options: &Options, is_public: bool) -> io::Result<()> {
+    match (is_public, options.public) {
+        (false, _) => Ok(()),
+        (true, true) => {
+            tracing::warn!("other computers may reach this machine: whoever does can use it");
+            Ok(())
+        }
+        (true, false) => {
+            let text = "other computers could reach it; --public allows that";
+            Err(io::Error::new(io::ErrorKind::PermissionDenied, text))
+        }
+    }
 }
 
 /// Waits for a signal, asks the machine to end, and returns when that takes too long, or at the next signal.

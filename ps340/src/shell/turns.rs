@@ -7,6 +7,7 @@ use crate::{
     machine::{Input, Machine, Micros, time_of_frame},
     operator::{Order, Outcome, Wait, parse, perform, reply},
 };
+use files::Beneath;
 use std::{
     collections::{BTreeMap, HashMap},
     io,
@@ -24,6 +25,10 @@ const MAX_LAG: Micros = 250_000;
 pub(super) struct Turns {
     machine: Machine,
     mirror: Option<Arc<Mirror>>,
+    /// The folder below which orders write.
+    files: Beneath,
+    /// Whether captures may give orders that reach out.
+    replayed_orders: bool,
     /// Takes what the operator does, if it is wanted.
     capture: Option<Capture>,
     inbox: mpsc::Receiver<LineEvent>,
@@ -48,6 +53,7 @@ impl Turns {
     /// Those of the system.
     pub(super) fn new(
         options: &Options,
+        files: Beneath,
         mirror: Option<Arc<Mirror>>,
         capture: Option<Capture>,
         inbox: mpsc::Receiver<LineEvent>,
@@ -60,6 +66,8 @@ impl Turns {
         Ok(Turns {
             machine,
             mirror,
+            files,
+            replayed_orders: options.replayed_orders,
             capture,
             inbox,
             timer: tokio::runtime::Builder::new_current_thread().enable_time().build()?,
@@ -173,17 +181,21 @@ impl Turns {
     }
 
     /// Carries out an order of an operator.
-    fn order(&mut self, OperatorLine { text, reply: answer }: OperatorLine) -> Option<End> {
+    fn order(&mut self, OperatorLine { text, reply: answer, is_replayed }: OperatorLine) -> Option<End> {
         let parsed = parse(&text);
         let mut outcome = match &parsed {
             Ok(order) => {
                 if let Some(capture) = self.capture.as_ref().filter(|_| order.is_action()) {
                     capture.record_order(&text);
                 }
-                perform(order, &mut self.machine)
+                let files = Some(&self.files).filter(|_| !is_replayed || self.replayed_orders);
+                perform(order, &mut self.machine, files)
             }
             Err(error) => Outcome::Done(Err(error.to_string())),
         };
+        if let (true, Outcome::Done(Err(error))) = (is_replayed, &outcome) {
+            tracing::warn!("'{text}' of a capture is not carried out: {error}");
+        }
         // What an order made the machine say leaves before its reply.
         self.step(None, 0);
         if let (Ok(Order::Dial { .. }), Outcome::Done(Ok(said))) = (&parsed, &mut outcome) {

@@ -122,7 +122,7 @@ impl Session {
             // A picture would be a file of a name that chance made.
             Ok(Order::Sight(SightOrder::Picture { .. }) | Order::Quit) | Err(_) => {}
             Ok(order) => {
-                if let Outcome::Waiting(wait) = perform(&order, &mut self.machine) {
+                if let Outcome::Waiting(wait) = perform(&order, &mut self.machine, None) {
                     while wait.poll(&mut self.machine).is_none() && self.may_go_on() {
                         self.frame();
                     }
@@ -162,7 +162,7 @@ impl Session {
             assert!(self.machine.raster_picture().width() > 0);
         }
         for order in [Order::Panel, Order::Terminal, Order::Log, Order::Counters, Order::Show("A".into())] {
-            perform(&order, &mut self.machine);
+            perform(&order, &mut self.machine, None);
         }
     }
 

@@ -12,6 +12,9 @@ use std::{
 /// How long the operator line may take to answer.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// The environment variable with the token of an emulator whose operator line is TCP.
+const TOKEN_VARIABLE: &str = "PS340_TOKEN";
+
 /// Why an order was not carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum OrderFault {
@@ -54,11 +57,19 @@ impl std::fmt::Debug for OperatorLine {
 }
 
 impl OperatorLine {
-    /// Connects.
+    /// Connects, and tells the token of the environment variable `PS340_TOKEN`, if there is one.
     ///
     /// # Errors
     /// Those of the system.
     pub fn connect(address: &Address) -> io::Result<OperatorLine> {
+        let mut line = OperatorLine::open(address)?;
+        if let Ok(token) = std::env::var(TOKEN_VARIABLE) {
+            line.give(&format!("token {token}")).map_err(io::Error::other)?;
+        }
+        Ok(line)
+    }
+
+    fn open(address: &Address) -> io::Result<OperatorLine> {
         let (reader, writer): (Box<dyn Read + Send>, Box<dyn Write + Send>) = match address {
             Address::Tcp(at) => {
                 let stream = TcpStream::connect(at.as_str())?;
