@@ -197,6 +197,9 @@ fn a_capture_uses_devices_and_does_not_write_or_end_the_machine() {
     assert_eq!(ended.code, Some(0), "{}", ended.errors);
     assert_eq!(ended.errors.matches("of a capture is not carried out").count(), 3, "{}", ended.errors);
     home.assert_untouched();
+    let listed = home.ps340(&["lint", "given.cap"]);
+    assert_eq!(listed.out.matches("with --orders only").count(), 3, "{}", listed.out);
+    assert_eq!(listed.out.lines().count(), 3, "{}", listed.out);
     // Where it was asked for, it may, below the folder.
     let ended = home.ps340(&["--listen", "file:given.cap", "--orders", "--operator", "none", "--clock", "virtual"]);
     assert!(ended.errors.contains("this is not below"), "{}", ended.errors);
@@ -234,7 +237,7 @@ fn a_play_file_writes_only_where_that_was_asked_for_and_below_the_folder() {
         let outside = home.ps340(&["play", "given.play", "--orders"]);
         assert_eq!(outside.code, Some(1), "{name}: {}", outside.errors);
         let listed = home.ps340(&["lint", "given.play"]);
-        assert!(listed.out.contains("given.play:1:1: warning: '@ picture vector"), "{}", listed.out);
+        assert!(listed.out.contains("given.play:1:1: warning: 'picture vector"), "{}", listed.out);
         home.assert_untouched();
     }
     fs::write(home.work().join("given.play"), "@ dial 1 0.5\n@ picture vector a.png 16\n").expect("written");

@@ -9,7 +9,8 @@ use std::{path::PathBuf, process::ExitCode};
 #[command(after_help = "\
 Each finding is a line FILE:LINE:COLUMN: LEVEL: TEXT. Errors are what the machine would refuse or what surely does not
 work; warnings are what is probably not meant, or is missing unless a host sends it later.
-Lines that begin with '@' are directives for 'ps340 play' and are passed over.
+Lines that begin with '@' are directives for 'ps340 play': those that write files or end the machine are listed, the others
+passed over. Of a capture such orders are listed, and nothing else.
 Exit codes: 0 no errors, 1 errors (with --strict: or warnings), 2 usage.")]
 pub struct Arguments {
     /// Command files, read one after the other as if one host sent them; '-' is the standard input.

@@ -2,15 +2,21 @@
 
 use super::{Events, LineEvent, Listener, Token, http::is_request, listener::Stream};
 use protocol::capture::MAX_ORDER;
-use std::io::{BufRead, IsTerminal, Write};
+use std::{
+    io::{BufRead, IsTerminal, Write},
+    time::Duration,
+};
 use tokio::{
     io::{AsyncBufRead, AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader},
     sync::oneshot,
+    time::timeout,
 };
 
 /// The reply to an order that is longer.
 const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
 
+/// How long one may take to tell the token.
+const TOKEN_TIME: Duration = Duration::from_secs(30);
 /// The reply to one who does not know the token.
 const NO_TOKEN: &[u8] =
     b"error the first line must be 'token TOKEN', with what the machine said behind 'ready token'\n";
@@ -52,7 +58,7 @@ pub async fn serve_operators(listener: Listener, token: Option<Token>, events: E
             }
             Err(error) => {
                 tracing::warn!("an operator could not attach: {error}");
-                tokio::time::sleep(std::time::Duration::from_millis(100)).await;
+                tokio::time::sleep(Duration::from_millis(100)).await;
             }
         }
     }
@@ -64,7 +70,13 @@ async fn serve(stream: Box<dyn Stream>, peer: String, mut token: Option<Token>, 
     let mut people = false;
     loop {
         let mut line = Vec::new();
-        match (&mut read).take(MAX_ORDER as u64).read_until(b'\n', &mut line).await {
+        let mut order = (&mut read).take(MAX_ORDER as u64);
+        let reading = order.read_until(b'\n', &mut line);
+        let read_bytes = match &token {
+            Some(_) => timeout(TOKEN_TIME, reading).await.unwrap_or_else(|late| Err(late.into())),
+            None => reading.await,
+        };
+        match read_bytes {
             Ok(0) | Err(_) => return,
             Ok(n) if n == MAX_ORDER && !line.ends_with(b"\n") => {
                 // The rest of the line is not another order.

@@ -79,8 +79,8 @@ struct Said {
 impl Reading<'_> {
     fn file(&mut self, file: usize) {
         let source = &self.sources[file];
-        for (at, directive) in &source.outgoing {
-            let text = format!("'@ {directive}' writes a file or ends the machine: 'play' does it with --orders only");
+        for (at, order) in &source.outgoing {
+            let text = format!("'{order}' writes a file or ends the machine, which is done with --orders only");
             self.note(Place { file, at: *at }, Level::Warning, text);
         }
         let mut reader = CommandReader::default();

@@ -1,6 +1,7 @@
 //! The files that are read, and places in them.
 
 use crate::operator::parse;
+use protocol::capture::{CaptureReader, Event, Record, is_capture};
 use protocol::command::token::{Lexer, TokenKind};
 use std::ops::Range;
 
@@ -17,11 +18,11 @@ pub(super) struct Place {
 #[derive(Clone, Debug)]
 pub(super) struct Source {
     pub(super) name: String,
-    /// The text; lines of directives for the player are blank.
+    /// The text; lines of directives for the player, and all of a capture, are blank.
     pub(super) text: Vec<u8>,
     /// Where each line begins.
     lines: Vec<usize>,
-    /// Directives that write files or end the machine, and where they stand.
+    /// Orders of directives or of a capture that write files or end the machine, and where they stand.
     pub(super) outgoing: Vec<(usize, String)>,
 }
 
@@ -30,14 +31,27 @@ impl Source {
     pub(super) fn new(name: &str, text: &[u8]) -> Source {
         let mut text = text.to_vec();
         let (mut lines, mut outgoing) = (vec![0], Vec::new());
+        let is_capture = is_capture(&text);
+        let mut records = CaptureReader::default();
         for line in text.split_inclusive_mut(|byte| *byte == b'\n') {
             let begin = *lines.last().unwrap_or(&0);
             lines.push(begin + line.len());
-            if line.first() == Some(&b'@') {
-                let directive = String::from_utf8_lossy(&line[1..]).trim().to_owned();
-                if parse(&directive).is_ok_and(|order| order.reaches_out()) {
-                    outgoing.push((begin, directive));
+            let mut note = |order: &str| {
+                if parse(order).is_ok_and(|order| order.reaches_out()) {
+                    outgoing.push((begin, order.to_owned()));
                 }
+            };
+            if is_capture {
+                records.push(line);
+                for record in records.by_ref() {
+                    if let Ok(Record { event: Event::Order(order), .. }) = record {
+                        note(&order);
+                    }
+                }
+            } else if line.first() == Some(&b'@') {
+                note(String::from_utf8_lossy(&line[1..]).trim());
+            }
+            if is_capture || line.first() == Some(&b'@') {
                 let end = line.iter().rposition(|byte| *byte != b'\n').map_or(0, |last| last + 1);
                 line[..end].fill(b' ');
             }
