@@ -57,7 +57,7 @@ impl Emulator {
         let line = match until_ready(&replies, patience.attach) {
             Ok(line) => line,
             Err(reason) => {
-                // It is killed because its parent gives up, not because that ends.
+                // Nobody else would end it while this process lives.
                 let _ = child.kill();
                 let _ = child.wait();
                 return Err(error(std::io::Error::other(reason)));

@@ -92,7 +92,7 @@ impl Session {
     /// - `patience`: how long the workstation may take, now and later.
     ///
     /// # Errors
-    /// [`WorkstationError::Attach`].
+    /// [`WorkstationError::Attach`], [`WorkstationError::Closed`].
     pub fn attach(address: &Address, patience: Patience) -> Result<Session, WorkstationError> {
         let failed = |reason: String| WorkstationError::Attach { line: address.clone(), reason };
         let (sender, opened) = mpsc::channel();
@@ -114,6 +114,8 @@ impl Session {
         };
         MessageForm::Packets.write_request(&mut session.out);
         session.reader.expect(MessageForm::Packets);
+        // A host that has said nothing may have to give its place to another.
+        session.flush()?;
         Ok(session)
     }
 
