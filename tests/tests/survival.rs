@@ -13,13 +13,17 @@ use rand_pcg::Pcg64Mcg;
 use tests::PATIENCE;
 
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
+const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 /// What stands in each file before the program begins.
 const OLDER: &[u8] = b"an older file";
 /// What takes longer is tried less often.
 const LONG: Duration = Duration::from_millis(500);
+/// What takes even longer is tried in the long lane only.
+const LONGEST: Duration = Duration::from_millis(1500);
 
 /// A command that writes.
 struct Case {
+    program: &'static str,
     /// Its arguments; those that name files do so in the current folder.
     arguments: &'static [&'static str],
     /// The files that it writes.
@@ -28,52 +32,97 @@ struct Case {
     resume: &'static [&'static str],
 }
 
+/// A command of the host.
+const fn peris_case(
+    arguments: &'static [&'static str],
+    files: &'static [&'static str],
+    resume: &'static [&'static str],
+) -> Case {
+    Case { program: PERIS, arguments, files, resume }
+}
+
+impl Case {
+    /// The program with its arguments, in a folder.
+    fn command(&self, folder: &Path) -> Command {
+        let mut command = Command::new(self.program);
+        command.args(self.arguments).current_dir(folder).env("PERIS_PS340", PS340).stdin(Stdio::null());
+        command
+    }
+}
+
 /// Every sub-command that writes files of its own.
 const CASES: &[Case] = &[
+    peris_case(
+        &["render", "teapot", "--width", "48", "--samples", "24", "-o", "a.png", "-o", "a.exr", "--layers"],
+        &["a.png", "a.exr"],
+        &[],
+    ),
+    peris_case(
+        &["render", "teapot", "--width", "48", "--samples", "24", "-o", "b.exr"],
+        &["b.exr"],
+        &["--resume", "b.state", "--checkpoint", "0.02"],
+    ),
+    peris_case(
+        &["render", "teapot", "--width", "32", "--samples", "8", "--views", "3", "-o", "c.png"],
+        &["c-1.png", "c-2.png", "c-3.png"],
+        &["--resume", "c.state", "--checkpoint", "0.02"],
+    ),
+    peris_case(
+        &["render", "ring", "--renderer", "two-way", "--width", "24", "--samples", "10", "-o", "d.exr"],
+        &["d.exr"],
+        &["--resume", "d.state", "--checkpoint", "0.1"],
+    ),
+    peris_case(
+        &["render", "cube.rhai", "--renderer", "radiosity", "--width", "24", "-o", "e.exr"],
+        &["e.exr"],
+        &["--resume", "e.state"],
+    ),
+    peris_case(&["compose", "one.exr", "over", "two.exr", "-o", "f.png"], &["f.png"], &[]),
+    peris_case(&["diff", "one.exr", "two.exr", "--map", "g.png"], &["g.png"], &[]),
+    peris_case(&["octree", "cube.rhai", "-o", "h.octree"], &["h.octree"], &[]),
+    peris_case(&["tessellate", "cube.rhai", "-o", "i.obj"], &["i.obj"], &[]),
+    peris_case(&["convert", "one.stl", "j.ply"], &["j.ply"], &[]),
+    peris_case(&["convert", "one.exr", "k.png"], &["k.png"], &[]),
+    peris_case(&["convert", "cube.rhai", "l.ps300"], &["l.ps300"], &[]),
+    peris_case(&["boolean", "one.stl", "-", "two.stl", "-o", "m.glb"], &["m.glb"], &[]),
+    peris_case(&["check", "one.stl", "--repair", "n.stl"], &["n.stl"], &[]),
+    peris_case(&["intersect", "cube.rhai", "-o", "o.csv"], &["o.csv"], &[]),
+    peris_case(&["db", "export", "shipped", "copper", "p.json", "--kind", "material"], &["p.json"], &[]),
+    peris_case(&["db", "plot", "shipped", "copper", "--kind", "material", "-o", "q"], &["q/copper.png"], &[]),
+    peris_case(
+        &["run", "cube.rhai", "-o", "r", "--samples", "1"],
+        &[
+            "r/vector-before.png",
+            "r/vector-after.png",
+            "r/raytraced.png",
+            "r/raytraced.exr",
+            "r/raster.png",
+            "r/CONTENTS.txt",
+        ],
+        &[],
+    ),
+    peris_case(
+        &["demo", "--quick", "-o", "s", "--samples", "1"],
+        &["s/vector-before.png", "s/vector-after.png", "s/raytraced.png", "s/raytraced.exr", "s/raster.png"],
+        &[],
+    ),
+    peris_case(
+        &["study", "illumination", "--roughness", "0.5", "-o", "t"],
+        &["t/illumination.csv", "t/illumination-0.5.svg", "t/illumination-0.5.png"],
+        &["--resume"],
+    ),
     Case {
-        arguments: &["render", "teapot", "--width", "48", "--samples", "24", "-o", "a.png", "-o", "a.exr", "--layers"],
-        files: &["a.png", "a.exr"],
-        resume: &[],
-    },
-    Case {
-        arguments: &["render", "teapot", "--width", "48", "--samples", "24", "-o", "b.exr"],
-        files: &["b.exr"],
-        resume: &["--resume", "b.state", "--checkpoint", "0.02"],
-    },
-    Case {
-        arguments: &["render", "teapot", "--width", "32", "--samples", "8", "--views", "3", "-o", "c.png"],
-        files: &["c-1.png", "c-2.png", "c-3.png"],
-        resume: &["--resume", "c.state", "--checkpoint", "0.02"],
-    },
-    Case {
-        arguments: &["render", "ring", "--renderer", "two-way", "--width", "24", "--samples", "10", "-o", "d.exr"],
-        files: &["d.exr"],
-        resume: &["--resume", "d.state", "--checkpoint", "0.1"],
-    },
-    Case {
-        arguments: &["render", "cube.rhai", "--renderer", "radiosity", "--width", "24", "-o", "e.exr"],
-        files: &["e.exr"],
-        resume: &["--resume", "e.state"],
-    },
-    Case { arguments: &["compose", "one.exr", "over", "two.exr", "-o", "f.png"], files: &["f.png"], resume: &[] },
-    Case { arguments: &["diff", "one.exr", "two.exr", "--map", "g.png"], files: &["g.png"], resume: &[] },
-    Case { arguments: &["octree", "cube.rhai", "-o", "h.octree"], files: &["h.octree"], resume: &[] },
-    Case { arguments: &["tessellate", "cube.rhai", "-o", "i.obj"], files: &["i.obj"], resume: &[] },
-    Case { arguments: &["convert", "one.stl", "j.ply"], files: &["j.ply"], resume: &[] },
-    Case { arguments: &["convert", "one.exr", "k.png"], files: &["k.png"], resume: &[] },
-    Case { arguments: &["convert", "cube.rhai", "l.ps300"], files: &["l.ps300"], resume: &[] },
-    Case { arguments: &["boolean", "one.stl", "-", "two.stl", "-o", "m.glb"], files: &["m.glb"], resume: &[] },
-    Case { arguments: &["check", "one.stl", "--repair", "n.stl"], files: &["n.stl"], resume: &[] },
-    Case { arguments: &["intersect", "cube.rhai", "-o", "o.csv"], files: &["o.csv"], resume: &[] },
-    Case {
-        arguments: &["db", "export", "shipped", "copper", "p.json", "--kind", "material"],
-        files: &["p.json"],
+        program: PS340,
+        arguments: &["play", "--orders", "u.play", "--quiet", "--picture", "u.png", "--transcript", "u.txt"],
+        files: &["u.png", "v.png", "u.txt"],
         resume: &[],
     },
 ];
 
 const SCRIPT: &str = "box(2, 2, 2).name(\"a\"); sphere(1.3).name(\"b\").translate(0, 1, 0);
     rectangle_light(#{ corner: [-1, 4, -1], across: [2, 0, 0], up: [0, 0, 2], radiance: 10 });";
+
+const PLAY: &str = "A := VECTOR_LIST ITEMIZED N=2 P 0,0 L 1,1;\nDISPLAY A;\n@ frames 20\n@ picture vector v.png\n";
 
 /// Runs the program to its end; its exit code and what it said on standard error.
 fn peris(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
@@ -85,6 +134,7 @@ fn peris(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
 fn prepare(folder: &Path) {
     std::fs::write(folder.join("cube.rhai"), SCRIPT).expect("written");
     std::fs::write(folder.join("ball.rhai"), "sphere(1.2);").expect("written");
+    std::fs::write(folder.join("u.play"), PLAY).expect("written");
     for arguments in [
         &["render", "teapot", "--width", "40", "--samples", "1", "--matte", "-o", "one.exr"][..],
         &["render", "teapot", "--width", "40", "--samples", "2", "--matte", "-o", "two.exr"],
@@ -97,15 +147,17 @@ fn prepare(folder: &Path) {
     }
 }
 
-/// The files of a folder, with what is in them.
+/// The files of a folder and of those inside it, with what is in them.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
-    entries
-        .map(|entry| {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            (name, std::fs::read(entry.path()).unwrap_or_default())
-        })
-        .collect()
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry")) {
+        let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
+        match path.is_dir() {
+            true => found.extend(contents(&path).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes))),
+            false => drop(found.insert(name, std::fs::read(path).unwrap_or_default())),
+        }
+    }
+    found
 }
 
 /// Whether a process that runs is a zombie or gone within a time.
@@ -133,8 +185,8 @@ fn signal(child: &Child, signal: rustix::process::Signal) {
 fn references(folder: &Path) -> Vec<(Vec<Vec<u8>>, Duration)> {
     let run = |case: &Case| {
         let start = Instant::now();
-        let (code, said) = peris(folder, case.arguments);
-        assert_eq!(code, Some(0), "{:?}: {said}", case.arguments);
+        let output = case.command(folder).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(0), "{:?}: {output:?}", case.arguments);
         let took = start.elapsed();
         let files = case.files.iter().map(|file| std::fs::read(folder.join(file)).expect("written")).collect();
         (files, took)
@@ -158,9 +210,14 @@ fn survive(rounds: usize, seed: u64) {
     let (mut interrupted, mut resumed) = (0, 0);
     // Those that take longer come in every fourth turn.
     let turns = (0..).flat_map(|turn| (0..CASES.len()).map(move |number| (turn, number)));
-    let in_turn = |(turn, number): &(usize, usize)| turn % 4 == 0 || references[*number].1 < LONG;
+    let is_long = std::env::var_os("PERIS_LONG").is_some();
+    let in_turn = |(turn, number): &(usize, usize)| match references[*number].1 {
+        took if took < LONG => true,
+        took => turn % 4 == 0 && (is_long || took < LONGEST),
+    };
     for (round, (_, number)) in turns.filter(in_turn).take(rounds).enumerate() {
-        let (Case { arguments, files, resume }, (whole, took)) = (&CASES[number], &references[number]);
+        let (case, (whole, took)) = (&CASES[number], &references[number]);
+        let Case { arguments, files, resume, .. } = case;
         let is_older: bool = random.random();
         for file in *files {
             let path = folder.join(file);
@@ -172,10 +229,9 @@ fn survive(rounds: usize, seed: u64) {
         let mut attempts = 0;
         loop {
             attempts += 1;
-            let mut child = Command::new(PERIS)
-                .args(*arguments)
+            let mut child = case
+                .command(folder)
                 .args(*resume)
-                .current_dir(folder)
                 .stdout(Stdio::null())
                 .stderr(Stdio::piped())
                 .spawn()
@@ -212,13 +268,14 @@ fn survive(rounds: usize, seed: u64) {
                 // What other cases wrote is not looked at.
                 let is_written = CASES.iter().any(|case| case.files.contains(&&*name));
                 let is_state = name.contains(".state") && !resume.is_empty();
+                let is_growing = name == "u.txt.part";
                 let is_before = inputs.get(&name).is_some_and(|before| *before == content);
-                if chosen == rustix::process::Signal::KILL && name.starts_with(".peris-") {
+                if chosen == rustix::process::Signal::KILL && name.contains(".peris-") {
                     // Killed between the two names of a file that replaces another: a moment that a signal waits for.
                     std::fs::remove_file(folder.join(name)).expect("removed");
                     continue;
                 }
-                assert!(is_written || is_state || is_before, "{name} is left: {}", place());
+                assert!(is_written || is_state || is_growing || is_before, "{name} is left: {}", place());
             }
             if status.success() {
                 let files = files.iter().map(|file| std::fs::read(folder.join(file)).expect("written"));
@@ -232,11 +289,8 @@ fn survive(rounds: usize, seed: u64) {
                 break;
             }
         }
-        for entry in std::fs::read_dir(folder).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.to_string_lossy().contains(".state") {
-                std::fs::remove_file(path).expect("removed");
-            }
+        for name in contents(folder).into_keys().filter(|name| name.contains(".state")) {
+            std::fs::remove_file(folder.join(name)).expect("removed");
         }
     }
     assert!(interrupted > rounds / 4 && resumed > rounds / 30, "{interrupted} interrupted, {resumed} resumed");
@@ -285,7 +339,7 @@ fn a_place_that_takes_no_file_is_refused_before_the_work_and_the_message_names_i
     let is_root = rustix::process::geteuid().is_root();
     let places = [("none", "there is no folder none"), ("file", "file is no folder"), ("closed", "takes no files")];
     let inputs = contents(folder);
-    for case in CASES {
+    for case in CASES.iter().filter(|case| case.program == PERIS && !case.files[0].contains('/')) {
         for (place, expected) in places.iter().filter(|(place, _)| !(is_root && *place == "closed")) {
             let arguments = elsewhere(case, place);
             let (code, said) = peris(folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
@@ -321,4 +375,26 @@ fn a_disk_that_is_full_leaves_the_older_file_and_the_whole_one_elsewhere() {
     );
     assert!(errors.contains(&expected), "{errors}");
     assert!(is_picture(&std::fs::read(kept).expect("it is kept")));
+}
+
+#[test]
+fn a_file_system_that_takes_nothing_is_refused_before_the_work() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    prepare(folder);
+    std::fs::create_dir(folder.join("closed")).expect("made");
+    let script = "mount -t tmpfs none closed && echo older > closed/a.exr && mount -o remount,ro closed && echo closed \
+                  && \"$0\" \"$@\"; echo \"code $?\"; ls -A closed; cat closed/a.exr";
+    for case in CASES.iter().filter(|case| case.program == PERIS && !case.files[0].contains('/')) {
+        let mut command = Command::new("unshare");
+        command.args(["--user", "--map-root-user", "--mount", "sh", "-c", script, PERIS]);
+        command.args(elsewhere(case, "closed")).current_dir(folder).env("TMPDIR", folder);
+        let Ok(output) = command.output() else { return eprintln!("skipped: there is no unshare") };
+        let (said, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        if !said.starts_with("closed") {
+            return eprintln!("skipped: no file system can be mounted: {errors}");
+        }
+        assert!(said.ends_with("code 1\na.exr\nolder\n"), "{:?}: {said}{errors}", case.arguments);
+        assert!(errors.contains("writing closed/") && errors.contains("Read-only"), "{:?}: {errors}", case.arguments);
+    }
 }

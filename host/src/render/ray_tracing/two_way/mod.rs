@@ -31,6 +31,7 @@ use super::world::{Found, World};
 use crate::color::{Channels, LANES};
 use crate::illumination::light::Start;
 use crate::illumination::optics::Sighting;
+use crate::memory;
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
@@ -60,7 +61,7 @@ const LIFT: f64 = 1e-9;
 /// Work on a pass that is kept when it is interrupted.
 const WORTH_KEEPING: Duration = Duration::from_secs(5);
 /// Memory that caught light takes while it is kept for further views, bytes at the most.
-const MOST_BYTES: usize = 1 << 30;
+const MOST_BYTES: u64 = 1 << 30;
 
 /// Follows light from lamps.
 pub(super) struct TwoWay<'a> {
@@ -183,7 +184,9 @@ impl<'s> TwoWay<'s> {
         let capture = Arc::new(self.capture(world, pass, watch)?);
         let mut kept = kept();
         let bytes: usize = kept.iter().map(|capture| capture.light.bytes()).sum();
-        if bytes + capture.light.bytes() <= MOST_BYTES {
+        // Half of what is left is for the work that goes on.
+        let most = MOST_BYTES.min(bytes as u64 + memory::left() / 2);
+        if (bytes + capture.light.bytes()) as u64 <= most {
             kept.push(capture.clone());
         }
         Some(shown(capture))
