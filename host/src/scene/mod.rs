@@ -185,7 +185,13 @@ impl Scene {
         if self.lights.len() > MAX_LIGHTS {
             return Err(SceneError::Limit { what: "lights", limit: MAX_LIGHTS as u64 });
         }
-        self.objects.iter().try_for_each(Object::check)?;
+        let mut before = None;
+        for object in &self.objects {
+            // Of many objects in a row that have the same shape, one is looked at.
+            let is_known = before == Some(&object.shape);
+            object.check(is_known)?;
+            before = Some(&object.shape);
+        }
         self.check_motions()?;
         for (index, light) in self.lights.iter().enumerate() {
             light.check().map_err(|problem| SceneError::Light { number: index + 1, problem: problem.to_string() })?;
@@ -278,9 +284,14 @@ impl Object {
         }
     }
 
-    fn check(&self) -> Result<(), SceneError> {
+    /// Checks every number of it.
+    ///
+    /// - `is_shape_known`: whether its shape was checked before.
+    fn check(&self, is_shape_known: bool) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: self.name.clone(), problem };
-        self.shape.check().map_err(failed)?;
+        if !is_shape_known {
+            self.shape.check().map_err(failed)?;
+        }
         if !self.transform.is_finite() {
             return Err(failed("its transformation is not finite".into()));
         }

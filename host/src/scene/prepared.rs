@@ -9,6 +9,7 @@ use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::surface::Tolerance;
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
+use rustc_hash::FxHashMap;
 
 /// Most triangles in a scene.
 pub const MAX_TRIANGLES: u64 = 1 << 30;
@@ -119,15 +120,19 @@ impl Prepared {
             bounds: Bounds::EMPTY,
         };
         let mut shared = Shared::of(scene);
-        for (index, object) in scene.objects.iter().enumerate() {
-            let made = shared.made(scene, index)?;
-            prepared.add(object, &made, scene.motion(index))?;
+        let motions: FxHashMap<u32, Motion> = match scene.settings.shutter > 0.0 {
+            true => scene.motions.iter().copied().collect(),
+            false => FxHashMap::default(),
+        };
+        for (object, index) in scene.objects.iter().zip(0u32..) {
+            let (made, chord) = (shared.made(scene, index)?, shared.chord(index));
+            prepared.add(object, &made, chord, motions.get(&index).copied())?;
         }
         prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.bounds));
         Ok(prepared)
     }
 
-    fn add(&mut self, object: &Object, made: &Made, motion: Option<Motion>) -> Result<(), SceneError> {
+    fn add(&mut self, object: &Object, made: &Made, chord: f64, motion: Option<Motion>) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
         let Made { mesh, surfaces, operand_of, lines } = made;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
@@ -174,7 +179,7 @@ impl Prepared {
             count: mesh.triangles.len() as u32,
             bounds,
             motion,
-            tolerance: object.scene_chord(self.settings.tolerance),
+            tolerance: chord * largest_stretch(&object.transform),
             normals_from,
             parameters_from,
             to_own: object.transform.inverse(),
@@ -299,19 +304,21 @@ impl Object {
         self.shape.made(tolerance).map_err(|source| self.failed(source))
     }
 
-    /// The tolerance in scene units; 0 for flat shapes.
-    fn scene_chord(&self, scene_tolerance: Option<f64>) -> f64 {
-        self.own_chord(scene_tolerance).unwrap_or(0.0) * largest_stretch(&self.transform)
-    }
-
     /// The tolerance in own coordinates; none for flat shapes.
     fn own_chord(&self, scene_tolerance: Option<f64>) -> Option<f64> {
-        let (extent, given) = (self.shape.extent()?, self.tolerance.or(scene_tolerance));
-        Some(given.map_or(extent * RELATIVE_TOLERANCE, |given| given / largest_stretch(&self.transform)))
+        Some(self.chord_of(self.shape.extent()?, scene_tolerance))
+    }
+
+    /// The tolerance in own coordinates of a curved shape.
+    ///
+    /// - `extent`: that of the shape.
+    pub(super) fn chord_of(&self, extent: f64, scene_tolerance: Option<f64>) -> f64 {
+        let given = self.tolerance.or(scene_tolerance);
+        given.map_or(extent * RELATIVE_TOLERANCE, |given| given / largest_stretch(&self.transform))
     }
 
     /// In own coordinates; a flat shape fits any.
-    pub(super) fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
+    fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
         Tolerance::new(self.own_chord(scene_tolerance).unwrap_or(f64::MAX), angle)
     }
 

@@ -182,10 +182,10 @@ impl Shape {
                 Err(format!("solids are nested more than {MAX_NESTING} deep"))
             }
             Shape::Composite(composite) => {
-                composite.operands.iter().try_for_each(|o| o.check().map_err(|error| error.to_string()))
+                composite.operands.iter().try_for_each(|o| o.check(false).map_err(|error| error.to_string()))
             }
-            Shape::Curve(objects) => objects.iter().try_for_each(|o| o.check().map_err(|error| error.to_string())),
-            Shape::Rounded(rounded) => rounded.object.check().map_err(|error| error.to_string()),
+            Shape::Curve(objects) => objects.iter().try_for_each(|o| o.check(false).map_err(|error| error.to_string())),
+            Shape::Rounded(rounded) => rounded.object.check(false).map_err(|error| error.to_string()),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Shapes that several objects have: their triangles are made once.
 
-use super::{Made, Object, Scene, SceneError};
+use super::{Made, Scene, SceneError};
 use crate::memory;
 use crate::numeric::print_of;
 use rustc_hash::FxHashMap;
@@ -13,39 +13,56 @@ const BYTES: u64 = 64;
 pub(super) struct Shared {
     /// For each object the first one with the same shape and tolerance.
     first: Vec<u32>,
+    /// For each object its tolerance in own coordinates, 0 for flat shapes.
+    chords: Vec<f64>,
     /// For each first one how many objects still need its triangles.
     needed: Vec<u32>,
     made: FxHashMap<u32, Rc<Made>>,
 }
 
+/// The first object with its shape and tolerance.
+struct First {
+    index: u32,
+    /// Of the shape; none for flat ones.
+    extent: Option<f64>,
+}
+
 impl Shared {
     /// Finds out which objects of a scene have the same triangles, in their own coordinates.
     pub(super) fn of(scene: &Scene) -> Shared {
-        let mut shared = Shared { first: Vec::new(), needed: vec![0; scene.objects.len()], made: FxHashMap::default() };
-        let mut known: FxHashMap<u64, Vec<u32>> = FxHashMap::default();
-        let tolerance = |object: &Object| object.own_tolerance(scene.settings.tolerance, scene.settings.angle);
+        let count = scene.objects.len();
+        let (mut first, mut chords, mut needed) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), vec![0; count]);
+        let mut known: FxHashMap<u64, Vec<First>> = FxHashMap::default();
         for (object, index) in scene.objects.iter().zip(0u32..) {
-            let is_same = |other: &u32| {
-                let other = &scene.objects[*other as usize];
-                other.shape == object.shape && tolerance(other) == tolerance(object)
-            };
             let alike = known.entry(print_of(&object.shape)).or_default();
-            let first = alike.iter().copied().find(is_same).unwrap_or_else(|| {
-                alike.push(index);
-                index
-            });
-            shared.first.push(first);
-            shared.needed[first as usize] += 1;
+            let is_alike = |other: &&First| scene.objects[other.index as usize].shape == object.shape;
+            let extent = alike.iter().find(is_alike).map_or_else(|| object.shape.extent(), |other| other.extent);
+            let chord = extent.map_or(0.0, |extent| object.chord_of(extent, scene.settings.tolerance));
+            let same = alike.iter().find(|other| chords.get(other.index as usize) == Some(&chord) && is_alike(other));
+            let found = same.map(|other| other.index);
+            if found.is_none() {
+                alike.push(First { index, extent });
+            }
+            let found = found.unwrap_or(index);
+            needed[found as usize] += 1;
+            first.push(found);
+            chords.push(chord);
         }
-        shared
+        Shared { first, chords, needed, made: FxHashMap::default() }
+    }
+
+    /// The tolerance of an object in own coordinates, 0 for flat shapes.
+    pub(super) fn chord(&self, index: u32) -> f64 {
+        self.chords[index as usize]
     }
 
     /// The triangles of an object, which must be asked for once for each object.
     ///
     /// # Errors
     /// [`SceneError`] if they cannot be made, or if all objects that need them would take more memory than there is.
-    pub(super) fn made(&mut self, scene: &Scene, index: usize) -> Result<Rc<Made>, SceneError> {
-        let (first, object) = (self.first[index], &scene.objects[index]);
+    pub(super) fn made(&mut self, scene: &Scene, index: u32) -> Result<Rc<Made>, SceneError> {
+        let (first, object) = (self.first[index as usize], &scene.objects[index as usize]);
         let needed = &mut self.needed[first as usize];
         let made = match self.made.get(&first) {
             Some(made) => Rc::clone(made),
