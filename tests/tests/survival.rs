@@ -268,7 +268,7 @@ fn survive(rounds: usize, seed: u64) {
                 // What other cases wrote is not looked at.
                 let is_written = CASES.iter().any(|case| case.files.contains(&&*name));
                 let is_state = name.contains(".state") && !resume.is_empty();
-                let is_growing = name == "u.txt.part";
+                let is_growing = name.starts_with("u.txt.") && name.ends_with(".part");
                 let is_before = inputs.get(&name).is_some_and(|before| *before == content);
                 if chosen == rustix::process::Signal::KILL && name.contains(".peris-") {
                     // Killed between the two names of a file that replaces another: a moment that a signal waits for.
@@ -289,7 +289,8 @@ fn survive(rounds: usize, seed: u64) {
                 break;
             }
         }
-        for name in contents(folder).into_keys().filter(|name| name.contains(".state")) {
+        let is_unfinished = |name: &String| name.contains(".state") || name.ends_with(".part");
+        for name in contents(folder).into_keys().filter(is_unfinished) {
             std::fs::remove_file(folder.join(name)).expect("removed");
         }
     }
