@@ -74,7 +74,7 @@ impl Listing {
         Listing { sender, ..Listing::default() }
     }
 
-    /// The same with so many bytes in a row, at least 1; 16 if nothing is said.
+    /// This listing with so many bytes in a row, at least 1; 16 if nothing is said.
     pub fn with_row(self, bytes: usize) -> Listing {
         Listing { width: bytes.max(1), ..self }
     }

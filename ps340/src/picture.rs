@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 /// A rectangle of linear red, green and blue, 1 = the white of the display; top row first.
 ///
-/// The same pixels always give the same bytes of a file.
+/// Equal pixels always give equal bytes of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     width: u32,

@@ -18,7 +18,7 @@ impl Channels {
     /// All of it.
     pub const ONE: Channels = Channels([1.0; LANES]);
 
-    /// The same number in all lanes.
+    /// One number in all lanes.
     pub fn splat(value: f64) -> Channels {
         Channels([value; LANES])
     }

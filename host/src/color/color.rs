@@ -30,7 +30,7 @@ impl Color {
     /// Nothing.
     pub const BLACK: Color = Color::Bands(DVec3::ZERO);
 
-    /// The same in all bands.
+    /// One value in all bands.
     pub fn grey(value: f64) -> Color {
         Color::Bands(DVec3::splat(value))
     }

@@ -117,7 +117,7 @@ impl Wavelengths {
         self.seen[comb.min(self.seen.len() - 1)].map(|seen| seen.abs().max_element())
     }
 
-    /// The same everywhere, also in unused lanes.
+    /// A curve of one value everywhere, also in unused lanes.
     pub fn constant(&self, value: f64) -> Curve {
         Curve(vec![Channels::splat(value); self.at.len()])
     }

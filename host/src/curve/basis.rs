@@ -253,7 +253,7 @@ impl Basis {
         if is_in { Ok(()) } else { Err(SplineError::Outside { parameter: t, low, high }) }
     }
 
-    /// The same spline with another joint at `t`.
+    /// This spline with another joint at `t`.
     ///
     /// # Errors
     /// [`SplineError::Outside`]; [`SplineError::Multiplicity`] if there is no room for another joint, [`SplineError::Short`]
@@ -272,7 +272,7 @@ impl Basis {
         Ok(Refinement { basis: basis.checked()?, steps: vec![rows] })
     }
 
-    /// The same spline with as many joints at `t` as there is room for, and the parameter of these joints.
+    /// This spline with as many joints at `t` as there is room for, and the parameter of these joints.
     fn filled(&self, t: f64) -> Result<(Refinement, f64), SplineError> {
         let (mut refined, mut t) = (self.unchanged(), t);
         while !refined.basis.is_full(t) {
@@ -304,7 +304,7 @@ impl Basis {
         Ok(parts.into_iter().map(join).collect())
     }
 
-    /// The same spline, open, beginning and ending in its first and last control point.
+    /// This spline, open, beginning and ending in its first and last control point.
     pub(crate) fn passing_ends(&self) -> Result<Refinement, SplineError> {
         let mut refined = self.unchanged();
         for end in [1, 0] {
@@ -317,7 +317,7 @@ impl Basis {
         Ok(refined)
     }
 
-    /// The same spline with a degree higher by one, open and passing through its ends. A BBB-spline, which is cubic by
+    /// This spline with a degree higher by one, open and passing through its ends. A BBB-spline, which is cubic by
     /// its nature, first becomes the B-spline of its Bezier points.
     ///
     /// # Errors
@@ -361,7 +361,7 @@ impl Basis {
         Ok(Refinement { basis, steps: vec![rows] })
     }
 
-    /// The same spline from the other end.
+    /// This spline from the other end.
     pub(crate) fn reversed(&self) -> Refinement {
         let (basis, rows) = match &self.kind {
             Kind::Knots(knots) => with(knots.reversed(), Basis::of_knots),

@@ -33,7 +33,7 @@ pub(super) struct Bbb {
 }
 
 impl Bbb {
-    /// The same after all checks, for one that comes from elsewhere.
+    /// These parameters after all checks, for a spline that was read and not made here.
     pub fn checked(self) -> Result<Bbb, SplineError> {
         let start = [self.start];
         check("first parameter", &start, "a number within 1e100", |x| x.abs() <= 1e100)?;

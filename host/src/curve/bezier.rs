@@ -55,7 +55,7 @@ impl BezierCurve {
         [BezierCurve::of(left), BezierCurve::of(right)]
     }
 
-    /// The same curve with a degree higher by one.
+    /// This curve with a degree higher by one.
     ///
     /// # Errors
     /// [`SplineError::Degree`] if it is too high.

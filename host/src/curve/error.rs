@@ -58,7 +58,7 @@ pub enum SplineError {
     Value {
         /// What the number is.
         what: &'static str,
-        /// Which.
+        /// The place of the number in its list, from 0.
         index: usize,
         /// The number.
         value: f64,

@@ -22,7 +22,7 @@ pub(super) struct Knots {
 }
 
 impl Knots {
-    /// The same after all checks, for one that comes from elsewhere.
+    /// These knots after all checks, where they were read and not made here.
     pub fn checked(self) -> Result<Knots, SplineError> {
         Knots::new(self.degree, self.values, self.is_closed)
     }

@@ -85,7 +85,7 @@ impl SplineCurve {
         SplineCurve::of(refinement.basis, control)
     }
 
-    /// The same curve with another joint at `t`, and one control point more.
+    /// This curve with another joint at `t`, and one control point more.
     ///
     /// # Errors
     /// [`SplineError`] if `t` is outside the domain or there is no room for another joint.
@@ -101,7 +101,7 @@ impl SplineCurve {
         Ok(self.basis.subdivided(t)?.into_iter().map(|part| self.refined(part)).collect())
     }
 
-    /// The same curve with a degree higher by one. A BBB-spline becomes the B-spline of its Bezier points first.
+    /// This curve with a degree higher by one. A BBB-spline becomes the B-spline of its Bezier points first.
     ///
     /// # Errors
     /// [`SplineError::Degree`] if it is too high.
@@ -109,7 +109,7 @@ impl SplineCurve {
         Ok(self.refined(self.basis.elevated()?))
     }
 
-    /// The same curve from the other end.
+    /// This curve from the other end.
     pub fn reversed(&self) -> SplineCurve {
         self.refined(self.basis.reversed())
     }

@@ -124,7 +124,7 @@ pub struct Transparent {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Index {
-    /// The same at all wavelengths, 1e-6..=1e6.
+    /// One number at all wavelengths, 1e-6..=1e6.
     Constant(f64),
     /// By Sellmeier's formula.
     Dispersive(Glass),
@@ -210,7 +210,7 @@ pub enum MaterialError {
     /// A fraction that is not between 0 and 1.
     #[error("{what} {least} to {most} is not within 0 to 1")]
     Fraction {
-        /// Which.
+        /// What of the material it is a fraction of.
         what: &'static str,
         /// Its least value.
         least: f64,
@@ -220,7 +220,7 @@ pub enum MaterialError {
     /// A quantity that is negative or not finite.
     #[error("{what} {least} to {most} is negative or not finite")]
     Negative {
-        /// Which.
+        /// What the quantity is.
         what: &'static str,
         /// Its least value.
         least: f64,

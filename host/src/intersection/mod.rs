@@ -43,7 +43,7 @@ use sheet::Ground;
 
 /// Finds the curves in which two sheets meet.
 ///
-/// The same bytes for any number of threads.
+/// The result has one sequence of bytes for any number of threads.
 pub fn intersect(one: Sheet<'_>, two: Sheet<'_>, precision: &Precision) -> Intersection {
     let grounds = [Ground::new(one), Ground::new(two)];
     let solver = Solver::new(&grounds, precision);

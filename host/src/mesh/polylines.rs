@@ -46,7 +46,7 @@ pub fn polylines(mesh: &Mesh, selection: &Selection) -> Polylines {
     polylines_of_groups(mesh, selection, &[], 1).pop().unwrap_or_default()
 }
 
-/// The same for each group of triangles. An edge between two groups is of the later one.
+/// The lines of each group of triangles, as few as can be. An edge between two groups is of the later one.
 ///
 /// - `group_of`: the group of each triangle, below `count`; empty if all are of the first.
 pub fn polylines_of_groups(mesh: &Mesh, selection: &Selection, group_of: &[u32], count: usize) -> Vec<Polylines> {

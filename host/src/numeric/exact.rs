@@ -186,7 +186,7 @@ impl Exact {
         }
     }
 
-    /// The same with the other sign.
+    /// This number with the other sign.
     pub fn negated(self) -> Exact {
         Exact { integer: -self.integer, exponent: self.exponent }
     }

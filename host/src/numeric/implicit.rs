@@ -284,7 +284,8 @@ pub fn side(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> f64 {
     sign_of(orient3d(coord(a), coord(b), coord(c), coord(point)))
 }
 
-/// The same for any point.
+/// On which side of a plane through three given points any point lies: 1.0 behind the plane, -1.0 in front of it, 0.0 on it;
+/// see [`side`].
 pub fn side_of(plane: [DVec3; 3], point: &Point) -> f64 {
     if let &Definition::Given(point) = &point.definition {
         return side(plane[0], plane[1], plane[2], point);

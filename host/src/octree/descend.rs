@@ -108,7 +108,7 @@ pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
     is_any_by::<Plain>(octree, ray, [t_min, t_max])
 }
 
-/// The same as [`nearest`] with given instructions.
+/// The nearest triangle that a ray meets, as [`nearest`] finds it, with given instructions.
 #[inline(always)]
 pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count: &mut WalkCount) -> Option<Hit> {
     let line = Line::new(ray, &octree.cube, limits[0], limits[1])?;
@@ -119,7 +119,7 @@ pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count:
     hit
 }
 
-/// The same as [`is_any`] with given instructions.
+/// Whether a ray meets any triangle, as [`is_any`] tells, with given instructions.
 #[inline(always)]
 pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
     let line = Line::new(ray, &octree.cube, limits[0], limits[1]);

@@ -132,7 +132,7 @@ impl Edit<'_> {
         }
     }
 
-    /// The same for the eighths of a cell that was divided and stays so.
+    /// Edits the eighths of a cell that was divided and stays so.
     fn eighths(
         &self,
         cell: LocationalCode,

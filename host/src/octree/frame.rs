@@ -33,7 +33,7 @@ pub struct Line {
     pub shear: Shear,
     /// The part that counts.
     pub chord: Chord,
-    /// The same for tests in single precision.
+    /// What tests in single precision need of the ray.
     pub frame: Frame,
 }
 
@@ -148,7 +148,8 @@ pub struct Frame {
     /// What is to be added to a coordinate times the inverse to get the length to the near side of a box, which is moved
     /// towards the ray by the tolerance; by axis.
     pub near: [f32; 4],
-    /// The same for the far sides.
+    /// What is to be added to a coordinate times the inverse to get the length to the far side of a box, which is moved away
+    /// by the tolerance; by axis.
     pub far: [f32; 4],
     /// Whether the ray goes down, by axis.
     pub down: [bool; 3],

@@ -47,7 +47,7 @@ impl Child {
         Ok(first..first + ((self.0 & !PACKETS) >> PLACE_BITS) as usize + 1)
     }
 
-    /// The same when so many nodes and packets come before; what is the top, or nothing, stays.
+    /// This reference when so many nodes and packets come before; what is the top, or nothing, stays.
     fn moved(self, nodes: usize, packets: usize) -> Self {
         match self.0 {
             0 => self,

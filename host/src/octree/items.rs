@@ -40,7 +40,7 @@ impl Item {
     /// The box of nothing.
     pub const EMPTY: Self = Self { low: f32x4::new([f32::INFINITY; 4]), high: f32x4::new([f32::NEG_INFINITY; 4]) };
 
-    /// The same box with other numbers.
+    /// This box with other numbers.
     fn numbered(self, number: u32, weight: u32) -> Self {
         let with = |corner: f32x4, bits: u32| {
             let [x, y, z, _] = corner.to_array();

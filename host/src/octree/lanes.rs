@@ -12,7 +12,7 @@ pub struct Eight(pub [f32; LANES]);
 ///
 /// Products that are added to may be rounded once or twice, so that no result may depend on the last digit.
 pub trait Lanes: Copy {
-    /// The same number in every lane.
+    /// One number in every lane.
     fn splat(x: f32) -> Self;
     /// Eight numbers.
     fn load(x: &Eight) -> Self;
@@ -34,7 +34,7 @@ pub trait Lanes: Copy {
     fn least(self, other: Self) -> Self;
     /// The greater; either one if one is not a number.
     fn most(self, other: Self) -> Self;
-    /// The same where the other is positive, and else with the other sign.
+    /// This number where the other is positive, and its negative elsewhere.
     fn signed_by(self, other: Self) -> Self;
     /// Where `self <= other`.
     fn is_at_most(self, other: Self) -> u32;

@@ -256,13 +256,13 @@ impl Octree {
         }
     }
 
-    /// The same octree with its terminal nodes, which else are made when they are first asked for, and then on one thread.
+    /// This octree with its terminal nodes, which else are made when they are first asked for, and then on one thread.
     pub fn divided(mut self) -> Self {
         self.divide();
         self
     }
 
-    /// The same octree, walked another way. Makes the index if the walk needs it; else drops it, and makes the terminal
+    /// This octree, walked another way. Makes the index if the walk needs it; else drops it, and makes the terminal
     /// nodes.
     pub fn with_walk(mut self, walk: Walk) -> Self {
         let index = match walk {

@@ -233,7 +233,7 @@ impl Film {
         Ok(Film { width, height, tallies, classes: Vec::new(), in_turn: false, adaptive: None })
     }
 
-    /// The same that keeps the classes of light apart, from now on.
+    /// This film, which keeps the classes of light apart from now on.
     pub fn with_classes(mut self) -> Film {
         self.classes = vec![ByClass::default(); self.tallies.len()];
         self

@@ -44,7 +44,7 @@ impl Motion {
         Moved { turn, through: self.through, by: self.by * time }
     }
 
-    /// The same motion of what stands where this one has brought it after a time.
+    /// The motion of what stands where this one has brought it after a time.
     pub fn since(&self, time: f64) -> Motion {
         Motion { through: self.through + self.by * time, ..*self }
     }
@@ -90,7 +90,7 @@ impl Moved {
         self.through.abs().max_element() + self.by.abs().max_element()
     }
 
-    /// The same as a matrix.
+    /// The displacement as a matrix.
     pub fn matrix(&self) -> DMat4 {
         DMat4::from_rotation_translation(self.turn, self.by + self.through - self.turn * self.through)
     }

@@ -49,7 +49,7 @@ impl Scene {
         Ok(whole)
     }
 
-    /// The same scene with a tolerance for all objects, whatever theirs were.
+    /// The scene with a tolerance for all objects, whatever theirs were.
     ///
     /// - `chord`: largest distance between surface and triangles, scene units; without it the tolerances stay.
     /// - `angle`: largest turn of the normal along a triangle, degrees; without it that of the scene.

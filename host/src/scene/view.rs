@@ -129,7 +129,7 @@ impl Camera {
         }
     }
 
-    /// The same view as a matrix: scene coordinates to clip coordinates, as LOOK and FIELD_OF_VIEW make it.
+    /// The view as a matrix: scene coordinates to clip coordinates, as LOOK and FIELD_OF_VIEW make it.
     ///
     /// Without a far depth, depths are scaled to the tenfold distance to `at`, and not clipped.
     pub fn projection(&self) -> Option<Projection> {

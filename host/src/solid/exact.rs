@@ -28,7 +28,7 @@ impl ExactSolid {
         ExactSolid::new_at(mesh, surfaces, &DAffine3::IDENTITY)
     }
 
-    /// The same, moved to another place first.
+    /// The solid of a mesh and its exact surfaces, both moved to another place first.
     ///
     /// # Errors
     /// [`SolidError`] if the mesh bounds no solid there.

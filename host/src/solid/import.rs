@@ -12,7 +12,7 @@ use std::collections::HashMap;
 const NAMED: usize = 8;
 
 impl SolidError {
-    /// The same error of the mesh that was put on a lattice.
+    /// An error of the mesh that was put on a lattice, in the coordinates that the mesh had before.
     fn brought_back(mut self, lattice: &Lattice) -> SolidError {
         match &mut self {
             SolidError::Mesh(_) | SolidError::Tangled { .. } => {}

@@ -26,7 +26,7 @@ impl BezierPatch {
         &self.control
     }
 
-    /// The same points with u and v exchanged, and so with the other side outside.
+    /// These points with u and v exchanged, and so with the other side outside.
     pub fn transposed(&self) -> BezierPatch {
         BezierPatch { control: std::array::from_fn(|i| std::array::from_fn(|j| self.control[j][i])) }
     }

@@ -10,7 +10,7 @@ const MAX_STEPS: usize = 12;
 const LAST: f64 = 1e-6;
 /// Sine of the angle of the derivatives below which they span no plane, as at a pole.
 const SPANNING: f64 = 1e-10;
-/// The same, below which they do not tell a normal of at least twelve digits.
+/// Sine of the angle of the derivatives below which they do not tell a normal of at least twelve digits.
 const CLEAR: f64 = 1e-3;
 
 /// Where a line goes through a surface.

@@ -71,7 +71,7 @@ impl Profile {
         Profile::Line { from, to }
     }
 
-    /// The same curve from the other end.
+    /// This curve from the other end.
     pub fn reversed(self) -> Profile {
         let turned = |[a, b]: [f64; 2]| [b, a];
         match self {

@@ -146,7 +146,7 @@ impl SplineSurface {
         SplineSurface::of(bases, control)
     }
 
-    /// The same surface with another joint at the parameter `t` of a direction, and a row or column more.
+    /// This surface with another joint at the parameter `t` of a direction, and a row or column more.
     ///
     /// # Errors
     /// [`SplineError`] if `t` is outside the domain or there is no room for another joint.
@@ -164,7 +164,7 @@ impl SplineSurface {
         Ok(parts.into_iter().map(|part| self.refined(direction, part)).collect())
     }
 
-    /// The same surface with a degree higher by one. A BBB-spline becomes the B-spline of its Bezier points first.
+    /// This surface with a degree higher by one. A BBB-spline becomes the B-spline of its Bezier points first.
     ///
     /// # Errors
     /// [`SplineError::Degree`] if it is too high.
@@ -172,7 +172,7 @@ impl SplineSurface {
         Ok(self.refined(direction, self.basis(direction).elevated()?))
     }
 
-    /// The same surface, open in a direction, with its sides there passing through the first and last row or column.
+    /// This surface, open in a direction, with its sides there passing through the first and last row or column.
     ///
     /// # Errors
     /// [`SplineError`] if the ends of the domain cannot take the joints.
@@ -180,12 +180,12 @@ impl SplineSurface {
         Ok(self.refined(direction, self.basis(direction).passing_ends()?))
     }
 
-    /// The same points with one direction reversed, and so with the other side outside.
+    /// These points with one direction reversed, and so with the other side outside.
     pub fn reversed(&self, direction: Direction) -> SplineSurface {
         self.refined(direction, self.basis(direction).reversed())
     }
 
-    /// The same points with u and v exchanged, and so with the other side outside.
+    /// These points with u and v exchanged, and so with the other side outside.
     pub fn transposed(&self) -> SplineSurface {
         let [rows, columns] = self.counts();
         let control = (0..rows * columns).map(|k| self.control[(k % rows) * columns + k / rows]).collect();

@@ -14,7 +14,7 @@ pub struct Patience {
 }
 
 impl Patience {
-    /// The same time for everything.
+    /// One time for everything.
     ///
     /// - `seconds`: 1 and above.
     pub fn of(seconds: u32) -> Patience {

@@ -133,7 +133,7 @@ impl CommandError {
         }
     }
 
-    /// The same error in a text that has `lines` lines before the statement, and `columns` bytes in the line in which
+    /// This error in a text that has `lines` lines before the statement, and `columns` bytes in the line in which
     /// it begins.
     pub(super) fn behind(mut self, lines: usize, columns: usize) -> CommandError {
         if self.line == 1 {

@@ -114,7 +114,7 @@ impl Route {
         }
     }
 
-    /// The same readers, with their data in the 6-bit form; none if they have no such form.
+    /// The route to these readers with data in the 6-bit form; none if they have no such form.
     pub const fn six_bit(self) -> Option<Route> {
         match self {
             Route::Binary => Some(Route::SixBitBinary),

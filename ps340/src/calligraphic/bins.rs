@@ -20,7 +20,7 @@ pub(super) struct Bins {
     used: usize,
 }
 
-/// The same for some neighbouring strokes.
+/// The strokes of each tile, of some neighbouring strokes.
 #[derive(Clone, Debug, Default)]
 struct Chunk {
     /// First and last column and row of tiles that each stroke touches; none where the first is greater.

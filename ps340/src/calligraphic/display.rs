@@ -72,7 +72,7 @@ impl Display {
         Self::drawn_by(Drawer::Processor, controls, size)
     }
 
-    /// The same with somebody who writes its light.
+    /// A dark display of some width and height in pixels, with somebody who writes its light.
     pub fn drawn_by(drawer: Drawer, controls: Controls, size: [u32; 2]) -> Self {
         let emission = controls.phosphor.emission();
         let light = controls.beam(size).dark(controls.phosphor.guns());

@@ -88,7 +88,8 @@ impl Optics {
         Some([range(0)?, range(1)?])
     }
 
-    /// The same for the columns alone, of that part of the stroke whose light can reach rows from `top` to `bottom`.
+    /// The columns of pixels that light of a stroke reaches, of that part of the stroke whose light can reach rows from `top` to
+    /// `bottom`.
     pub fn columns_touched(&self, stroke: &Stroke, top: usize, bottom: usize) -> Option<[usize; 2]> {
         let (start, end, _) = self.beam(stroke)?;
         let dx = end[0] - start[0];

@@ -62,7 +62,7 @@ impl Refresh {
         1.0 / (FRAME_SECONDS * self.frames as f64)
     }
 
-    /// The same for people: time, rate, and whether a long picture is held still (`steady`).
+    /// The refresh in words: time, rate, and whether a long picture is held still (`steady`).
     pub fn describe(&self, steady: bool) -> String {
         let held = if steady && self.frames > 1 { ", held steady" } else { "" };
         format!("{:.1} microseconds, {} Hz{held}", self.micros, self.rate() as f32)

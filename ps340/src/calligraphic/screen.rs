@@ -21,11 +21,11 @@ pub const DISPLAY_SIZE: [u32; 2] = [1024, 1024];
 pub struct Scene {
     /// The frame, of 1/60 s.
     pub frame: u64,
-    /// The same for the same strokes.
+    /// A number that stays as long as the strokes do.
     pub version: u64,
     /// What to draw.
     pub strokes: Arc<Vec<Stroke>>,
-    /// The same for the same controls.
+    /// A number that stays as long as the controls do.
     pub settings: u64,
     /// Knobs, phosphor, and which screen is looked at.
     pub controls: Controls,

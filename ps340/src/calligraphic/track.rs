@@ -320,7 +320,7 @@ impl Profile for Between {
     }
 }
 
-/// The same with an even current.
+/// A stroke of any length with an even current.
 struct EvenBetween {
     current: f32,
 }
@@ -351,7 +351,7 @@ impl Profile for Long {
     }
 }
 
-/// The same with an even current.
+/// A stroke at least two reaches long with an even current: only the nearer end acts.
 struct EvenLong {
     current: f32,
 }

@@ -42,7 +42,7 @@ enum Trouble {
     /// A file cannot be read or written.
     #[error("{file}: {error}")]
     File {
-        /// Which.
+        /// The file.
         file: String,
         /// Why.
         error: io::Error,

@@ -47,7 +47,7 @@ pub struct FunctionRow {
     pub memory: u8,
     /// What it does when it fires.
     pub behaviour: Behaviour,
-    /// The same in place, if it pays.
+    /// What it does when it fires, in the place of its input, if that pays.
     pub in_place: Option<InPlace>,
     /// What it does as time passes, if it is a clock.
     pub clock: Option<Clock>,
@@ -229,12 +229,12 @@ impl Example {
         Example { size: 0, sends, results, faults: &[] }
     }
 
-    /// The same for F:NAME(n).
+    /// This example for F:NAME(n).
     pub const fn sized(self, size: u16) -> Example {
         Example { size, ..self }
     }
 
-    /// The same with faults.
+    /// This example with faults.
     pub const fn faults(self, faults: &'static [u16]) -> Example {
         Example { faults, ..self }
     }

@@ -71,7 +71,7 @@ pub enum LineEvent {
     Bytes(LineId, Vec<u8>),
     /// A host line closed.
     Closed {
-        /// Which.
+        /// The line that closed.
         line: LineId,
         /// Why, if not by a plain end.
         error: Option<io::Error>,

@@ -37,7 +37,7 @@ impl Machine {
         &self.disk
     }
 
-    /// The same, to put files there before the machine starts.
+    /// The files that functions read and write, to put some there before the machine starts.
     pub fn disk_mut(&mut self) -> &mut Disk {
         &mut self.disk
     }

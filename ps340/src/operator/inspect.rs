@@ -43,7 +43,7 @@ pub enum Inspection {
     Top(usize),
     /// The network or the structure as a graph.
     Graph {
-        /// Which.
+        /// What becomes a graph: the network or the structure.
         subject: Subject,
         /// How.
         language: Language,

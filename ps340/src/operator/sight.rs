@@ -25,7 +25,7 @@ pub enum SightOrder {
     Refresh,
     /// Writes a picture of a screen, or its strokes.
     Picture {
-        /// Which.
+        /// The screen that is written.
         screen: Screen,
         /// PNG, EXR, SVG or TXT, by extension.
         file: String,

@@ -48,7 +48,7 @@ pub enum Expected {
     Pattern(Vec<u8>),
     /// The next message to the host is a number.
     Number {
-        /// Which.
+        /// The number that is expected.
         value: f64,
         /// How far from it the message may be.
         tolerance: f64,

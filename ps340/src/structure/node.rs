@@ -58,7 +58,7 @@ pub struct Vectors {
     pub list: VectorList,
     /// Values of the parameter of a curve at its first and last point.
     pub parameters: Option<[f64; 2]>,
-    /// The same in dashes, while a pattern is applied, and that pattern.
+    /// The vectors in dashes, while a pattern is applied, and that pattern.
     pub dashed: Option<(Pattern, VectorList)>,
 }
 

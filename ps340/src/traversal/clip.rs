@@ -33,13 +33,13 @@ impl Clipper {
         Clipper { screen: ScreenMap::new(state), depth_clipping: state.depth_clipping, color: state.color }
     }
 
-    /// The same without depth cueing.
+    /// This clipper without depth cueing.
     pub fn at_full_intensity(mut self) -> Clipper {
         (self.screen.front, self.screen.fall) = (1.0, 0.0);
         self
     }
 
-    /// The same in another linear colour.
+    /// This clipper for data of another linear colour.
     pub fn in_color(mut self, color: [f32; 3]) -> Clipper {
         self.color = color;
         self

@@ -38,7 +38,8 @@ pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Updat
     update_into(structures, frame, requests, Vec::new())
 }
 
-/// The same, with the room of the strokes of an earlier update; most of the time of a fresh one goes into its memory.
+/// Walks everything that is displayed, with the room of the strokes of an earlier update; most of the time of a fresh one
+/// goes into its memory.
 pub fn update_into(structures: &Structures, frame: u64, requests: &Requests, mut strokes: Vec<Stroke>) -> Update {
     let mut walk = Walk::new(structures, frame, requests);
     strokes.clear();

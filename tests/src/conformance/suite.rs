@@ -22,7 +22,7 @@ pub enum SuiteError {
     /// A file or folder cannot be read.
     #[error("{}: {error}", path.display())]
     Read {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// Why.
         error: io::Error,

@@ -25,7 +25,7 @@ pub enum NoticesError {
     /// A file or an answer is not of the form that is expected.
     #[error("{what}: {problem}")]
     Form {
-        /// Which.
+        /// What could not be read.
         what: String,
         /// What is wrong.
         problem: String,

@@ -14,7 +14,7 @@ fn pieces(bytes: &[u8]) -> [Vec<&[u8]>; 2] {
     [vec![bytes], bytes.chunks(7).collect()]
 }
 
-/// The same commands are found however the text is cut; each prints as it is read.
+/// However the text is cut, it holds the same commands; each prints as it is read.
 pub fn commands(bytes: &[u8]) {
     let [whole, cut] = pieces(bytes).map(|pieces| {
         let mut reader = CommandReader::default();
@@ -86,7 +86,7 @@ pub fn packets(bytes: &[u8]) {
     }
 }
 
-/// The same words are found however the stream of the parallel interface is cut, and all of it can be listed.
+/// However the stream of the parallel interface is cut, it holds the same words, and all of it can be listed.
 pub fn parallel(bytes: &[u8]) {
     let [whole, cut] = pieces(bytes).map(|pieces| {
         let mut reader = FrameReader::default();
@@ -106,7 +106,7 @@ pub fn parallel(bytes: &[u8]) {
     }
 }
 
-/// The same records are found however a capture is cut.
+/// However a capture is cut, it holds the same records.
 pub fn capture(bytes: &[u8]) {
     let [whole, cut] = pieces(bytes).map(|pieces| {
         let mut reader = CaptureReader::default();

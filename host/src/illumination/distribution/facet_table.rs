@@ -15,7 +15,7 @@ const HALVINGS: u32 = 24;
 const TOLERANCE: f64 = 2e-4;
 /// Values below this part of the greatest count as if they were so great.
 const FLOOR: f64 = 1e-6;
-/// The same for the area that the facets show to a direction: intervals, most of them, and the tolerance.
+/// Of the table of the area that the facets show to a direction: first intervals, most of them, and the tolerance.
 const SHOWN: (usize, usize, f64) = (16, 1024, 2e-6);
 /// Where between the ends of an interval errors are measured: not at the middles, which were sampled.
 const MEASURED: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];

@@ -32,7 +32,7 @@ impl Microfacet {
         Ok(Microfacet { facets, roughness, correlated: true })
     }
 
-    /// The same with heights of light and viewer that are not correlated.
+    /// These facets, with heights that light and viewer see independently.
     pub fn separable(self) -> Microfacet {
         Microfacet { correlated: false, ..self }
     }

@@ -19,7 +19,7 @@ impl Dielectric {
         Ok(Dielectric { outside: checked(outside, 0.0)?.0, inside: checked(inside, 0.0)?.0 })
     }
 
-    /// The same interface, from behind.
+    /// This interface, seen from behind.
     pub fn inverted(self) -> Dielectric {
         Dielectric { outside: self.inside, inside: self.outside }
     }

@@ -342,7 +342,8 @@ impl Optics {
         spread.fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))
     }
 
-    /// The same where it is one for all light from above; none where it is not.
+    /// Radiance towards the viewer for each unit of flux density, 1/sr, of all lobes but the narrow ones, where it is one
+    /// for all light from above; none where it is not.
     pub fn even_value(&self, sighting: &Sighting) -> Option<Channels> {
         let mut spread = self.lobes.iter().filter(|(which, _)| *which != Which::Narrow);
         spread.try_fold(Channels::ZERO, |sum, (_, lobe)| match lobe {

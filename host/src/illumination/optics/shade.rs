@@ -7,7 +7,7 @@ use crate::illumination::texture::{Paint, Pattern, Place};
 /// A fraction of light, ready.
 #[derive(Clone, Debug)]
 pub(super) enum Shade {
-    /// The same everywhere.
+    /// One curve, everywhere.
     Plain(Curve),
     /// What the pattern of a number gives at the place that is looked at.
     Painted(usize),

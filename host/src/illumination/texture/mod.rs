@@ -33,7 +33,7 @@ const LEAST_STEP: f64 = 1e-4;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Paint {
-    /// The same everywhere.
+    /// One color everywhere.
     Plain(Color),
     /// Some of each of several paints.
     Pattern(Box<Pattern>),
@@ -117,7 +117,7 @@ pub enum TextureError {
     /// A number of the pattern is out of range.
     #[error("{what} {value} of a pattern is not {range}")]
     Number {
-        /// Which.
+        /// What the number is.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -189,7 +189,7 @@ impl Laying {
 }
 
 impl Paint {
-    /// The same fraction of light of all wavelengths, everywhere.
+    /// One fraction of light of all wavelengths, everywhere.
     pub fn grey(value: f64) -> Paint {
         Paint::Plain(Color::grey(value))
     }

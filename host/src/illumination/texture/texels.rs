@@ -41,7 +41,7 @@ pub(super) enum Kind {
     Light,
     /// Bytes of numbers, exactly.
     Numbers,
-    /// The same in all bands, rounded to 1/65535.
+    /// One number for all bands, rounded to 1/65535.
     Grey,
     /// Three bands, rounded to 1/65535; those of large images to 1/1000 of what they are, or 1/4000000 where that is more.
     Bands,

@@ -55,7 +55,7 @@ pub(super) struct Corners {
     like: Vec<f64>,
 }
 
-/// The same for points that are the same.
+/// A number for each point: equal points have one, others another.
 pub(super) fn key(point: DVec3) -> [u64; 3] {
     // Adding 0 turns -0 into 0.
     point.to_array().map(|x| (x + 0.0).to_bits())

@@ -14,7 +14,7 @@ const SHORT: f64 = 1.0 - 1e-7;
 /// Points of a light with a size, and directions to a sky, that are asked for at the least.
 const LEAST_SAMPLES: u32 = 16;
 const LEAST_OF_SKY: u32 = 64;
-/// The same for elements that are not divided: neighbours make up for chance in one of them.
+/// Points of a light and directions to a sky for elements that are not divided: neighbours make up for chance in one.
 const FEW_SAMPLES: u32 = 4;
 const FEW_OF_SKY: u32 = 16;
 
@@ -33,7 +33,7 @@ pub(super) struct Lit {
     pub(super) extra: Channels,
 }
 
-/// The same at the three corners of an element; of one that may be divided also in the middles of the edges from each to the
+/// What comes to the three corners of an element; of one that may be divided also to the middles of the edges from each to the
 /// next. Nothing for clusters.
 pub(super) type Around = Box<[Lit]>;
 
@@ -127,7 +127,7 @@ impl Sight<'_> {
         self.light_by(place, shadows, ([LEAST_SAMPLES, LEAST_OF_SKY], 0))
     }
 
-    /// The same by few points of lights.
+    /// The irradiance at a point of an element, by few points of lights.
     ///
     /// - `turn`: which points, beside those of other turns.
     pub(super) fn light_roughly(&self, place: [DVec3; 2], shadows: bool, turn: u32) -> Channels {

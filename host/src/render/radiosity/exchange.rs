@@ -43,7 +43,7 @@ pub(super) struct Looks {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Link {
     pub(super) a: u32,
-    /// The same for light that a node exchanges with itself.
+    /// The other node, or `a` again for light that a node exchanges with itself.
     pub(super) b: u32,
     /// A F, square units.
     pub(super) exchange: f64,

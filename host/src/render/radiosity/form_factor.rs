@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
 /// Halvings of an edge of the contour at the most.
 const MOST_HALVINGS: u32 = 20;
-/// The same where no more than a rough value is asked for, and how rough that is.
+/// Halvings of an edge at the most where no more than a rough value is asked for, and how rough that is.
 const FEW_HALVINGS: u32 = 5;
 const ROUGH: f64 = 1e-3;
 /// Rounding error of the integral over an edge, in units of the square of the size of the polygons.

@@ -29,7 +29,7 @@ const FEW_LINES: usize = 3;
 const MOST_LINES: usize = 12;
 /// The longest edge of an element that is cut, in shortest ones: light changes quickly where surfaces meet.
 const NEAR_LINES: f64 = 2.0;
-/// The same of one from which another surface rises.
+/// The longest edge of an element that is cut and from which another surface rises, in shortest ones.
 const NEAR_CREASES: f64 = 4.0;
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;

@@ -28,7 +28,7 @@ pub(super) struct SurfaceLight {
     patch_of: Vec<[u32; 2]>,
     /// Of each node that is a leaf, its corners among the values; [`NONE`] where no light comes.
     corners: Vec<[u32; 3]>,
-    /// The same of each patch that is part of a face cluster.
+    /// Of each patch that is part of a face cluster, its corners among the values; [`NONE`] where no light comes.
     of_faces: Vec<[u32; 3]>,
     /// Irradiance by lights, and by other elements.
     values: Vec<[Channels; 2]>,

@@ -40,7 +40,7 @@ impl Draws {
         Draws { sequence: Sequence::new(seed, pixel), index, of, time: 0.0 }
     }
 
-    /// The same at a time drawn from those in which a shutter is open for so long; a single sample in their middle.
+    /// These draws at a time drawn from those in which a shutter is open for so long; a single sample in their middle.
     pub(super) fn within(self, shutter: f64) -> Draws {
         let part = if self.of <= 1 { 0.5 } else { self.point(Purpose::Time)[0] };
         Draws { time: (part - 0.5) * shutter, ..self }

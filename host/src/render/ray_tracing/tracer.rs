@@ -65,7 +65,7 @@ enum Course {
     Seen,
     /// A broad one first, and none but narrow ones behind.
     Spread,
-    /// The same, with narrow ones before: what is met behind is a caustic.
+    /// Narrow ones first, then a broad one, and none but narrow ones behind: what is met there is a caustic.
     Thrown,
     /// Several broad ones.
     Carried,
@@ -98,7 +98,7 @@ impl Course {
 pub(super) struct Seen {
     /// Radiance of each class.
     pub(super) radiance: [Channels; Class::ALL.len()],
-    /// The same at other wavelengths than those of the sample, linear sRGB.
+    /// Radiance of each class at other wavelengths than those of the sample, linear sRGB.
     pub(super) other: [DVec3; Class::ALL.len()],
     /// Whether the first leg met an object or light.
     pub(super) covered: bool,

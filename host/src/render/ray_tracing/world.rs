@@ -81,9 +81,9 @@ pub(super) struct Found<'a> {
     pub(super) material: u32,
     /// From where the ray began to the triangle.
     pub(super) distance: f64,
-    /// The same to the exact surface behind the triangle, if that is known.
+    /// From where the ray began to the exact surface behind the triangle, if that is known.
     pub(super) depth: f64,
-    /// The same in lengths of the ray's direction.
+    /// From where the ray began to the exact surface, in lengths of the ray's direction.
     pub(super) t: f64,
     /// What the patterns of the material give; none for a material that has none.
     painting: Option<Box<Painting>>,

@@ -54,7 +54,7 @@ impl Outline {
         outline
     }
 
-    /// The same outline, nearer than everything.
+    /// This outline, nearer than everything.
     pub(super) fn brought_near(mut self) -> Outline {
         self.corners.iter_mut().for_each(|corner| corner.near = f64::MAX);
         self

@@ -101,7 +101,7 @@ pub(super) fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Out
     }
 }
 
-/// The same for meshes with coordinates that predicates can be exact with.
+/// Evaluates an expression over meshes with coordinates that predicates can be exact with.
 fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Outcome {
     let operands = Operands::new(solids, true);
     let Work { outcome, must_settle, .. } = work(&operands, expression);

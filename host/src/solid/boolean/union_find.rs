@@ -25,7 +25,7 @@ impl UnionFind {
         member
     }
 
-    /// The same, and shortens the way for the next time.
+    /// The lowest member of the set of a number; shortens the way to it for the next time.
     pub fn find(&mut self, mut member: u32) -> u32 {
         while self.parent[member as usize] != member {
             let above = self.parent[self.parent[member as usize] as usize];

@@ -46,7 +46,7 @@ pub enum PrimitiveError {
     /// A point that is not finite or too far away.
     #[error("point {index} is {point}, its coordinates must be numbers within 1e90")]
     Point {
-        /// Which.
+        /// The number of the point, from 0.
         index: usize,
         /// Where.
         point: DVec3,

@@ -115,7 +115,7 @@ impl Polynomial {
         Polynomial(std::array::from_fn(|k| self.0.get(k + 1).map_or(DVec3::ZERO, |c| *c * (k + 1) as f64)))
     }
 
-    /// The same from 1 to 0.
+    /// This polynomial from 1 to 0.
     pub fn reversed(&self) -> Polynomial {
         let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
         let term = |k: usize| (k..6).map(|n| self.0[n] * choose(n, k)).sum::<DVec3>();

@@ -119,7 +119,7 @@ pub enum HoleError {
 }
 
 impl HoleError {
-    /// The same with the corner behind the last side named as the first.
+    /// This error with the corner behind the last side named as the first.
     fn among(self, count: usize) -> HoleError {
         match self {
             HoleError::Corner { side } => HoleError::Corner { side: side % count },

@@ -32,7 +32,7 @@ impl Ribbon {
         Ok(Ribbon { curve, across })
     }
 
-    /// The same ribbon from its other end.
+    /// This ribbon from its other end.
     pub fn reversed(&self) -> Ribbon {
         Ribbon { curve: self.curve.reversed(), across: self.across.reversed() }
     }

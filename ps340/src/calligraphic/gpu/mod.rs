@@ -57,7 +57,7 @@ pub enum GpuError {
     /// It refused to begin.
     #[error("{name} cannot be used: {why}")]
     Refused {
-        /// Which.
+        /// The name of the adapter.
         name: String,
         /// What it says.
         why: String,

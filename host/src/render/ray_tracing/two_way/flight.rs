@@ -20,7 +20,7 @@ pub(super) const LEAST_TURNS: u32 = 128;
 const CERTAIN_TURNS: u32 = 8;
 /// Of what has less left than this part, only some is followed, and then counts for more.
 const FAINT: f64 = 1.0 / 64.0;
-/// The same for what was spread, over what is caught in the mean.
+/// Of what was spread and has less left than this part of what is caught in the mean, only some is followed.
 const FAINT_AGAIN: f64 = 0.25;
 /// Parts in which light is spread, and one more.
 const MOST_PARTS: u32 = 17;
@@ -83,7 +83,7 @@ impl Balance {
         (self.sent + self.again + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
     }
 
-    /// The same for ways with another flux.
+    /// The balance of ways with another flux.
     pub(super) fn scaled(&self, factor: f64) -> Balance {
         Balance {
             ways: self.ways,
