@@ -56,7 +56,7 @@ fn run(folder: &Path, arguments: &[String], memory: &str) -> Ended {
 }
 
 #[test]
-fn forty_bombs_are_done_or_refused_within_the_memory_that_was_given() {
+fn fifty_bombs_are_done_or_refused_within_the_memory_that_was_given() {
     assert!(BOMBS.len() >= 40);
     let mut wrong = Vec::new();
     for bomb in BOMBS {

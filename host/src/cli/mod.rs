@@ -43,6 +43,8 @@ use std::process::ExitCode;
 const MAX_THREADS: usize = 1024;
 /// Which part of the machine's memory a command may take if nothing else is said: one of so many.
 const PART_OF_MACHINE: u64 = 4;
+/// Where options that all commands have stand in help texts: behind their own.
+const LAST: usize = 900;
 /// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
 const LEAST_MEMORY: u64 = 64 << 20;
 
@@ -86,6 +88,7 @@ pub fn command() -> Command {
         .long("memory")
         .value_name("SIZE")
         .global(true)
+        .display_order(LAST)
         .value_parser(bytes)
         .help("Most memory to take, such as 512M or 8G; a quarter of the machine's if not given");
     let program = Command::new("peris")

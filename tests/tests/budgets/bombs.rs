@@ -1,4 +1,4 @@
-//! Forty bombs, made anew.
+//! Fifty bombs, made anew.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -27,24 +27,20 @@ const RENDER: &str = "render a.rhai -o a.png --samples 1";
 
 pub const BOMBS: &[Bomb] = &[
     // Pictures.
-    bomb("png: 16k x 16k grey zeros", CONVERT_PNG, "16384 x 16384", |f| {
-        png(f, [16_384; 2], Kind { color: 0, depth: 8, rows: 64 })
-    }),
-    bomb("png: 16k x 16k of 64 bits", CONVERT_PNG, "16384 x 16384", |f| {
-        png(f, [16_384; 2], Kind { color: 6, depth: 16, rows: 1 })
-    }),
+    bomb("png: 16k x 16k grey zeros", CONVERT_PNG, "16384 x 16384", |f| png(f, [16_384; 2], 0, 8, 64)),
+    bomb("png: 16k x 16k of 64 bits", CONVERT_PNG, "16384 x 16384", |f| png(f, [16_384; 2], 6, 16, 1)),
     bomb("png: header of 2^31 x 2^31", CONVERT_PNG, "rows", |f| {
-        png(f, [0x7fff_ffff; 2], Kind { color: 2, depth: 8, rows: 0 });
+        png(f, [0x7fff_ffff; 2], 2, 8, 0);
     }),
     bomb("png: one row of 2^28 pixels", CONVERT_PNG, "rows", |f| {
-        png(f, [1 << 28, 1], Kind { color: 6, depth: 16, rows: 0 });
+        png(f, [1 << 28, 1], 6, 16, 0);
     }),
     bomb("png: texture of 16k x 16k", PLAN, "16384 x 16384", |f| {
-        png(f, [16_384; 2], Kind { color: 2, depth: 8, rows: 1 });
+        png(f, [16_384; 2], 2, 8, 1);
         script(f, "sphere(1).material(picture(\"a.png\"));");
     }),
     bomb("png: texture of 8k x 8k of 64 bits", PLAN, "8192 x 8192", |f| {
-        png(f, [8192; 2], Kind { color: 6, depth: 16, rows: 1 });
+        png(f, [8192; 2], 6, 16, 1);
         script(f, "sphere(1).material(picture(\"a.png\"));");
     }),
     bomb("png: a text of 200 MB in 200 KB", CONVERT_PNG, "", |f| png_with_text(f, 200 << 20)),
@@ -187,18 +183,9 @@ fn sparse(folder: &Path, name: &str, bytes: u64) {
     File::create(folder.join(name)).and_then(|file| file.set_len(bytes)).expect("made");
 }
 
-/// What a PNG file holds.
-struct Kind {
-    /// 0 is grey, 2 red, green and blue, 6 that with coverage.
-    color: u8,
-    /// Bits of a number.
-    depth: u8,
-    /// Rows that are there.
-    rows: u32,
-}
-
-fn png(folder: &Path, size: [u32; 2], kind: Kind) {
-    write(folder, "a.png", &zero_png(size, kind.color, kind.depth, kind.rows));
+/// A file of zeros as [`zero_png`] makes it.
+fn png(folder: &Path, size: [u32; 2], color: u8, depth: u8, rows: u32) {
+    write(folder, "a.png", &zero_png(size, color, depth, rows));
 }
 
 /// A PNG file of zeros, whose last rows may be missing.
