@@ -162,6 +162,16 @@ fn orders_over_tcp_need_the_token() {
 }
 
 #[test]
+fn strangers_at_the_operators_port_do_not_keep_its_owner_out() {
+    let home = Home::new();
+    let machine = Machine::start(&home, &["--listen", "tcp:127.0.0.1:0", "--operator", "tcp:127.0.0.1:0"]);
+    let (operator, token) = (machine.told("operator "), machine.told("token "));
+    let strangers: Vec<_> = (0..16).map(|_| TcpStream::connect(operator).expect("it listens")).collect();
+    assert_eq!(exchange(operator, &format!("token {token}\nquit\n")), "ok\nok quit\n");
+    drop(strangers);
+}
+
+#[test]
 fn the_socket_of_the_operator_is_its_owners() {
     let home = Home::new();
     let _machine = Machine::start(&home, &["--listen", "unix:line", "--operator", "unix:operator"]);

@@ -16,6 +16,8 @@ use tokio::{
     time::{Instant, sleep_until},
 };
 
+/// Hosts that may be attached to a socket at once; each may hold an open statement and an open vector list.
+pub const MAX_HOSTS: usize = 64;
 /// Bytes taken from a line at a time.
 const READ_BYTES: usize = 256 << 10;
 

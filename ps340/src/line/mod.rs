@@ -16,9 +16,9 @@ mod source;
 mod operator;
 
 pub use capture::Capture;
+pub use hosts::MAX_HOSTS;
 pub use listener::{Listener, SocketFile, Visitors};
 pub use operator::{OperatorLine, Reply, serve_operators, serve_stdio, serve_window};
-pub use places::MAX_HOSTS;
 pub use protocol::address::{Address, AddressError, LineAddress};
 pub use source::Source;
 pub use terminal::{PseudoTerminal, open_serial};

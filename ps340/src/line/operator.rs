@@ -1,6 +1,11 @@
 //! Operator lines: one order a line, one reply a line.
 
-use super::{Events, LineEvent, Listener, Token, http::is_request, listener::Stream};
+use super::{
+    Events, LineEvent, Listener, Token,
+    http::is_request,
+    listener::Stream,
+    places::{Place, Places, Presence},
+};
 use protocol::capture::MAX_ORDER;
 use std::{
     io::{BufRead, IsTerminal, Write},
@@ -11,6 +16,9 @@ use tokio::{
     sync::oneshot,
     time::timeout,
 };
+
+/// Operators that may be attached at once.
+const MAX_OPERATORS: usize = 16;
 
 /// The reply to an order that is longer.
 const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
@@ -47,14 +55,19 @@ impl From<String> for Reply {
     }
 }
 
-/// Takes operators in from a listener until the machine's thread is gone.
+/// Takes operators in from a listener until the machine's thread is gone. One who has given no order yet, nor told the token,
+/// gives way to another.
 ///
 /// - `token`: what they must tell before their first order, if anything.
 pub async fn serve_operators(listener: Listener, token: Option<Token>, events: Events) {
+    let full = format!("error {MAX_OPERATORS} operators are attached; come again when one has left\n");
+    let mut places = Places::new(MAX_OPERATORS, &full);
     while !events.is_closed() {
         match listener.accept().await {
             Ok((stream, peer)) => {
-                tokio::spawn(serve(stream, peer, token.clone(), events.clone()));
+                if let Some((stream, place)) = places.admit(stream, &peer).await {
+                    tokio::spawn(serve(stream, peer, token.clone(), place, events.clone()));
+                }
             }
             Err(error) => {
                 tracing::warn!("an operator could not attach: {error}");
@@ -64,7 +77,17 @@ pub async fn serve_operators(listener: Listener, token: Option<Token>, events: E
     }
 }
 
-async fn serve(stream: Box<dyn Stream>, peer: String, mut token: Option<Token>, events: Events) {
+async fn serve(stream: Box<dyn Stream>, peer: String, token: Option<Token>, place: Place, events: Events) {
+    tokio::select! {
+        () = place.presence.is_unwanted() => {
+            tracing::warn!("operator {peer} was dropped: it gave no order, and its place was wanted");
+        }
+        () = obey(stream, &peer, token, &place.presence, events) => {}
+    }
+}
+
+/// Takes one order after the other, until the operator leaves or the machine ends.
+async fn obey(stream: Box<dyn Stream>, peer: &str, mut token: Option<Token>, presence: &Presence, events: Events) {
     let (read, mut write) = tokio::io::split(stream);
     let mut read = BufReader::new(read);
     let mut people = false;
@@ -100,8 +123,10 @@ async fn serve(stream: Box<dyn Stream>, peer: String, mut token: Option<Token>, 
             if write.write_all(if known { b"ok\n" } else { NO_TOKEN }).await.is_err() || !known {
                 return tracing::warn!("operator {peer} was dropped: it does not know the token");
             }
+            presence.note_speech();
             continue;
         }
+        presence.note_speech();
         if events.send(LineEvent::Operator(OperatorLine { text, reply, is_replayed: false })).await.is_err() {
             return;
         }
@@ -202,7 +227,7 @@ mod tests {
             let (near, far) = tokio::io::duplex(1024);
             let (events, orders) = tokio::sync::mpsc::channel(4);
             tokio::spawn(answer(orders));
-            tokio::spawn(serve(Box::new(far), "pipe".into(), None, events));
+            tokio::spawn(serve(Box::new(far), "pipe".into(), None, place().await, events));
             let (mut read, mut write) = tokio::io::split(near);
             write.write_all(b"top\nlines on\ntop\nlines off\ntop\n").await.unwrap();
             let mut said = vec![0; 38];
@@ -212,13 +237,18 @@ mod tests {
         assert_eq!(said, "ok a\\nb\nok a\nb\nok a\nb\nok a\\nb\nok a\\nb\n");
     }
 
+    async fn place() -> Place {
+        let (stream, _) = tokio::io::duplex(1);
+        Places::new(1, "").admit(Box::new(stream), "pipe").await.expect("there is room").1
+    }
+
     /// What an operator line answers to a text before it closes; what reaches the machine.
     fn told(text: &str, token: Option<Token>) -> (String, Vec<String>) {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         runtime.block_on(async {
             let (mut near, far) = tokio::io::duplex(1024);
             let (events, mut inbox) = tokio::sync::mpsc::channel(4);
-            tokio::spawn(serve(Box::new(far), "pipe".into(), token, events));
+            tokio::spawn(serve(Box::new(far), "pipe".into(), token, place().await, events));
             near.write_all(text.as_bytes()).await.unwrap();
             near.shutdown().await.unwrap();
             let mut orders = Vec::new();

@@ -1,4 +1,4 @@
-//! Places for hosts at a listening socket: a host that has never said anything gives way to one that comes later.
+//! Places at a listening socket: a visitor who has never said anything gives way to one who comes later.
 
 use super::listener::Stream;
 use std::{
@@ -15,14 +15,14 @@ use tokio::{
     time::timeout,
 };
 
-/// Hosts that may be attached to a socket at once; each may hold an open statement and an open vector list.
-pub const MAX_HOSTS: usize = 64;
-/// How long a newcomer waits until a silent host has left.
+/// How long a newcomer waits until a silent visitor has left.
 const LEAVING_TIME: Duration = Duration::from_millis(700);
 /// How long one who is turned away may take to read why.
 const FAREWELL_TIME: Duration = Duration::from_secs(1);
+/// Those who are told why at the same time; of a crowd, not everybody is.
+const MAX_FAREWELLS: usize = 64;
 
-/// What is known of a host that is there, shared by those who serve it and those who want its place.
+/// What is known of a visitor who is there, shared by those who serve them and those who want the place.
 #[derive(Debug, Default)]
 pub(super) struct Presence {
     has_spoken: AtomicBool,
@@ -30,7 +30,7 @@ pub(super) struct Presence {
 }
 
 impl Presence {
-    /// The host has sent something: nobody takes its place.
+    /// The visitor has said something that counts: nobody takes the place.
     pub(super) fn note_speech(&self) {
         self.has_spoken.store(true, Ordering::Relaxed);
     }
@@ -52,38 +52,54 @@ pub(super) struct Place {
 #[derive(Debug)]
 pub(super) struct Places {
     free: Arc<Semaphore>,
+    farewells: Arc<Semaphore>,
+    /// What one who is turned away reads.
+    full: Arc<str>,
     /// Who came, the first first; some have gone.
-    hosts: VecDeque<Weak<Presence>>,
+    visitors: VecDeque<Weak<Presence>>,
 }
 
 impl Places {
-    pub(super) fn new() -> Places {
-        Places { free: Arc::new(Semaphore::new(MAX_HOSTS)), hosts: VecDeque::new() }
+    /// - `count`: visitors who may be there at once.
+    /// - `full`: what one more reads.
+    pub(super) fn new(count: usize, full: &str) -> Places {
+        let farewells = Arc::new(Semaphore::new(MAX_FAREWELLS));
+        Places { free: Arc::new(Semaphore::new(count)), farewells, full: full.into(), visitors: VecDeque::new() }
     }
 
-    /// A place for a newcomer, if need be that of the host that has been silent for longest. None if all hosts have
-    /// spoken.
-    pub(super) async fn take(&mut self) -> Option<Place> {
-        self.hosts.retain(|host| host.strong_count() > 0);
+    /// Lets a newcomer in, if there is a place; else tells them why not, and closes the connection.
+    pub(super) async fn admit(&mut self, stream: Box<dyn Stream>, peer: &str) -> Option<(Box<dyn Stream>, Place)> {
+        if let Some(place) = self.take().await {
+            return Some((stream, place));
+        }
+        tracing::warn!("{peer} was turned away: {}", self.full.trim_end());
+        if let Ok(farewell) = self.farewells.clone().try_acquire_owned() {
+            tokio::spawn(turn_away(stream, self.full.clone(), farewell));
+        }
+        None
+    }
+
+    /// A place for a newcomer, if need be that of the visitor who has been silent for longest. None if all have spoken.
+    async fn take(&mut self) -> Option<Place> {
+        self.visitors.retain(|visitor| visitor.strong_count() > 0);
         let taken = match self.free.clone().try_acquire_owned() {
             Ok(taken) => taken,
             Err(_) => {
-                let silent = |host: &Arc<Presence>| !host.has_spoken.load(Ordering::Relaxed);
-                let host = self.hosts.iter().filter_map(Weak::upgrade).find(silent)?;
-                host.leave.notify_one();
+                let silent = |visitor: &Arc<Presence>| !visitor.has_spoken.load(Ordering::Relaxed);
+                let visitor = self.visitors.iter().filter_map(Weak::upgrade).find(silent)?;
+                visitor.leave.notify_one();
                 timeout(LEAVING_TIME, self.free.clone().acquire_owned()).await.ok()?.ok()?
             }
         };
         let presence = Arc::<Presence>::default();
-        self.hosts.push_back(Arc::downgrade(&presence));
+        self.visitors.push_back(Arc::downgrade(&presence));
         Some(Place { presence, _taken: taken })
     }
 }
 
 /// Tells one who came in vain why, and closes the connection.
-pub(super) async fn turn_away(mut stream: Box<dyn Stream>) {
+async fn turn_away(mut stream: Box<dyn Stream>, text: Arc<str>, _farewell: OwnedSemaphorePermit) {
     let said = async {
-        let text = format!("The PS 340 is full: {MAX_HOSTS} hosts are attached. Come again when one has left.\r\n");
         stream.write_all(text.as_bytes()).await?;
         stream.shutdown().await?;
         // With bytes that were not read, the system would close so that the other side does not read either.
@@ -98,6 +114,9 @@ pub(super) async fn turn_away(mut stream: Box<dyn Stream>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const MAX_HOSTS: usize = 5;
+    const FULL: &str = "It is full.\r\n";
 
     fn run<T>(test: impl Future<Output = T>) -> T {
         tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap().block_on(test)
@@ -114,7 +133,7 @@ mod tests {
     #[test]
     fn the_oldest_silent_host_gives_way() {
         run(async {
-            let mut places = Places::new();
+            let mut places = Places::new(MAX_HOSTS, FULL);
             let mut hosts = Vec::new();
             for number in 0..MAX_HOSTS {
                 let place = places.take().await.expect("there is room");
@@ -133,7 +152,7 @@ mod tests {
     #[test]
     fn hosts_that_have_spoken_keep_their_places() {
         run(async {
-            let mut places = Places::new();
+            let mut places = Places::new(MAX_HOSTS, FULL);
             let mut hosts = Vec::new();
             for _ in 0..MAX_HOSTS {
                 let place = places.take().await.expect("there is room");
@@ -149,14 +168,14 @@ mod tests {
     #[test]
     fn one_who_is_turned_away_reads_why_and_then_the_end() {
         run(async {
+            let mut places = Places::new(0, FULL);
             let (near, mut far) = tokio::io::duplex(1024);
-            let turning = tokio::spawn(turn_away(Box::new(near)));
+            assert!(places.admit(Box::new(near), "one").await.is_none());
             far.write_all(b"INITIALIZE;").await.unwrap();
             let mut text = String::new();
             far.read_to_string(&mut text).await.unwrap();
-            assert!(text.starts_with("The PS 340 is full") && text.ends_with("\r\n"), "{text}");
+            assert_eq!(text, "It is full.\r\n");
             drop(far);
-            turning.await.unwrap();
         });
     }
 }

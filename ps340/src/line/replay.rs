@@ -2,8 +2,7 @@
 
 use super::{
     Interface, LineEvent, LineId, OperatorLine, Surroundings,
-    hosts::{Host, serve, silent_writer},
-    places::MAX_HOSTS,
+    hosts::{Host, MAX_HOSTS, serve, silent_writer},
 };
 use protocol::{
     address::Conditions,

@@ -2,9 +2,9 @@
 
 use super::{
     Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, Surroundings, Visitors,
-    hosts::{Host, serve},
+    hosts::{Host, MAX_HOSTS, serve},
     open_serial,
-    places::{MAX_HOSTS, Places, turn_away},
+    places::Places,
     replay::{PARALLEL, feed, pieces, replay},
     terminal::Terminal,
 };
@@ -14,21 +14,14 @@ use std::{
     io::{self, Write},
     os::fd::OwnedFd,
     path::PathBuf,
-    sync::Arc,
     time::Duration,
 };
-use tokio::{
-    io::AsyncReadExt,
-    sync::{Semaphore, oneshot},
-    time::sleep,
-};
+use tokio::{io::AsyncReadExt, sync::oneshot, time::sleep};
 
 /// How often a pseudo-terminal is looked at until a host opens it.
 const TERMINAL_PAUSE: Duration = Duration::from_millis(20);
 /// How long to wait after a failure before the next try.
 const FAILURE_PAUSE: Duration = Duration::from_millis(100);
-/// Hosts that are told at the same time that there is no place for them.
-const MAX_FAREWELLS: usize = 64;
 /// How long to wait before a serial device is opened again.
 const DEVICE_PAUSE: Duration = Duration::from_secs(1);
 /// Bytes that are on their way to and from the standard streams.
@@ -117,8 +110,8 @@ impl Source {
 }
 
 async fn serve_sockets(listener: Listener, interface: Interface, conditions: Conditions, around: Surroundings) {
-    let mut places = Places::new();
-    let farewells = Arc::new(Semaphore::new(MAX_FAREWELLS));
+    let full = format!("The PS 340 is full: {MAX_HOSTS} hosts are attached. Come again when one has left.\r\n");
+    let mut places = Places::new(MAX_HOSTS, &full);
     while !around.events.is_closed() {
         let (stream, peer) = match listener.accept().await {
             Ok(accepted) => accepted,
@@ -128,17 +121,7 @@ async fn serve_sockets(listener: Listener, interface: Interface, conditions: Con
                 continue;
             }
         };
-        let Some(place) = places.take().await else {
-            tracing::warn!("{peer} was turned away: {MAX_HOSTS} hosts are attached, and all have spoken");
-            // Of a crowd, not everybody is told why.
-            if let Ok(farewell) = farewells.clone().try_acquire_owned() {
-                tokio::spawn(async move {
-                    turn_away(stream).await;
-                    drop(farewell);
-                });
-            }
-            continue;
-        };
+        let Some((stream, place)) = places.admit(stream, &peer).await else { continue };
         let peer = match interface {
             Interface::Stream => peer,
             Interface::Parallel => format!("{PARALLEL}{peer}"),
