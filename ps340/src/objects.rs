@@ -17,8 +17,10 @@ pub struct TooManyObjects;
 pub struct Objects {
     ids: BTreeMap<Name, ObjectId>,
     identities: Vec<Identity>,
-    /// Numbers of anonymous objects that were given back.
+    /// Numbers that were given back.
     free: Vec<ObjectId>,
+    /// Objects that were deleted; something may still refer to them.
+    deleted: Vec<ObjectId>,
     system: usize,
 }
 
@@ -28,6 +30,8 @@ enum Identity {
     Named(Name),
     /// It had a name; what refers to it keeps it.
     Forgotten,
+    /// DELETE took name and definition away; what refers to it refers to nothing.
+    Deleted,
     /// It never had a name: PREFIX, FOLLOW or a structure without a name made it.
     Anonymous,
     /// Given back.
@@ -54,13 +58,7 @@ impl Objects {
     /// # Errors
     /// [`TooManyObjects`].
     pub fn anonymous(&mut self) -> Result<ObjectId, TooManyObjects> {
-        match self.free.pop() {
-            Some(id) => {
-                self.identities[id.index()] = Identity::Anonymous;
-                Ok(id)
-            }
-            None => self.make(Identity::Anonymous),
-        }
+        self.make(Identity::Anonymous)
     }
 
     /// Gives an anonymous object back, for its number to be used again. Others stay as they are.
@@ -71,12 +69,46 @@ impl Objects {
         }
     }
 
+    /// Takes the name from an object whose definition has gone. Its number is used again after
+    /// [`reuse_deleted`](Self::reuse_deleted).
+    pub fn delete(&mut self, id: ObjectId) {
+        let Some(identity @ (Identity::Named(_) | Identity::Forgotten)) = self.identities.get_mut(id.index()) else {
+            return;
+        };
+        if let Identity::Named(name) = std::mem::replace(identity, Identity::Deleted) {
+            self.ids.remove(&name);
+        }
+        self.deleted.push(id);
+    }
+
+    /// Whether an object was deleted.
+    pub fn is_deleted(&self, id: ObjectId) -> bool {
+        matches!(self.identities.get(id.index()), Some(Identity::Deleted))
+    }
+
+    /// How many objects were deleted and not given back.
+    pub fn deleted(&self) -> usize {
+        self.deleted.len()
+    }
+
+    /// Gives the deleted objects back, for their numbers to be used again. Nothing may refer to them any more.
+    pub fn reuse_deleted(&mut self) {
+        for id in &self.deleted {
+            self.identities[id.index()] = Identity::Free;
+        }
+        self.free.append(&mut self.deleted);
+    }
+
     /// Whether an object never had a name.
     pub fn is_anonymous(&self, id: ObjectId) -> bool {
         matches!(self.identities.get(id.index()), Some(Identity::Anonymous))
     }
 
     fn make(&mut self, identity: Identity) -> Result<ObjectId, TooManyObjects> {
+        if let Some(id) = self.free.pop() {
+            self.identities[id.index()] = identity;
+            return Ok(id);
+        }
         if self.identities.len() >= MAX_OBJECTS {
             return Err(TooManyObjects);
         }
@@ -159,15 +191,17 @@ impl Objects {
         self.ids.retain(|_, id| id.index() < system);
         self.identities.truncate(system);
         self.free.clear();
+        self.deleted.clear();
     }
 
     /// Gives back the room of objects that have gone.
     pub fn shrink(&mut self) {
         self.identities.shrink_to_fit();
         self.free.shrink_to_fit();
+        self.deleted.shrink_to_fit();
     }
 
-    /// How many objects there are, the system's included.
+    /// How many objects there are, the system's and those that were deleted and not given back included.
     pub fn len(&self) -> usize {
         self.identities.len() - self.free.len()
     }
@@ -227,6 +261,20 @@ mod tests {
         assert_eq!(objects.anonymous().unwrap(), anonymous);
         assert_ne!(objects.anonymous().unwrap(), anonymous);
         assert_eq!(objects.find("A"), Some(a));
+    }
+
+    #[test]
+    fn a_deleted_object_has_no_name_and_its_number_comes_back_when_nothing_refers_to_it() {
+        let mut objects = Objects::default();
+        let a = objects.object(&name("A")).unwrap();
+        objects.delete(a);
+        objects.delete(a);
+        assert_eq!((objects.find("A"), objects.is_deleted(a), objects.deleted()), (None, true, 1));
+        let b = objects.object(&name("A")).unwrap();
+        assert_ne!(a, b);
+        objects.reuse_deleted();
+        assert_eq!((objects.is_deleted(a), objects.deleted(), objects.len()), (false, 0, 1));
+        assert_eq!(objects.object(&name("C")).unwrap(), a);
     }
 
     #[test]

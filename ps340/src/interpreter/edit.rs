@@ -13,7 +13,6 @@ use protocol::{
     Name,
     command::{NamePattern, Operate},
 };
-use std::collections::HashSet;
 
 pub(super) fn display(name: &Name, memory: &mut MassMemory) -> Result<(), Message> {
     let id = memory.object(name)?;
@@ -61,7 +60,7 @@ fn user_object(name: &Name, memory: &MassMemory) -> Result<Option<ObjectId>, Mes
     }
 }
 
-/// Deletes what it can, and says what it cannot. Arcs to functions that are deleted go.
+/// Deletes what it can, and says what it cannot.
 pub(super) fn delete(patterns: &[NamePattern], memory: &mut MassMemory, messages: &mut Vec<Message>) {
     let mut gone = Vec::new();
     for pattern in patterns {
@@ -76,12 +75,7 @@ pub(super) fn delete(patterns: &[NamePattern], memory: &mut MassMemory, messages
             NamePattern::Prefix(prefix) => gone.extend(memory.objects.user_objects(prefix)),
         }
     }
-    let functions: HashSet<ObjectId> =
-        gone.iter().copied().filter(|id| memory.network.function(*id).is_some()).collect();
-    memory.undefine_all(gone);
-    if !functions.is_empty() {
-        memory.network.retain_arcs(|_, _, to| !functions.contains(&to.object));
-    }
+    memory.delete(gone);
 }
 
 pub(super) fn forget(name: &Name, memory: &mut MassMemory) -> Result<(), Message> {

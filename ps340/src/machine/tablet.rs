@@ -2,8 +2,16 @@
 //!
 //! # Source
 //! A press sends `<6>` exactly once and `<3>` with the new code, a release `<3>` = 0 and `<2>` = FALSE, as clients of the
-//! time rely on; `<1>` and `<4>` are the position while in range (remembered) and while pressed (uncertain). The order of
-//! the messages of one event, that `<1>` speaks only when the position changes, and the commands are ours.
+//! time rely on; `<1>` and `<4>` are the position while in range (remembered) and while pressed (uncertain).
+//!
+//! That `<3>` says 0 with every report of the tablet while nothing is down is deduced from a client. Its locator passes
+//! `<3>` through F:DELTA, which would be needless if `<3>` spoke on change only, and takes the arc away between press and
+//! release: a second press of the same button is a change for F:DELTA only if 0 came in between.
+//!
+//! The rest is ours: the order of the messages of one event; that `<1>` speaks only when a position is reported; the
+//! commands; that a 0 goes before every code of a single button, and `<6>` with it, which keeps the two in pairs whatever
+//! rolls, chords and changes of the network come between; that a held code is not repeated, since a program that
+//! connects meanwhile would take it for a press without a position.
 
 use super::devices::Emission;
 use crate::port::TabletCommand;
@@ -74,13 +82,14 @@ impl Tablet {
                 if streams {
                     out.push(self.here(STREAM));
                 }
-                if self.buttons != 0 {
-                    out.push(self.here(DRAWING));
+                match self.buttons {
+                    0 => out.push(code(0)),
+                    _ => out.push(self.here(DRAWING)),
                 }
             }
             TabletEvent::Move(_) => {}
             TabletEvent::Press(0) | TabletEvent::Release => self.release(&mut out),
-            TabletEvent::Press(code) => self.press(code, &mut out),
+            TabletEvent::Press(buttons) => self.press(buttons, &mut out),
             TabletEvent::Away => {
                 self.release(&mut out);
                 if std::mem::take(&mut self.in_range) {
@@ -99,12 +108,12 @@ impl Tablet {
     }
 
     /// A press somewhere off the tablet is one at the last place. Ours.
-    fn press(&mut self, code: u8, out: &mut Vec<Emission>) {
+    fn press(&mut self, buttons: u8, out: &mut Vec<Emission>) {
         if !self.in_range {
             out.extend(self.event(TabletEvent::Move(self.position)));
         }
-        let before = std::mem::replace(&mut self.buttons, code);
-        if before == code {
+        let before = std::mem::replace(&mut self.buttons, buttons);
+        if before == buttons {
             return;
         }
         if before == 0 {
@@ -113,16 +122,22 @@ impl Tablet {
                 out.push(self.here(STREAM));
             }
         }
-        out.push((NAME, BUTTONS, Value::Integer(code.into())));
+        let is_single = buttons.is_power_of_two();
+        if is_single {
+            out.push(code(0));
+        }
+        out.push(code(buttons));
         if before == 0 {
             out.push(self.here(DRAWING));
+        }
+        if is_single {
             out.push(self.here(PRESS));
         }
     }
 
     fn release(&mut self, out: &mut Vec<Emission>) {
         if std::mem::take(&mut self.buttons) != 0 {
-            out.push((NAME, BUTTONS, Value::Integer(0)));
+            out.push(code(0));
             out.push((NAME, SWITCH, Value::Boolean(false)));
         }
     }
@@ -130,6 +145,10 @@ impl Tablet {
     fn here(&self, output: u16) -> Emission {
         (NAME, output, Value::Vector2(DVec2::from_array(self.position)))
     }
+}
+
+fn code(buttons: u8) -> Emission {
+    (NAME, BUTTONS, Value::Integer(buttons.into()))
 }
 
 #[cfg(test)]
@@ -155,21 +174,24 @@ mod tests {
     #[test]
     fn a_press_sends_place_and_code_once_and_a_release_zero_and_false() {
         let mut tablet = Tablet::default();
-        assert_eq!(sent(&mut tablet, &[Move([0.25, -0.125])]), "<5>true <1>0.25,-0.125");
-        assert_eq!(sent(&mut tablet, &[Press(4)]), "<2>true <3>4 <4>0.25,-0.125 <6>0.25,-0.125");
+        assert_eq!(sent(&mut tablet, &[Move([0.25, -0.125])]), "<5>true <1>0.25,-0.125 <3>0");
+        assert_eq!(sent(&mut tablet, &[Press(4)]), "<2>true <3>0 <3>4 <4>0.25,-0.125 <6>0.25,-0.125");
         assert_eq!(sent(&mut tablet, &[Press(4)]), "", "the same buttons are still down");
         assert_eq!(sent(&mut tablet, &[Move([0.5, 0.0])]), "<1>0.5,0 <4>0.5,0");
         assert_eq!(sent(&mut tablet, &[Release, Release]), "<3>0 <2>false");
-        assert_eq!(sent(&mut tablet, &[Move([0.0, 0.0])]), "<1>0,0");
+        assert_eq!(sent(&mut tablet, &[Move([0.0, 0.0])]), "<1>0,0 <3>0");
         assert_eq!(sent(&mut tablet, &[Away, Away]), "<5>false");
     }
 
     #[test]
-    fn a_second_button_changes_the_code_only() {
+    fn every_code_of_one_button_has_its_place_and_chords_have_none() {
         let mut tablet = Tablet::default();
-        sent(&mut tablet, &[Move([0.0, 0.0]), Press(1)]);
-        assert_eq!(sent(&mut tablet, &[Press(3), Press(2)]), "<3>3 <3>2");
+        sent(&mut tablet, &[Move([0.5, 0.0]), Press(1)]);
+        assert_eq!(sent(&mut tablet, &[Press(2)]), "<3>0 <3>2 <6>0.5,0", "rolled from button to button");
+        assert_eq!(sent(&mut tablet, &[Press(3)]), "<3>3");
+        assert_eq!(sent(&mut tablet, &[Press(2)]), "<3>0 <3>2 <6>0.5,0");
         assert_eq!(sent(&mut tablet, &[Press(0)]), "<3>0 <2>false", "no button is a release");
+        assert_eq!(sent(&mut tablet, &[Press(9)]), "<2>true <3>9 <4>0.5,0");
     }
 
     #[test]
@@ -179,7 +201,7 @@ mod tests {
         assert_eq!(sent(&mut tablet, &[Away]), "<3>0 <2>false <5>false");
         assert_eq!(tablet.pointer(), None);
         let back = sent(&mut tablet, &[Press(1)]);
-        assert_eq!(back, "<5>true <1>0.5,0.5 <2>true <3>1 <4>0.5,0.5 <6>0.5,0.5");
+        assert_eq!(back, "<5>true <1>0.5,0.5 <3>0 <2>true <3>0 <3>1 <4>0.5,0.5 <6>0.5,0.5");
     }
 
     #[test]
@@ -203,7 +225,7 @@ mod tests {
     #[test]
     fn places_stay_on_the_tablet() {
         let mut tablet = Tablet::default();
-        assert_eq!(sent(&mut tablet, &[Move([5.0, -7.0])]), "<5>true <1>1,-1");
+        assert_eq!(sent(&mut tablet, &[Move([5.0, -7.0])]), "<5>true <1>1,-1 <3>0");
         assert_eq!(sent(&mut tablet, &[Move([f64::NAN, 0.0])]), "");
     }
 }

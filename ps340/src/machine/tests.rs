@@ -61,11 +61,13 @@ fn names_may_be_used_before_they_are_defined() {
 }
 
 #[test]
-fn a_deleted_object_vanishes_where_it_is_referred_to_and_comes_back() {
+fn a_deleted_object_vanishes_where_it_is_referred_to_for_ever() {
     let mut machine = told(&format!("{DOT} A := INSTANCE OF D; DISPLAY A;"));
     tell(&mut machine, "DELETE D;");
     assert!(strokes(&mut machine).is_empty());
     tell(&mut machine, DOT);
+    assert!(strokes(&mut machine).is_empty(), "the new D is another object");
+    tell(&mut machine, "INCLUDE D IN A;");
     assert_eq!(strokes(&mut machine).len(), 1);
 }
 
@@ -175,7 +177,7 @@ fn a_line_that_closes_inside_a_structure_leaves_nothing_half_done() {
 fn wildcards_and_initialize_spare_the_system() {
     let mut machine = told("T1 := F:ADDC; T2 := F:NOP; CONNECT DIALS<1>:<1>T1; DELETE T*; SEND 'X' TO <1>DLABEL1;");
     assert_eq!(machine.describe("TABLETIN").as_deref(), Some("TABLETIN := F:TABLETIN"));
-    assert_eq!(machine.describe("T1").as_deref(), Some("T1 is not defined"));
+    assert_eq!(machine.describe("T1"), None);
     assert_eq!(machine.panel().label(Label::Dial(1)), b"X");
     tell(&mut machine, "INITIALIZE;");
     assert_eq!(machine.describe("T1"), None);
@@ -255,10 +257,9 @@ fn a_press_of_the_puck_sends_place_and_code_once() {
     while let Some(message) = machine.take_message() {
         said.push(String::from_utf8_lossy(&message).into_owned());
     }
-    assert_eq!(said.len(), 3, "{said:?}");
-    assert_eq!(said.iter().filter(|m| m.starts_with('V')).count(), 1);
-    assert_eq!(said[0], "1");
-    assert_eq!(said[2], "0");
+    assert_eq!(said.iter().filter(|m| m.starts_with('V')).count(), 1, "{said:?}");
+    said.retain(|m| !m.starts_with('V'));
+    assert_eq!(said, ["0", "0", "1", "0"]);
 }
 
 #[test]

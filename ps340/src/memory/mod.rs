@@ -5,6 +5,7 @@ mod system;
 mod initial;
 mod physical;
 mod insertion;
+mod deletion;
 mod rendering;
 mod title;
 
@@ -55,6 +56,10 @@ impl MassMemory {
     /// # Errors
     /// [`Refusal::Full`].
     pub fn object(&mut self, name: &Name) -> Result<ObjectId, Refusal> {
+        if let Ok(id) = self.objects.object(name) {
+            return Ok(id);
+        }
+        self.reuse_deleted();
         self.objects.object(name).map_err(|_| Refusal::Full)
     }
 
@@ -180,9 +185,10 @@ impl MassMemory {
         Ok(id)
     }
 
-    /// DELETE: takes definitions away, with the nodes that were named inside them. What refers to the names
-    /// refers to nothing until they are defined again.
-    pub fn undefine_all(&mut self, mut ids: Vec<ObjectId>) {
+    /// Takes definitions away, with the nodes that were named inside them; returns all whose definitions went. What
+    /// refers to the names refers to nothing until they are defined again.
+    pub fn undefine_all(&mut self, mut ids: Vec<ObjectId>) -> Vec<ObjectId> {
+        let mut gone = Vec::new();
         while let Some(id) = ids.pop() {
             self.network.undefine(id);
             ids.extend(self.insertions_of(id));
@@ -190,7 +196,9 @@ impl MassMemory {
                 ids.extend(node.own_members());
             }
             self.objects.release(id);
+            gone.push(id);
         }
+        gone
     }
 
     /// Sends a message to an object: at once into a node, or into the queue of a function.

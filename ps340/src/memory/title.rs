@@ -21,7 +21,7 @@ impl MassMemory {
         let what = match (self.network.function(id), self.structures.node(id)) {
             (Some(row), _) => format!("F:{}", row.name),
             (None, Some(node)) => node.word().into(),
-            (None, None) => "an object".into(),
+            (None, None) => return "nothing".into(),
         };
         let mut home = self.structures.home(id);
         for _ in 0..DEPTH {

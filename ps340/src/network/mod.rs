@@ -5,7 +5,7 @@
 //! messages that are there, so loops are no recursion and need no stack; a budget bounds each run.
 //!
 //! An object is its own place: instances lie in a table by the numbers of the objects, so an arc leads to its end
-//! without a search, and connections to a name outlive what the name stands for.
+//! without a search, and connections to a name outlive what the name stands for, until the name is deleted.
 //!
 //! A person may look on, see [`Network::snapshot`]: counters, a trace of messages, breaks, single
 //! firings. Nothing of it costs anything while nobody does.
@@ -172,6 +172,14 @@ impl Network {
     pub fn undefine(&mut self, id: ObjectId) {
         self.undefine_instance(id);
         self.drop_outside(id, |_| true);
+    }
+
+    /// Ends an instance for ever, with its break.
+    pub fn forget(&mut self, id: ObjectId) {
+        self.undefine(id);
+        if self.breaks().any(|broken| broken == id) {
+            self.set_break(id, false);
+        }
     }
 
     fn undefine_instance(&mut self, id: ObjectId) {

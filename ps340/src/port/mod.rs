@@ -28,6 +28,9 @@ pub use rendering::{Rendering, RenderingRequest};
 pub struct ObjectId(pub u32);
 
 impl ObjectId {
+    /// No object: what referred to one that was deleted refers to this.
+    pub const NOTHING: ObjectId = ObjectId(u32::MAX);
+
     /// The object in place `index` of the tables.
     pub const fn new(index: usize) -> ObjectId {
         ObjectId(index as u32)

@@ -327,6 +327,18 @@ impl Structures {
         self.version += 1;
     }
 
+    /// Clears references to objects that have gone. The picture stays as it is: nothing was drawn for them.
+    pub fn forget(&mut self, is_gone: impl Fn(ObjectId) -> bool) {
+        for node in self.nodes.iter_mut().flatten() {
+            let before = node.bytes();
+            node.forget(&is_gone);
+            self.bytes = self.bytes + node.bytes() - before;
+        }
+        self.homes.retain(|member, home| !is_gone(*member) && !is_gone(*home));
+        self.aliases.retain(|_, target| !is_gone(*target));
+        self.stale.retain(|id| !is_gone(*id));
+    }
+
     /// Gives back the room of nodes that have gone.
     pub fn shrink(&mut self) {
         let end = self.nodes.iter().rposition(Option::is_some).map_or(0, |last| last + 1);

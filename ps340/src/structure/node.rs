@@ -149,4 +149,41 @@ impl Node {
         let own = members.iter().filter_map(|m| if let Member::Named(id) = m { Some(*id) } else { None });
         own.collect()
     }
+
+    /// Clears references to objects that have gone: instances and structures no longer contain them, and what needs a
+    /// descendant has [`ObjectId::NOTHING`].
+    pub fn forget(&mut self, is_gone: &impl Fn(ObjectId) -> bool) {
+        let clear = |reference: &mut Option<ObjectId>| {
+            if reference.is_some_and(is_gone) {
+                *reference = Some(ObjectId::NOTHING);
+            }
+        };
+        match self {
+            Node::Instance(members) => members.retain(|id| !is_gone(*id)),
+            Node::Group(members) => forget_members(members, is_gone),
+            Node::Operate { operation, descendant } => {
+                clear(descendant);
+                match operation {
+                    Operation::Font(font) => clear(font),
+                    Operation::Rendering { rendered: Some(rendered), .. } => {
+                        forget_members(&mut rendered.members, is_gone);
+                    }
+                    _ => {}
+                }
+            }
+            Node::Polygons(polygons) => polygons.attributes.iter_mut().for_each(clear),
+            _ => {}
+        }
+    }
+}
+
+fn forget_members(members: &mut Vec<Member>, is_gone: &impl Fn(ObjectId) -> bool) {
+    members.retain_mut(|member| match member {
+        Member::Named(id) | Member::Included(id) => !is_gone(*id),
+        // A structure inside a structure is an object of its own, so that this goes one deep.
+        Member::Unnamed(node) => {
+            node.forget(is_gone);
+            true
+        }
+    });
 }

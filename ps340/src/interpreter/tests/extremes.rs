@@ -73,7 +73,9 @@ fn what_is_displayed_may_be_redefined_and_deleted_at_any_time() {
         ("D := BEGIN_STRUCTURE D := VECTOR_LIST DOTS 0,0,0; END_STRUCTURE;", 2),
         ("D := A;", 0),
         ("DELETE D;", 0),
-        (DOT, 2),
+        (DOT, 0),
+        ("DISPLAY D;", 1),
+        ("INCLUDE D IN A;", 2),
     ];
     for (command, strokes) in kinds {
         desk.tell(command);

@@ -98,6 +98,7 @@ fn a_new_definition_or_a_deletion_takes_prefixes_and_followers_away() {
     let (objects, bytes) = (desk.memory.objects.len(), desk.memory.bytes());
     desk.tell("PREFIX S.T WITH SCALE BY 2; FOLLOW S.T WITH SCALE BY 2; PREFIX S WITH SCALE BY 2; DELETE S;");
     desk.tell(structure);
+    desk.memory.reuse_deleted();
     assert_eq!((desk.memory.objects.len(), desk.memory.bytes()), (objects, bytes));
 }
 
