@@ -86,7 +86,7 @@ impl Listing {
     pub fn push(&mut self, bytes: &[u8], out: &mut impl Write) -> fmt::Result {
         let Listing { frames, commands, binary, sender, message, offset, width } = self;
         let mut result = Ok(());
-        frames.feed(bytes, |frame| {
+        frames.feed_quoted(bytes, |frame| {
             let mut rows = Rows { offset: *offset, width: *width, out: &mut *out, result };
             match (&frame, *sender) {
                 (Frame::Text(text), Sender::Machine) => rows.messages(text, message),
@@ -94,6 +94,7 @@ impl Listing {
             }
             result = rows.result;
             *offset += frame.stream_length() as u64;
+            commands.is_quoting()
         });
         result
     }
@@ -134,7 +135,11 @@ struct Rows<'o, W> {
 impl<W: Write> Rows<'_, W> {
     fn frame(&mut self, frame: Frame<'_>, commands: &mut CommandReader, binary: &mut BinaryDecoder) {
         match frame {
-            Frame::Text(text) => self.commands(&Body::plain(text), commands),
+            Frame::Text(text) => {
+                let before = commands.pushed();
+                commands.push(text);
+                self.commands(&Body::plain(text), before, commands);
+            }
             Frame::Noise { bytes, reason } => self.field(0, bytes, format_args!("dropped: {reason}")),
             Frame::Empty(bytes) => {
                 self.field(0, bytes, format_args!("SYN SYN, empty escape packet: the end of the one before"))
@@ -173,7 +178,11 @@ impl<W: Write> Rows<'_, W> {
                     Err(error) => self.note(format_args!("error: {error}")),
                 }
             }
-            Route::Text => self.commands(body, commands),
+            Route::Text => {
+                let before = commands.pushed();
+                commands.push_packet(body.payload);
+                self.commands(body, before, commands);
+            }
             Route::Message => {
                 self.text(body.at(0), whole);
                 if let Some(form) = MessageForm::requested(body.payload) {
@@ -259,9 +268,9 @@ impl<W: Write> Rows<'_, W> {
     }
 
     /// Lists a text, with each command behind its bytes.
-    fn commands(&mut self, body: &Body<'_>, commands: &mut CommandReader) {
-        let before = commands.pushed();
-        commands.push(body.payload);
+    ///
+    /// - `before`: bytes of commands before it.
+    fn commands(&mut self, body: &Body<'_>, before: u64, commands: &mut CommandReader) {
         let mut listed = 0;
         while let Some(item) = commands.next() {
             // The statement with its `;`, of which all but the last part may have been listed before.
@@ -272,7 +281,10 @@ impl<W: Write> Rows<'_, W> {
                 listed = end;
             }
             match item {
-                Ok(spanned) => self.note(format_args!("command: {}", shorten(&spanned.command.to_string()))),
+                Ok(spanned) => {
+                    self.note(format_args!("command: {}", shorten(&spanned.command.to_string())));
+                    spanned.warnings.iter().for_each(|warning| self.note(format_args!("warning: {warning}")));
+                }
                 Err(error) => self.note(format_args!("error: {error}")),
             }
         }

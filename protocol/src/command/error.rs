@@ -46,9 +46,12 @@ pub enum Problem {
     /// A comment without its brace.
     #[error("the comment has no closing brace")]
     OpenComment,
-    /// A text that is too long.
-    #[error("the text is longer than {MAX_TEXT} characters")]
+    /// A text that is too long; the rest of it is left out.
+    #[error("the text is longer than {MAX_TEXT} characters and is cut")]
     LongString,
+    /// Attributes or an outline behind the last polygon of a command; they are left out.
+    #[error("no polygon follows, so this has no effect")]
+    NoPolygon,
     /// A name that is none.
     #[error(transparent)]
     Name(#[from] NameError),
@@ -95,7 +98,7 @@ pub(super) struct Fault {
     pub(super) expected: &'static [&'static str],
 }
 
-/// An error in a command text.
+/// An error in a command text, or a doubt about one that was read.
 ///
 /// It displays as `line:column: problem, expected ..., found ...`; line and column count from 1 at the first character
 /// of the text that was parsed: a command, or the whole stream of a [`CommandReader`](super::CommandReader).

@@ -22,6 +22,8 @@ pub struct Spanned<T> {
     pub command: T,
     /// Its bytes within the statement, without the `;`.
     pub span: Range<usize>,
+    /// What was left out of it; nothing, as a rule.
+    pub warnings: Vec<CommandError>,
 }
 
 /// Where in the language a byte of the stream stands.
@@ -69,6 +71,8 @@ pub struct CommandReader {
     before: u8,
     /// Bytes of the stream before the buffer.
     passed: u64,
+    /// Where in the stream the latest packet ends.
+    packet_end: u64,
     /// Where in the stream the text or the comment begins that `place` is in.
     opened: u64,
     /// How far lines were counted, as an offset into the buffer: line ends before, and bytes behind the last of them.
@@ -89,6 +93,7 @@ impl Default for CommandReader {
             last: 0..0,
             before: b'\n',
             passed: 0,
+            packet_end: 0,
             opened: 0,
             counted: 0,
             lines: 0,
@@ -115,6 +120,18 @@ impl CommandReader {
             }
         }
         self.buffer.extend_from_slice(bytes);
+    }
+
+    /// Takes more of the stream that came in a packet.
+    pub fn push_packet(&mut self, bytes: &[u8]) {
+        self.push(bytes);
+        self.packet_end = self.pushed();
+    }
+
+    /// Whether the stream has come to a text in quotes that was begun outside packets. A packet cannot begin there: its
+    /// start byte is a character of the text.
+    pub fn is_quoting(&self) -> bool {
+        self.place == Place::Text && self.opened >= self.packet_end
     }
 
     /// Whether a statement has begun and its `;` is still to come.
@@ -285,7 +302,8 @@ impl Iterator for CommandReader {
             let result = match step {
                 Some(Ok(found)) => {
                     self.parsed = found.next;
-                    return Some(Ok(Spanned { command: found.command, span: found.span }));
+                    let warnings = found.warnings.into_iter().map(|fault| self.error(end, fault)).collect();
+                    return Some(Ok(Spanned { command: found.command, span: found.span, warnings }));
                 }
                 Some(Err(fault)) => Some(Err(self.error(end, fault))),
                 None => None,
@@ -386,6 +404,24 @@ mod tests {
         }
         let all = read(&[b"SEND 'no !RESET; here' TO <1>A; { nor !RESET; here } DISPLAY !; DISPLAY A;"]);
         assert_eq!(all.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, false, true]);
+    }
+
+    #[test]
+    fn a_text_is_quoting_unless_a_packet_began_it() {
+        let mut reader = CommandReader::default();
+        reader.push(b"SEND 'A");
+        assert!(reader.next().is_none() && reader.is_quoting());
+        reader.push(b"' TO <1>A; {'");
+        assert!(reader.next().is_some() && reader.next().is_none() && !reader.is_quoting(), "a comment");
+        reader.push(b"}");
+        reader.push_packet(b"SEND 'A");
+        reader.push(b"\r\n");
+        assert!(reader.next().is_none() && !reader.is_quoting());
+        reader.push_packet(b"'");
+        reader.push(b" TO <1>A; SEND '");
+        assert!(reader.next().is_some() && reader.next().is_none() && reader.is_quoting());
+        reader.push(b"\n!RESET;");
+        assert!(reader.next().is_some() && !reader.is_quoting());
     }
 
     #[test]

@@ -107,6 +107,8 @@ pub struct FrameDecoder {
     /// Route and data of the latest escape packet.
     unescaped: Vec<u8>,
     historical: bool,
+    /// Text outside packets is inside quotes, where start bytes are characters.
+    quoted: bool,
     counters: Counters,
 }
 
@@ -140,6 +142,7 @@ impl Default for FrameDecoder {
             scan: Scan::default(),
             unescaped: Vec::new(),
             historical: true,
+            quoted: false,
             counters: Counters::default(),
         }
     }
@@ -181,7 +184,7 @@ impl FrameDecoder {
             return None;
         }
         let bytes = &self.buffer[self.start..self.end];
-        let step = look(bytes, self.historical, &mut self.scan);
+        let step = look(bytes, self.historical, self.quoted, &mut self.scan);
         self.needed = if let Step::Wait(needed) = step { needed } else { 0 };
         let (frame, length) = take(step, bytes, &mut self.scan, &mut self.unescaped, &mut self.counters)?;
         self.start += length;
@@ -190,25 +193,34 @@ impl FrameDecoder {
 
     /// Takes bytes that lie elsewhere and gives all frames that they complete to `each`. Only what is not complete yet is
     /// copied.
-    pub fn feed(&mut self, mut bytes: &[u8], mut each: impl FnMut(Frame<'_>)) {
+    pub fn feed(&mut self, bytes: &[u8], mut each: impl FnMut(Frame<'_>)) {
+        self.feed_quoted(bytes, |frame| {
+            each(frame);
+            false
+        });
+    }
+
+    /// Does the same as [`feed`](Self::feed), and asks `each` whether the text outside packets is inside quotes now. Start
+    /// bytes are characters there.
+    pub fn feed_quoted(&mut self, mut bytes: &[u8], mut each: impl FnMut(Frame<'_>) -> bool) {
         while self.is_unfinished() && !bytes.is_empty() {
             bytes = self.complete(bytes, &mut each);
         }
         while !bytes.is_empty() {
-            let step = look(bytes, self.historical, &mut self.scan);
+            let step = look(bytes, self.historical, self.quoted, &mut self.scan);
             if let Step::Wait(needed) = step {
                 self.needed = needed;
                 return self.keep(bytes);
             }
             let taken = take(step, bytes, &mut self.scan, &mut self.unescaped, &mut self.counters);
             let Some((frame, length)) = taken else { return };
-            each(frame);
+            self.quoted = each(frame);
             bytes = &bytes[length..];
         }
     }
 
     /// Takes so many bytes as the packet that has begun is known to need; returns the others.
-    fn complete<'b>(&mut self, bytes: &'b [u8], each: &mut impl FnMut(Frame<'_>)) -> &'b [u8] {
+    fn complete<'b>(&mut self, bytes: &'b [u8], each: &mut impl FnMut(Frame<'_>) -> bool) -> &'b [u8] {
         let waiting = self.end - self.start;
         let wanted = match self.buffer[self.start] {
             _ if self.needed > waiting => self.needed - waiting,
@@ -218,7 +230,7 @@ impl FrameDecoder {
         let (now, later) = bytes.split_at(wanted.min(bytes.len()));
         self.keep(now);
         while let Some(frame) = self.next_frame() {
-            each(frame);
+            self.quoted = each(frame);
         }
         later
     }
@@ -302,8 +314,9 @@ fn take<'a>(
 }
 
 /// What stands at the start of `bytes`, which are not empty.
-fn look(bytes: &[u8], historical: bool, scan: &mut Scan) -> Step {
+fn look(bytes: &[u8], historical: bool, quoted: bool, scan: &mut Scan) -> Step {
     match bytes[0] {
+        _ if quoted => Step::Text(1 + find_start(&bytes[1..], historical)),
         LONG_START => look_long(bytes),
         COUNT_START if historical => look_count(bytes),
         ESCAPE_START if historical => look_escape(bytes, scan),

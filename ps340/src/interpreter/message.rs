@@ -30,6 +30,8 @@ pub enum Class {
 pub enum Message {
     /// E 1: a command that cannot be read.
     Syntax(CommandError),
+    /// W 1: a command of which something was left out.
+    LeftOut(CommandError),
     /// E 1: a binary command that cannot be read.
     Binary(BinaryError),
     /// W 3: a name got a new definition.
@@ -95,7 +97,11 @@ impl Message {
     /// Error, warning or information.
     pub fn class(&self) -> Class {
         match self {
-            Message::Redefined(_) | Message::Doubtful { .. } | Message::NoPort(_) | Message::Line(_) => Class::Warning,
+            Message::LeftOut(_)
+            | Message::Redefined(_)
+            | Message::Doubtful { .. }
+            | Message::NoPort(_)
+            | Message::Line(_) => Class::Warning,
             Message::Function { fault, .. } if fault.class() == 'W' => Class::Warning,
             Message::Node { fault, .. } if fault.is_warning() => Class::Warning,
             Message::Raster(fault) if fault.is_warning() => Class::Warning,
@@ -128,7 +134,7 @@ impl Message {
     /// The number of the message.
     pub fn number(&self) -> u16 {
         match self {
-            Message::Syntax(_) | Message::Binary(_) => 1,
+            Message::Syntax(_) | Message::LeftOut(_) | Message::Binary(_) => 1,
             Message::Redefined(_) => 3,
             Message::Structure(_) => 4,
             Message::Function { fault, .. } => fault.number(),
@@ -159,7 +165,7 @@ impl std::fmt::Display for Message {
         };
         write!(f, "{letter} {} *** ", self.number())?;
         match self {
-            Message::Syntax(error) => write!(f, "{error}"),
+            Message::Syntax(error) | Message::LeftOut(error) => write!(f, "{error}"),
             Message::Binary(error) => write!(f, "{error}"),
             Message::Range { of, text } | Message::Doubtful { of, text } => {
                 write!(f, "Value out of range in {of}: {text}")

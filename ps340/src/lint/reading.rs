@@ -89,6 +89,9 @@ impl Reading<'_> {
             let begin = reader.position() as usize;
             match item {
                 Ok(spanned) => {
+                    for warning in &spanned.warnings {
+                        self.note(Place { file, at: begin + warning.span.start }, Level::Warning, warning.message());
+                    }
                     let place = Place { file, at: begin + spanned.span.start };
                     let text = &source.text[place.at..(begin + spanned.span.end).min(source.text.len())];
                     self.command(&spanned.command, text, place);

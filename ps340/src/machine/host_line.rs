@@ -65,7 +65,10 @@ impl HostLine {
     /// Takes bytes from the host and does what they say.
     pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine) {
         let HostLine { frames, decoders } = self;
-        frames.feed(bytes, |frame| decoders.frame(frame, machine));
+        frames.feed_quoted(bytes, |frame| {
+            decoders.frame(frame, machine);
+            decoders.text.is_quoting()
+        });
     }
 
     /// Everything that was begun on the line is forgotten: the machine starts again.
@@ -97,7 +100,10 @@ impl Decoders {
     fn frame(&mut self, frame: Frame<'_>, machine: &mut Machine) {
         match frame {
             Frame::Text(text) => match self.plain_text {
-                PlainText::Commands => self.commands(text, machine),
+                PlainText::Commands => {
+                    self.text.push(text);
+                    self.commands(machine);
+                }
                 PlainText::Terminal => machine.show_text(Some(self.line), text),
             },
             Frame::Packet { route, payload, .. } => self.packet(route, payload, machine),
@@ -111,7 +117,10 @@ impl Decoders {
 
     fn packet(&mut self, route: Route, payload: &[u8], machine: &mut Machine) {
         match route {
-            Route::Text => self.commands(payload, machine),
+            Route::Text => {
+                self.text.push_packet(payload);
+                self.commands(machine);
+            }
             Route::Binary => self.binary(payload, machine),
             Route::Raster => drop(raster_records(payload, machine)),
             Route::SixBitBinary | Route::SixBitRaster => {
@@ -151,13 +160,9 @@ impl Decoders {
         }
     }
 
-    fn commands(&mut self, text: &[u8], machine: &mut Machine) {
-        self.text.push(text);
+    fn commands(&mut self, machine: &mut Machine) {
         for read in self.text.by_ref() {
-            match read {
-                Ok(spanned) => machine.execute(&mut self.interpreter, spanned.command),
-                Err(error) => machine.report(Message::Syntax(error)),
-            }
+            machine.execute_read(&mut self.interpreter, read);
         }
     }
 

@@ -11,7 +11,7 @@ use crate::{
 };
 use protocol::{
     Value,
-    command::{BinaryDecoder, Command, CommandReader},
+    command::{BinaryDecoder, Command, CommandError, CommandReader, Spanned},
 };
 use std::collections::{BTreeMap, VecDeque};
 
@@ -120,13 +120,7 @@ impl Machine {
         let mut completed = 0;
         reader.text.push(text);
         for read in reader.text.by_ref() {
-            match read {
-                Ok(read) => {
-                    self.execute(&mut reader.interpreter, read.command);
-                    completed += 1;
-                }
-                Err(error) => self.report(Message::Syntax(error)),
-            }
+            completed += usize::from(self.execute_read(&mut reader.interpreter, read));
         }
         completed
     }
@@ -144,6 +138,25 @@ impl Machine {
             }
         }
         completed
+    }
+
+    /// Carries out a command that was read, or reports why it could not be. Returns whether it was one.
+    pub(super) fn execute_read(
+        &mut self,
+        interpreter: &mut Interpreter,
+        read: Result<Spanned<Command>, CommandError>,
+    ) -> bool {
+        match read {
+            Ok(read) => {
+                read.warnings.into_iter().for_each(|warning| self.report(Message::LeftOut(warning)));
+                self.execute(interpreter, read.command);
+                true
+            }
+            Err(error) => {
+                self.report(Message::Syntax(error));
+                false
+            }
+        }
     }
 
     /// Carries out a command and what it causes.

@@ -11,8 +11,12 @@ use crate::command::{
 pub(super) struct Parser<'t> {
     pub(super) lexer: Lexer<'t>,
     pub(super) token: Token,
+    /// Where the last token that was taken begins and ends.
+    pub(super) last_start: usize,
     pub(super) last_end: usize,
     missed: Missed,
+    /// What was left out of the command.
+    pub(super) warnings: Vec<Fault>,
 }
 
 /// The words that the current token was compared with; what an error suggests comes from them.
@@ -54,11 +58,12 @@ impl<'t> Parser<'t> {
     pub(super) fn new(text: &'t [u8], at: usize) -> Self {
         let mut lexer = Lexer::new(text, at);
         let token = lexer.token();
-        Parser { lexer, token, last_end: at, missed: Missed::default() }
+        Parser { lexer, token, last_start: at, last_end: at, missed: Missed::default(), warnings: Vec::new() }
     }
 
     /// Takes the current token.
     pub(super) fn advance(&mut self) -> Token {
+        self.last_start = self.token.start;
         self.last_end = self.token.end;
         self.missed.count = 0;
         std::mem::replace(&mut self.token, self.lexer.token())

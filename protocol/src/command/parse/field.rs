@@ -193,13 +193,16 @@ impl Parser<'_> {
         Ok(self.expect_one_of(&[Word::On, Word::Off], &["ON", "OFF"])? == Word::On)
     }
 
-    /// `<i>`
+    /// `<i>`: the number of an input, or the word or the number (0 to -6) of a special one.
     pub(super) fn input(&mut self) -> Result<Input, Fault> {
         const EXPECTED: &[&str] =
             &["the number of an input", "append, delete, clear, step, position, last, substitute"];
         self.expect(TokenKind::Less, &["an input such as `<1>`"])?;
         let input = match self.token.kind {
-            TokenKind::Number(_) => Input::Number(self.integer(1..NUMBERS)? as u32),
+            TokenKind::Number(_) => {
+                let code = self.integer(Input::Substitute.code()..NUMBERS)?;
+                Input::from_code(code).ok_or_else(|| self.fail(EXPECTED))?
+            }
             TokenKind::Name => {
                 let text = self.text(self.token);
                 let row = Input::WORDS.iter().find(|row| row.1.as_bytes().eq_ignore_ascii_case(text));

@@ -23,7 +23,8 @@ use cursor::Parser;
 use std::ops::Range;
 pub(super) use system::is_plain_value;
 
-/// Parses a text that is one command; the `;` at its end may be missing.
+/// Parses a text that is one command; the `;` at its end may be missing. What a
+/// [`CommandReader`](super::CommandReader) would warn of is left out.
 ///
 /// # Errors
 /// [`CommandError`] with the place in `text`.
@@ -46,6 +47,8 @@ pub(super) struct Found {
     pub(super) command: Command,
     /// Its bytes, from its first token to its last; without the `;`.
     pub(super) span: Range<usize>,
+    /// What was left out of it.
+    pub(super) warnings: Vec<Fault>,
     /// Where the next command of the same statement begins; the end of the text if there is none.
     pub(super) next: usize,
 }
@@ -66,11 +69,12 @@ pub(super) fn next_command(text: &[u8], at: usize) -> Option<Result<Found, Fault
             command,
             Command::Begin | Command::Define { object: Object::BeginStructure | Object::BeginFont, .. }
         );
-        match parser.token.kind {
-            kind if Parser::ends(kind) => Ok(Found { command, span, next: text.len() }),
-            _ if begins => Ok(Found { command, span, next: parser.token.start }),
-            _ => Err(parser.fail(&["`;`"])),
-        }
+        let next = match parser.token.kind {
+            kind if Parser::ends(kind) => text.len(),
+            _ if begins => parser.token.start,
+            _ => return Err(parser.fail(&["`;`"])),
+        };
+        Ok(Found { command, span, warnings: std::mem::take(&mut parser.warnings), next })
     }))
 }
 

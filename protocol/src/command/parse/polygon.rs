@@ -13,17 +13,28 @@ use crate::{
 use glam::DVec3;
 
 impl Parser<'_> {
-    /// `[WITH [ATTRIBUTES] name] [OUTLINE hue] POLYGON [COPLANAR] vertex...`, once or more; the first word was taken.
+    /// `[WITH [ATTRIBUTES] name] [[WITH] OUTLINE hue] POLYGON [COPLANAR] vertex...`, once or more; the first word was
+    /// taken. Attributes and an outline behind the last polygon are left out.
     pub(super) fn polygons(&mut self, first: Word) -> Result<Vec<Polygon>, Fault> {
         let mut polygons = Vec::new();
         let mut next = Some(first);
         while next.is_some() {
             let (mut attributes, mut outline) = (None, None);
+            let place = self.last_start;
             loop {
                 match next {
+                    Some(Word::With) if self.is(Word::Outline) && self.ahead_is_number() => {
+                        self.advance();
+                        outline = Some(self.real()?);
+                    }
                     Some(Word::With) => attributes = Some(self.attributes_name()?),
                     Some(Word::Outline) => outline = Some(self.real()?),
                     Some(_) => break,
+                    None if Parser::ends(self.token.kind) && !polygons.is_empty() => {
+                        let span = place..self.last_end;
+                        self.warnings.push(Fault { span, problem: Problem::NoPolygon, expected: &[] });
+                        return Ok(polygons);
+                    }
                     None => return Err(self.fail(&["POLYGON", "WITH", "OUTLINE"])),
                 }
                 next = self.accept_one_of(words::POLYGON_OPTIONS);
@@ -33,6 +44,10 @@ impl Parser<'_> {
             next = self.accept_one_of(words::POLYGON_OPTIONS);
         }
         Ok(polygons)
+    }
+
+    fn ahead_is_number(&self) -> bool {
+        matches!(self.ahead().kind, TokenKind::Number(_))
     }
 
     /// `[ATTRIBUTES] name`; the word may be the name itself.

@@ -4,6 +4,7 @@ use super::{Parser, field::NUMBERS};
 use crate::{
     Name,
     command::{
+        MAX_TEXT,
         error::{Fault, Problem},
         syntax::Command,
         token::{TokenKind, unquoted},
@@ -64,7 +65,7 @@ impl Parser<'_> {
         let text = match self.token.kind {
             TokenKind::Name => return Ok(self.name()?.as_str().to_owned()),
             TokenKind::Number(_) => self.text(self.token).to_vec(),
-            TokenKind::String => self.quoted()?,
+            TokenKind::String => self.quoted(),
             _ => return Err(self.fail(&["a word", "a number", "a text in quotes"])),
         };
         let text = String::from_utf8(text).map_err(|_| self.refuse(Problem::BadCharacter))?;
@@ -72,13 +73,14 @@ impl Parser<'_> {
         Ok(text)
     }
 
-    /// The bytes of the text in quotes that stands here.
-    pub(super) fn quoted(&self) -> Result<Vec<u8>, Fault> {
-        let text = unquoted(self.text(self.token));
-        if text.len() > crate::command::MAX_TEXT {
-            return Err(self.refuse(Problem::LongString));
+    /// The bytes of the text in quotes that stands here; what is too much is cut off.
+    pub(super) fn quoted(&mut self) -> Vec<u8> {
+        let mut text = unquoted(self.text(self.token)).into_vec();
+        if text.len() > MAX_TEXT {
+            text.truncate(MAX_TEXT);
+            self.warnings.push(self.refuse(Problem::LongString));
         }
-        Ok(text.into())
+        text
     }
 }
 

@@ -50,7 +50,7 @@ impl Parser<'_> {
         if self.token.kind != TokenKind::String {
             return Err(self.fail(&["a text in quotes"]));
         }
-        let text = self.quoted()?;
+        let text = self.quoted();
         self.advance();
         Ok(text.into())
     }

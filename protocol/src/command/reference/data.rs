@@ -51,8 +51,8 @@ pub(super) const ROWS: &[CommandRow] = &[
         confidence: Confirmed,
         summary: "Surfaces and solids of polygons",
         syntax: &[
-            "name := [WITH [ATTRibutes] attr] [OUTLINE h] POLYGon [COPLANar] vertex vertex vertex ...",
-            "        [[WITH [ATTRibutes] attr] [OUTLINE h] POLYGon [COPLANar] vertex ...] ...;",
+            "name := [WITH [ATTRibutes] attr] [[WITH] OUTLINE h] POLYGon [COPLANar] vertex vertex vertex ...",
+            "        [[WITH [ATTRibutes] attr] [[WITH] OUTLINE h] POLYGon [COPLANar] vertex ...] ...;",
             "vertex: [S] x,y,z [N nx,ny,nz] [C h[,s[,i]] [AND h[,s[,i]]]]",
         ],
         options: &[

@@ -56,6 +56,36 @@ fn text_and_packets_are_told_apart() {
 }
 
 #[test]
+fn start_bytes_inside_quotes_are_text() {
+    let stream = b"\x1c\x20\x2210'\x1c!!\x16\x1d\x160'\x160x\x16\x16";
+    let whole = |pieces: &[&[u8]]| {
+        let (mut decoder, mut all, mut quoted) = (FrameDecoder::default(), Vec::new(), false);
+        for piece in pieces {
+            decoder.feed_quoted(piece, |frame| {
+                match frame {
+                    Frame::Text(bytes) => {
+                        quoted ^= bytes.iter().filter(|byte| **byte == b'\'').count() % 2 == 1;
+                        all.extend_from_slice(bytes);
+                    }
+                    Frame::Packet { route, payload, .. } => {
+                        all.extend_from_slice(format!("[{route:?} {}]", payload.escape_ascii()).as_bytes());
+                    }
+                    Frame::Empty(_) => all.extend_from_slice(b"[]"),
+                    Frame::Noise { .. } => panic!("{frame:?}"),
+                }
+                quoted
+            });
+        }
+        String::from_utf8(all).unwrap()
+    };
+    let expected = "[Binary 0]'\x1c!!\x16\x1d\x160'[Text x][]";
+    assert_eq!(whole(&[stream]), expected);
+    for cut in 0..stream.len() {
+        assert_eq!(whole(&[&stream[..cut], &stream[cut..]]), expected, "cut at {cut}");
+    }
+}
+
+#[test]
 fn a_bad_payload_is_dropped_and_counted() {
     let mut stream = packet(b"damaged");
     stream[LONG_HEADER + 2] ^= 4;

@@ -103,6 +103,34 @@ fn attributes_of_polygons_may_have_the_names_of_words() {
 }
 
 #[test]
+fn an_outline_may_have_a_with() {
+    let [with, without] = ["WITH ", ""].map(|with| {
+        let text =
+            format!("{with}OUTLINE 120 POLYGON 1,2,3 4,5,6 7,8,0 WITH A {with}OUTLINE 3 POLYGON 1,2,3 4,5,6 7,8,0;");
+        polygons(&text)
+    });
+    assert_eq!(with, without);
+    assert_eq!(
+        (with[0].outline, with[1].outline, with[1].attributes.clone()),
+        (Some(120.0), Some(3.0), Some(name("A")))
+    );
+    let named = polygons("WITH OUTLINE POLYGON 1,2,3 4,5,6 7,8,0;");
+    assert_eq!((named[0].attributes.clone(), named[0].outline), (Some(name("OUTLINE")), None));
+}
+
+#[test]
+fn attributes_behind_the_last_polygon_are_left_out_with_a_warning() {
+    for rest in ["WITH ATTRIBUTES A", "WITH A", "OUTLINE 3", "WITH OUTLINE 3 WITH A"] {
+        let mut reader = CommandReader::default();
+        reader.push(format!("P := POLYGON 1,2,3 4,5,6 7,8,0 {rest};").as_bytes());
+        let read = reader.next().unwrap().unwrap();
+        assert_eq!(read.command, parse(b"P := POLYGON 1,2,3 4,5,6 7,8,0;").unwrap(), "{rest}");
+        let [warning] = &read.warnings[..] else { panic!("{:?}", read.warnings) };
+        assert_eq!(warning.to_string(), format!("1:32: no polygon follows, so this has no effect, found `{rest}`"));
+    }
+}
+
+#[test]
 fn polygons_have_3_to_250_vertices() {
     let vertices = |count: usize| "1,2,3 ".repeat(count);
     assert_eq!(polygons(&format!("POLYGON {};", vertices(250)))[0].vertices.len(), 250);
@@ -200,9 +228,18 @@ fn labels_are_pairs_of_place_and_text() {
 fn texts_have_at_most_240_characters() {
     assert!(parse(format!("CHAR '{}';", "a".repeat(240)).as_bytes()).is_ok());
     assert!(parse(format!("CHAR '{}';", "''".repeat(240)).as_bytes()).is_ok());
-    for text in ["CHAR ", "LABELS 0,0 ", "A := CHARACTERS 0,0 STEP 1,0 ", "SEND "] {
-        let error = parse(format!("{text}'{}' TO <1>A;", "a".repeat(241)).as_bytes()).unwrap_err();
-        assert_eq!((error.problem, error.span), (Problem::LongString, text.len()..text.len() + 243));
+    for (text, rest) in
+        [("CHAR ", ""), ("LABELS 0,0 ", ""), ("A := CHARACTERS 0,0 STEP 1,0 ", ""), ("SEND ", " TO <1>A")]
+    {
+        let [long, whole] = [241, 240].map(|length| {
+            let mut reader = CommandReader::default();
+            reader.push(format!("{text}'{}'{rest};", "a".repeat(length)).as_bytes());
+            reader.next().unwrap().unwrap()
+        });
+        assert_eq!(long.command, whole.command, "the rest is cut off");
+        assert_eq!(whole.warnings, []);
+        let [warning] = &long.warnings[..] else { panic!("{:?}", long.warnings) };
+        assert_eq!((warning.problem, warning.span.clone()), (Problem::LongString, text.len()..text.len() + 243));
     }
 }
 

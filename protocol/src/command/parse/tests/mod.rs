@@ -227,6 +227,14 @@ fn every_form_of_a_connection_is_read() {
     }
     let Ok(Command::Connect(arc)) = parse(b"CONN TABLETIN<5>:<APPEND>INK;") else { panic!("CONNECT") };
     assert_eq!((arc.output, arc.destination.input), (5, Input::Append));
+    for input in std::iter::once(Input::Number(7)).chain(Input::WORDS.map(|row| row.0)) {
+        let text = format!("CONN A<1>:<{}>B;", input.code());
+        assert!(
+            matches!(parse(text.as_bytes()), Ok(Command::Connect(arc)) if arc.destination.input == input),
+            "{text}"
+        );
+    }
+    assert_eq!(message("CONNECT A<1>:<-7>B;"), "1:15: the number must be -6 to 4294967295, found `-7`");
     assert_eq!(message("CONNECT A<0>:<1>B;"), "1:11: the number must be 1 to 65535, found `0`");
     assert!(message("CONNECT A<1>:<insert>B;").starts_with("1:15: expected the number of an input"));
     same("A := F:ROUTE(4);", "a := f : route ( 4 )");
