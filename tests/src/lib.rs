@@ -189,6 +189,13 @@ impl Host {
         String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']).to_string()
     }
 
+    /// The next bytes, as they come.
+    pub fn bytes(&mut self, count: usize) -> Vec<u8> {
+        let mut bytes = vec![0; count];
+        self.reader.read_exact(&mut bytes).expect("so many bytes within the time limit");
+        bytes
+    }
+
     /// Waits until everything sent so far is carried out.
     pub fn synchronize(&mut self) {
         static ROUNDS: AtomicU64 = AtomicU64::new(0);

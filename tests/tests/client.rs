@@ -79,6 +79,16 @@ fn every_press_has_one_answer_in_real_time_too() {
     locate("real", 2, 1_000);
 }
 
+#[test]
+fn a_typed_return_is_one_line_end() {
+    let mut machine = Machine::start(PS340, &["--clock", "virtual"]);
+    let mut host = machine.attach();
+    host.send("CONNECT KBHANDLER<4>:<1>HOST_MESSAGE;");
+    meet(&mut host);
+    machine.order("type A\\r\\d");
+    assert_eq!(host.bytes(8), b"A\r\n\r\n\x7f\r\n");
+}
+
 /// A number of the machine's counters.
 fn counter(machine: &mut Machine, name: &str) -> usize {
     let said = machine.order("counters");

@@ -1,7 +1,8 @@
 //! Messages to the host, one string each, in two forms.
 //!
 //! A connection begins in the text form: the bytes of a message, then CR LF. The CR is historical \[M\]; the LF is ours, so
-//! that a terminal shows lines. A packet on the route `=` with the body `P` switches the messages of that connection to
+//! that a terminal shows lines. A CR that ends the message is that of CR LF: a typed RETURN, which is a message of one CR,
+//! ends one line and not two. A packet on the route `=` with the body `P` switches the messages of that connection to
 //! the packet form: one long packet on the route `=` for each message, with exactly its bytes; the body `T` switches
 //! back. Both are ours.
 
@@ -77,7 +78,8 @@ impl MessageWriter {
 
     /// Appends a message to what goes to the host.
     ///
-    /// In the text form the host takes the first CR LF for the end of the message, also one inside it.
+    /// In the text form the host takes the first CR LF for the end of the message, also one inside it, and does not see
+    /// a CR at its end.
     ///
     /// # Errors
     /// A message longer than [`MAX_MESSAGE`].
@@ -86,7 +88,7 @@ impl MessageWriter {
         match self.form {
             MessageForm::Text => {
                 out.extend_from_slice(message);
-                out.extend_from_slice(b"\r\n");
+                out.extend_from_slice(if message.ends_with(b"\r") { b"\n" } else { b"\r\n" });
                 Ok(())
             }
             MessageForm::Packets => write_packet(Route::Message, message, out),
@@ -203,13 +205,13 @@ mod tests {
     }
 
     #[test]
-    fn a_typed_return_is_a_message_of_one_character() {
-        let stream = written(&[b"\r", b"", b"1V 0.25,-0.125"], MessageWriter::default());
-        assert_eq!(stream, b"\r\r\n\r\n1V 0.25,-0.125\r\n");
+    fn a_typed_return_is_one_line_end() {
+        let stream = written(&[b"\r", b"A\r", b"", b"1V 0.25,-0.125"], MessageWriter::default());
+        assert_eq!(stream, b"\r\nA\r\n\r\n1V 0.25,-0.125\r\n");
         let mut reader = MessageReader::default();
         reader.push(&stream);
         let messages: Vec<Vec<u8>> = reader.map(Result::unwrap).collect();
-        assert_eq!(messages, [&b"\r"[..], b"", b"1V 0.25,-0.125"]);
+        assert_eq!(messages, [&b""[..], b"A", b"", b"1V 0.25,-0.125"]);
     }
 
     #[test]
@@ -257,7 +259,11 @@ mod tests {
             messages in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..30), 0..6),
             in_packets in any::<bool>(), size in 1_usize..9
         ) {
-            let clean = |message: &Vec<u8>| -> Vec<u8> { message.iter().copied().filter(|b| *b != b'\n').collect() };
+            let clean = |message: &Vec<u8>| {
+                let mut message: Vec<u8> = message.iter().copied().filter(|b| *b != b'\n').collect();
+                message.truncate(message.iter().rposition(|b| *b != b'\r').map_or(0, |last| last + 1));
+                message
+            };
             let messages: Vec<Vec<u8>> = if in_packets { messages } else { messages.iter().map(clean).collect() };
             let writer = if in_packets { packets() } else { MessageWriter::default() };
             let slices: Vec<&[u8]> = messages.iter().map(Vec::as_slice).collect();

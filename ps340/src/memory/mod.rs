@@ -10,7 +10,7 @@ mod rendering;
 mod title;
 
 pub use refusal::Refusal;
-pub use system::{MAX_INTERFACE_ENTRIES, System};
+pub use system::{INITIAL_WORKING_STORAGE, MAX_INTERFACE_ENTRIES, System};
 
 use crate::{
     functions::{self, devices::Initial},
@@ -272,8 +272,8 @@ impl MassMemory {
         Ok(self.network.function(group).is_none() && self.structures.include(member, group))
     }
 
-    /// INITIALIZE: user objects, all connections, the display list and the working storage go, initial
-    /// structures are restored.
+    /// INITIALIZE: user objects, all connections, the display list and the working storage that was asked for go,
+    /// initial structures are restored.
     pub fn initialize(&mut self) {
         self.restore_structures();
         for id in self.objects.users() {
@@ -283,7 +283,7 @@ impl MassMemory {
         self.insertions.clear();
         self.effects.push(Effect::ForgetRequests);
         self.objects.clear_user();
-        self.system.working_storage = 0;
+        self.system.working_storage = INITIAL_WORKING_STORAGE;
         self.structures.clear_displayed();
         self.restore_arcs();
     }

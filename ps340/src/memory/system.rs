@@ -6,15 +6,24 @@ use std::collections::BTreeMap;
 /// Most ports, and most options of a port, that SETUP INTERFACE keeps. Ours.
 pub const MAX_INTERFACE_ENTRIES: usize = 64;
 
+/// Bytes of working storage that are put aside from the start: enough to render 1,000 vertices. Ours.
+pub const INITIAL_WORKING_STORAGE: u32 = 50_000;
+
 /// Settings that commands make for the whole machine.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct System {
     /// The password of CONFIGURE and REBOOT; without one, every password is right.
     pub password: Option<Name>,
-    /// Bytes that RESERVE_WORKING_STORAGE put aside.
+    /// Bytes that are put aside for renderings; RESERVE_WORKING_STORAGE asks for more.
     pub working_storage: u32,
     /// Options of each port, as SETUP INTERFACE gave them. Kept and shown; the lines of this machine need none.
     interfaces: BTreeMap<Name, BTreeMap<Name, String>>,
+}
+
+impl Default for System {
+    fn default() -> System {
+        System { password: None, working_storage: INITIAL_WORKING_STORAGE, interfaces: BTreeMap::new() }
+    }
 }
 
 impl System {

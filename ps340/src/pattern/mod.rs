@@ -14,6 +14,9 @@ pub const MAX_DASHES: usize = 1 << 20;
 
 /// A dash or a gap shorter than this part of the pattern's length is a rounding.
 const TOLERANCE: f64 = 1e-9;
+/// So is one that the coordinates of the line cannot tell, up to this part of the pattern's length: a line to 0.8, which is
+/// 0.80000001 in 32 bits, is two repetitions of 0.4 long.
+const UNTOLD: f64 = 1e-3;
 
 /// Why a pattern cannot be applied.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -69,7 +72,7 @@ pub fn dashed(list: &VectorList, pattern: &Pattern) -> Result<VectorList, Patter
             let line = Line::new(list.points[to - 1], list.points[to]);
             pen.line(&line, &bounds, period, phase)?;
             phase = (phase + line.length) % period;
-            if period - phase < TOLERANCE * period {
+            if period - phase < line.slack(period) {
                 phase = 0.0;
             }
         }
@@ -146,12 +149,21 @@ struct Line {
     start: [f32; 4],
     end: [f32; 4],
     length: f64,
+    /// What the rounding of the coordinates can make of the length.
+    rounding: f64,
 }
 
 impl Line {
     fn new(start: [f32; 4], end: [f32; 4]) -> Line {
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(end[axis]) - f64::from(start[axis]));
-        Line { start, end, length: (x * x + y * y + z * z).sqrt() }
+        let largest = start[..3].iter().chain(&end[..3]).fold(0.0_f32, |largest, c| largest.max(c.abs()));
+        let rounding = 2.0 * f64::from(f32::EPSILON) * f64::from(largest);
+        Line { start, end, length: (x * x + y * y + z * z).sqrt(), rounding }
+    }
+
+    /// The longest dash or gap that is a rounding.
+    fn slack(&self, period: f64) -> f64 {
+        (TOLERANCE * period.min(self.length)).max(self.rounding.min(UNTOLD * period.min(self.length)))
     }
 
     /// The point at a distance from the start; both ends exact.
@@ -186,7 +198,7 @@ impl Pen {
             let entry = bounds.windows(2).position(|entry| part < entry[1]);
             return if entry.is_some_and(|entry| entry % 2 == 0) { self.dash(line, 0.0, 0.0, 0.0) } else { Ok(()) };
         }
-        let slack = TOLERANCE * period.min(line.length);
+        let slack = line.slack(period);
         let mut repetition = 0.0;
         while repetition * period - phase < line.length - slack {
             for entry in bounds.windows(2).step_by(2) {

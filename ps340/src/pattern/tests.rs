@@ -54,6 +54,21 @@ fn dash_and_gap_alternate_along_a_line() {
 }
 
 #[test]
+fn a_pattern_that_divides_the_line_ends_with_it() {
+    for count in 1..=40_u8 {
+        for length in [0.1, 0.04, 0.2, 0.4, 0.3, 1.0 / 3.0, 0.7] {
+            for start in [0.0_f32, -1.0, 0.35] {
+                let end = start + (f64::from(count) * length) as f32;
+                let dashes = make(&connected(&[[start, 0.5], [end, 0.5]]), &pattern(&[1.0, 1.0], length));
+                let spans = spans(&dashes);
+                assert_eq!(spans.len(), usize::from(count), "{count} times {length} from {start}: {spans:?}");
+                assert!(spans.iter().all(|[from, to]| f64::from(to - from) > 0.4 * length), "{spans:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn entries_are_relative_to_the_length_of_a_repetition() {
     let line = connected(&[[0.0, 0.0], [8.0, 0.0]]);
     assert_eq!(make(&line, &pattern(&[6.0, 2.0, 1.0, 2.0], 5.5)), make(&line, &pattern(&[12.0, 4.0, 2.0, 4.0], 5.5)));

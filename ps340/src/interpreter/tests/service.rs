@@ -1,7 +1,7 @@
 //! Tests of commands about the machine.
 
 use super::{DOT, MAX_BEGINS, told};
-use crate::port::Effect;
+use crate::{memory::INITIAL_WORKING_STORAGE, port::Effect};
 
 #[test]
 fn the_status_says_what_is_open() {
@@ -94,15 +94,15 @@ fn interfaces_are_kept_and_shown() {
 
 #[test]
 fn working_storage_only_grows_until_initialize() {
-    let mut desk = told("RESERVE_WORKING_STORAGE 1000;");
+    let mut desk = told("RESERVE_WORKING_STORAGE 100000;");
     let bytes = desk.memory.bytes();
     desk.tell("RESERVE_WORKING_STORAGE 500;");
-    assert_eq!(desk.memory.system.working_storage, 1000);
-    desk.tell("RESERVE_WORKING_STORAGE 1500;");
+    assert_eq!(desk.memory.system.working_storage, 100_000);
+    desk.tell("RESERVE_WORKING_STORAGE 100500;");
     assert_eq!(desk.memory.bytes(), bytes + 500);
     assert_eq!(desk.tell("RESERVE_WORKING_STORAGE 4000000000;"), ["E 8 *** Insufficient memory"]);
     desk.tell("INITIALIZE;");
-    assert_eq!(desk.memory.system.working_storage, 0);
+    assert_eq!(desk.memory.system.working_storage, INITIAL_WORKING_STORAGE);
 }
 
 #[test]
@@ -122,6 +122,7 @@ fn initialize_in_each_form_clears_its_own_class() {
     desk.tell(DOT);
     assert_eq!(desk.picture().len(), 1, "the display list stays");
     let desk = told(&format!("{setup} A := BEGIN_STRUCTURE BEGIN; PREFIX D WITH SCALE BY 2; INITIALIZE;"));
-    assert!(desk.memory.objects.is_empty() && desk.memory.bytes() == 0 && !desk.memory.structures.is_held());
+    let held = desk.memory.structures.is_held();
+    assert!(desk.memory.objects.is_empty() && desk.memory.bytes() == INITIAL_WORKING_STORAGE as usize && !held);
     assert_eq!(desk.memory.structures.displayed().count(), 0);
 }
