@@ -82,7 +82,7 @@ fn play_at<'c>(
 }
 
 fn target(place: Place, way: Way, cut: Option<u64>) -> Target {
-    Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false }
+    Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false, reboots: false }
 }
 
 fn assert_passed(report: &Report, what: &str) {
@@ -162,12 +162,12 @@ fn a_machine_that_answers_nothing_ends_the_run_at_once() {
 
 #[test]
 fn a_wrong_expectation_fails_at_its_line() {
-    let text = "section B.4\ncase a M x\n> SEND 'B' TO <1>HOST_MESSAGE;\n< A\ncase b M y\n> SEND 'B' TO <1>HOST_MESSAGE;\nquiet\n\
-                case c M z\n> DISPLAY 3;\nquiet\ncase d M z\nstrokes 1\n";
+    let text = "section B.4\ncase a M x\n> SEND 'B' TO <1>HOST_MESSAGE;\n< A\ncase b M y\n> SEND 'B' TO <1>HOST_MESSAGE;\nquiet\n< B\n\
+                case c M z\n> DISPLAY 3;\nquiet\n<! 1\ncase d M z\nstrokes 1\n";
     let cases = conformance::parse("f", text).unwrap();
     let report = play(machine(), Way::default(), None, &cases);
     let failures: Vec<(&str, usize)> = report.failures().map(|(case, f)| (case.id.as_str(), f.line)).collect();
-    assert_eq!(failures, [("a", 4), ("b", 7), ("c", 10), ("d", 12)]);
+    assert_eq!(failures, [("a", 4), ("b", 7), ("c", 11), ("d", 14)]);
 }
 
 #[test]

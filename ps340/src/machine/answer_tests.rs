@@ -279,6 +279,19 @@ fn initialize_forgets_what_waits_for_an_update() {
 }
 
 #[test]
+fn what_contains_itself_is_told_again_after_initialize() {
+    let text = "A := INSTANCE OF A; DISPLAY A;";
+    let mut machine = told(text);
+    machine.next_frame();
+    assert_eq!(errors(&machine).len(), 1);
+    machine.next_frame();
+    assert_eq!(errors(&machine).len(), 1, "once is enough");
+    tell(&mut machine, &format!("INITIALIZE; {text}"));
+    machine.next_frame();
+    assert_eq!(errors(&machine).len(), 2);
+}
+
+#[test]
 fn a_host_does_not_silence_the_system() {
     let mut machine = told("SETUP CNESS TRUE <1>HOST_MESSAGE; SEND 'HERE' TO <1>HOST_MESSAGE;");
     assert_eq!(said(&mut machine), ["HERE"]);

@@ -39,6 +39,8 @@ impl Machine {
             Effect::ForgetRequests => {
                 self.waiting = Waiting::default();
                 self.renderings = Renderings::default();
+                // The identities of objects are given out again: trouble with a new object is no old trouble.
+                self.update.trouble = None;
             }
             Effect::RequestWriteBack { node } => self.waiting.add_write_back(node),
             Effect::Fetch { function, name } => self.fetch(function, &name),

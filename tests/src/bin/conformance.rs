@@ -3,7 +3,8 @@
 use clap::Parser;
 use std::{path::PathBuf, process::ExitCode, time::Duration};
 use tests::conformance::{
-    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Verdict, Way, line::Place, walk,
+    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Verdict, Way, line::Place,
+    mutation, walk,
 };
 
 /// Runs the conformance suite of the PS 340 against a machine; see protocol/CONFORMANCE.md.
@@ -12,7 +13,8 @@ use tests::conformance::{
 #[derive(Parser, Debug)]
 #[command(
     version,
-    after_help = "Exit codes: 0 all cases passed or were skipped, 1 a case failed, 2 usage or a wrong file of cases,\n\
+    after_help = "Exit codes: 0 all cases passed or were skipped, 1 a case failed (with --mutate: did not notice the loss of what it is\n\
+                  named after), 2 usage or a wrong file of cases,\n\
                   3 the machine or its operator line cannot be reached."
 )]
 struct Arguments {
@@ -42,6 +44,9 @@ struct Arguments {
     /// The cases that take seconds each, too.
     #[arg(long)]
     long: bool,
+    /// Play mutants of the cases instead: each command left out, each number, text and switch changed.
+    #[arg(long)]
+    mutate: bool,
     /// Where the files of cases are.
     #[arg(long, value_name = "FOLDER")]
     cases: Option<PathBuf>,
@@ -113,6 +118,7 @@ fn run(arguments: &Arguments) -> Result<bool, (u8, String)> {
         cut: arguments.cut,
         patience: Duration::from_secs(arguments.patience),
         any_fault: arguments.any_fault,
+        reboots: arguments.mutate,
     };
     let mut operator: Option<Box<dyn Operator>> = match arguments.operator.as_deref() {
         None => None,
@@ -122,17 +128,33 @@ fn run(arguments: &Arguments) -> Result<bool, (u8, String)> {
             Some(Box::new(OperatorLine::connect(&address).map_err(|e| (3, format!("{address}: {e}")))?))
         }
     };
-    let operator = operator.as_mut().map(|operator| &mut **operator as &mut dyn Operator);
+    let mut operator = operator.as_mut().map(|operator| &mut **operator as &mut dyn Operator);
+    let unreachable = |e: std::io::Error| (3, format!("no machine at {}: {e}", arguments.place));
+    let write = |file: &PathBuf, text: String| {
+        std::fs::write(file, text).map_err(|e| usage(format!("{}: {e}", file.display())))
+    };
+    if arguments.mutate {
+        let found = mutation::run(&target, &mut operator, &cases, mutation::mutants, |mutant, is_noticed| {
+            if arguments.verbose && !is_noticed {
+                let (written, sent) = &mutant.text;
+                println!("unnoticed in {}: {written} -> {}", mutant.case.id, sent.as_deref().unwrap_or("nothing"));
+            }
+        });
+        let found = found.map_err(unreachable)?;
+        print!("{}", found.text());
+        arguments.json.iter().try_for_each(|file| write(file, found.json()))?;
+        return Ok(found.unsound.is_empty() && found.insensitive().next().is_none());
+    }
     let report = conformance::run(&target, operator, &cases, |outcome| {
         if arguments.verbose && outcome.verdict == Verdict::Passed {
             println!("passed {}: {}", outcome.case.id, outcome.case.title);
         }
     });
-    let report = report.map_err(|e| (3, format!("no machine at {}: {e}", arguments.place)))?;
+    let report = report.map_err(unreachable)?;
     print!("{}", report.text());
     for (file, text) in [(&arguments.json, report.json()), (&arguments.junit, report.junit())] {
         if let Some(file) = file {
-            std::fs::write(file, text).map_err(|e| usage(format!("{}: {e}", file.display())))?;
+            write(file, text)?;
         }
     }
     Ok(report.tally().failed == 0)

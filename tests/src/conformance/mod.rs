@@ -8,6 +8,7 @@ pub mod compare;
 pub mod walk;
 pub mod form;
 pub mod line;
+pub mod mutation;
 pub mod person;
 pub mod strokes;
 pub mod session;

@@ -39,6 +39,9 @@ pub enum Problem {
     /// A case that expects nothing.
     #[error("the case '{0}' expects nothing")]
     Idle(String),
+    /// A case that only expects that nothing comes.
+    #[error("the case '{0}' expects only silence; a broken line would pass it, too: add what is to be heard or seen")]
+    Silent(String),
     /// A wrong escape in a text.
     #[error("'\\{0}' is no escape; there are \\\\ \\r \\n \\t \\e \\s \\\" and \\xHH")]
     Escape(String),
@@ -155,8 +158,15 @@ impl Reader<'_> {
         let expects = |step: &Step| {
             matches!(step, Step::Expect(_) | Step::Reply(_) | Step::Strokes { .. } | Step::Drop | Step::Quiet)
         };
+        let is_heard_or_seen = |step: &Step| match step {
+            Step::Strokes { count, lines, .. } => count.is_some_and(|count| count > 0) || !lines.is_empty(),
+            step => matches!(step, Step::Expect(_) | Step::Reply(_)),
+        };
         match self.cases.last() {
             Some(case) if !case.steps.iter().any(|(_, s)| expects(s)) => Err(Problem::Idle(case.id.clone())),
+            Some(case) if !case.steps.iter().any(|(_, s)| is_heard_or_seen(s)) => {
+                Err(Problem::Silent(case.id.clone()))
+            }
             _ => Ok(()),
         }
     }
@@ -345,6 +355,10 @@ mod tests {
             ("section B\ncase a X y\n", "f:2: expected a tag: S, M, U or C"),
             ("section B\ncase a M\n", "f:2: expected what the case proves"),
             ("section B\ncase a M x\n> y\n", "f:3: the case 'a' expects nothing"),
+            (
+                "section B\ncase a M x\n> y\nquiet\n",
+                "f:4: the case 'a' expects only silence; a broken line would pass it, too: add what is to be heard or seen",
+            ),
             ("section B\ncase a M x\n< y\ncase a M x\n< z", "f:4: the case 'a' stands twice"),
             (
                 "section B\ncase a M x\n< \\q",
@@ -365,7 +379,7 @@ mod tests {
 
     #[test]
     fn each_repeats_commands_with_a_number_and_the_next() {
-        let case = one("section B\ncase a M x\neach 8 10 A# := INSTANCE OF A##;\nquiet\n").unwrap().remove(0);
+        let case = one("section B\ncase a M x\neach 8 10 A# := INSTANCE OF A##;\n< y\n").unwrap().remove(0);
         let Step::Each { first: 8, last: 10, text } = &case.steps[0].1 else { panic!("{:?}", case.steps[0]) };
         assert_eq!(with_number(text, 9), "A9 := INSTANCE OF A10;\n");
         assert_eq!(case.text(), "A8 := INSTANCE OF A9;\n");
@@ -373,8 +387,8 @@ mod tests {
 
     #[test]
     fn a_case_may_be_long() {
-        assert!(one("section B\ncase a M x\nlong\nquiet\n").unwrap()[0].is_long);
-        assert!(!one("section B\ncase a M x\nquiet\n").unwrap()[0].is_long);
+        assert!(one("section B\ncase a M x\nlong\n< y\n").unwrap()[0].is_long);
+        assert!(!one("section B\ncase a M x\n< y\n").unwrap()[0].is_long);
     }
 
     #[test]

@@ -21,6 +21,8 @@ const TRANSCRIPT_LINES: usize = 30;
 const MAX_MESSAGES: usize = 20_000;
 /// Bytes of repeated commands that are sent at a time.
 const PIECE: usize = 64 << 10;
+/// The password that cases set. A machine without one takes any.
+const PASSWORD: &str = "SECRET";
 /// Least tolerance of strokes that WRITEBACK tells, with seven digits.
 const WRITEBACK_TOLERANCE: f64 = 1e-5;
 
@@ -37,6 +39,8 @@ pub struct Target {
     pub patience: Duration,
     /// Numbers and texts of the machine's messages do not matter.
     pub any_fault: bool,
+    /// The machine is started again (REBOOT) before each case: what a case changes and INITIALIZE spares reaches no other.
+    pub reboots: bool,
 }
 
 /// Why a case failed.
@@ -133,6 +137,10 @@ impl<'s> Session<'s> {
             reply: String::new(),
             transcript: VecDeque::new(),
         };
+        if target.reboots {
+            session.commands(&format!("\n!RESET;\nREBOOT {PASSWORD};\n"), false)?;
+            session.synchronize()?;
+        }
         session.commands("INITIALIZE;\nCONNECT ERROR<1>:<1>HOST_MESSAGE;\n", false)?;
         if case.wants_warnings() {
             session.commands("CONNECT WARNING<1>:<1>HOST_MESSAGE;\n", false)?;
@@ -147,11 +155,25 @@ impl<'s> Session<'s> {
     /// # Errors
     /// The line of the step that stopped the case, and why.
     pub fn play(&mut self) -> Result<(), (usize, Stop)> {
-        for (line, step) in &self.case.steps {
-            self.step(step).map_err(|stop| (*line, stop))?;
+        for (number, (line, step)) in self.case.steps.iter().enumerate() {
+            if let Err(stop) = self.step(step) {
+                self.give_rest(number + 1);
+                return Err((*line, stop));
+            }
         }
         let last = self.case.steps.last().map_or(self.case.line, |(line, _)| *line);
         self.quiet().map_err(|stop| (last, stop))
+    }
+
+    /// Gives the orders from a step on, whatever comes of them, so that a case that stops leaves no button pressed.
+    fn give_rest(&mut self, from: usize) {
+        let Some(operator) = self.operator.as_mut().filter(|operator| operator.drives_time()) else { return };
+        for (_, step) in &self.case.steps[from..] {
+            if let Step::Order(order) = step {
+                // The case has failed; what an order says now does not matter.
+                let _ = operator.give(order);
+            }
+        }
     }
 
     /// Leaves the machine empty, so that what a case began goes on for nobody.
