@@ -112,7 +112,7 @@ pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
         beams.iter().map(|(_, irradiance)| hue_saturation_intensity(*irradiance / brightest)).collect();
     let gain = (MOST_LIGHT / colors.iter().map(|[_, _, i]| i).sum::<f64>()).min(1.0);
     let lamp = |((towards, _), [hue, saturation, intensity]): (&(DVec3, Bands), [f64; 3])| Illumination {
-        direction: mirrored(*towards),
+        direction: -mirrored(*towards),
         color: [hue, saturation, intensity * gain],
         ambient: 1.0,
     };
@@ -212,8 +212,8 @@ mod tests {
             Light::Point { at: at + DVec3::new(0.0, 0.0, 2.0), intensity: Color::Bands(Bands::new(4.0, 0.0, 0.0)) };
         let sun = Light::Directional { direction: DVec3::new(0.0, -3.0, 0.0), irradiance: Color::grey(1.0) };
         let [lamp, sun] = <[Illumination; 2]>::try_from(illumination(&[lamp, sun], at)).unwrap();
-        assert_eq!((lamp.direction, &lamp.color[..2]), (DVec3::NEG_Z, &[120.0, 1.0][..]));
-        assert_eq!((sun.direction, &sun.color[..2]), (DVec3::Y, &[0.0, 0.0][..]));
+        assert_eq!((lamp.direction, &lamp.color[..2]), (DVec3::Z, &[120.0, 1.0][..]));
+        assert_eq!((sun.direction, &sun.color[..2]), (DVec3::NEG_Y, &[0.0, 0.0][..]));
         assert!((lamp.color[2] - 0.7).abs() < 1e-12 && lamp.color[2] == sun.color[2], "two of 1 are more than 1.4");
         assert_eq!(illumination(&[], at), []);
     }

@@ -347,7 +347,12 @@ impl<'a> Words<'a> {
         word.map(|w| w.parse().map_err(|_| OrderError::Bad { found: w.into(), expected })).transpose()
     }
 
-    pub(super) fn integer(&mut self, low: u8, high: u8, expected: &'static str) -> Result<u8, OrderError> {
+    pub(super) fn integer<T: std::str::FromStr + PartialOrd>(
+        &mut self,
+        low: T,
+        high: T,
+        expected: &'static str,
+    ) -> Result<T, OrderError> {
         let word = self.required(expected)?;
         let read = word.parse().ok().filter(|n| (low..=high).contains(n));
         read.ok_or_else(|| OrderError::Bad { found: word.into(), expected })

@@ -7,6 +7,7 @@ use crate::{
     picture::Picture,
 };
 use files::Beneath;
+use protocol::raster::{RASTER_HEIGHT, RASTER_WIDTH};
 use std::io::Write;
 use std::path::Path;
 
@@ -23,6 +24,13 @@ pub enum SightOrder {
     Screen(Option<u8>),
     /// Says how long the beam needs, and how often it draws the picture.
     Refresh,
+    /// The colour of a pixel of the raster screen.
+    Pixel {
+        /// The column from the left.
+        x: u32,
+        /// The line from the bottom.
+        y: u32,
+    },
     /// Writes a picture of a screen, or its strokes.
     Picture {
         /// The screen that is written.
@@ -71,6 +79,12 @@ pub(super) const ROWS: &[OrderRow] = &[
         arguments: "",
         summary: "how long the beam needs for the picture, how often it draws it, and which processor makes its light",
         read: |_| Ok(Order::Sight(SightOrder::Refresh)),
+    },
+    OrderRow {
+        word: "pixel",
+        arguments: "X Y",
+        summary: "red, green and blue, 0 to 255, of a pixel of the raster screen: columns from the left, lines from the bottom",
+        read: pixel,
     },
 ];
 
@@ -134,6 +148,12 @@ fn picture(words: &mut Words<'_>) -> Result<Order, OrderError> {
     Ok(Order::Sight(SightOrder::Picture { screen, file: file.into(), size }))
 }
 
+fn pixel(words: &mut Words<'_>) -> Result<Order, OrderError> {
+    let x = words.integer(0, RASTER_WIDTH - 1, "a column, 0 to 639")?;
+    let y = words.integer(0, RASTER_HEIGHT - 1, "a line, 0 to 479")?;
+    Ok(Order::Sight(SightOrder::Pixel { x, y }))
+}
+
 /// Whether a word is a number, or two with an x between them.
 fn looks_like_a_size(word: &str) -> bool {
     let number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
@@ -160,6 +180,10 @@ pub(super) fn perform(order: &SightOrder, machine: &mut Machine, files: Option<&
         SightOrder::Steady(on) => controls.steady = on.unwrap_or(controls.steady),
         SightOrder::Screen(screen) => controls.screen = screen.unwrap_or(controls.screen),
         SightOrder::Refresh => return Ok(refresh(machine)),
+        SightOrder::Pixel { x, y } => {
+            let [red, green, blue] = machine.frame_buffer().shown(*x, *y).unwrap_or_default();
+            return Ok(format!("{red} {green} {blue}"));
+        }
         SightOrder::Picture { screen, file, size } => {
             return write(machine, *screen, file, *size, files.ok_or(REFUSED)?);
         }

@@ -285,6 +285,28 @@ fn the_display_is_set_by_orders() {
 }
 
 #[test]
+fn a_pixel_is_what_the_raster_screen_shows() {
+    let mut machine = Machine::new(Settings::default());
+    let line = LineId(1);
+    // The client's light goes along the line of sight: what the viewer sees is lit. The other comes from behind it.
+    let polygon = "P := POLYGON -.5,-.5,.5 -.5,.5,.5 .5,.5,.5 .5,-.5,.5;";
+    for (direction, lit) in [("0,0,1", true), ("0,0,-1", false)] {
+        let text = format!(
+            "{polygon} S := BEGIN_STRUCTURE R := SURFACE_RENDERING; ILLUMINATION {direction} COLOR 0,0,0.9 AMBIENT 0.7; \
+             INSTANCE OF P; END_STRUCTURE; DISPLAY S; SEND FIX(6) TO <1>S.R;"
+        );
+        machine.step([Input::Attach(line), Input::Bytes(line, text.into())], 0);
+        for _ in 0..10 {
+            machine.next_frame();
+        }
+        let pixel = performed(&mut machine, "pixel 320 240");
+        let level: u32 = pixel.split(' ').next().unwrap().parse().unwrap();
+        assert!(if lit { level > 150 } else { (1..50).contains(&level) }, "{direction}: {pixel}");
+        assert_eq!(performed(&mut machine, "pixel 0 479"), "0 0 0");
+    }
+}
+
+#[test]
 fn pictures_are_written_as_pixels_drawings_and_text() {
     let folder = tempfile::tempdir().unwrap();
     let mut machine = Machine::new(Settings::default());

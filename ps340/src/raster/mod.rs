@@ -117,6 +117,16 @@ impl FrameBuffer {
         inside.then(|| self.pixels[y as usize * WIDTH + x as usize])
     }
 
+    /// What the monitor shows there, after the tables; `None` outside the screen.
+    pub fn shown(&self, x: u32, y: u32) -> Option<[u8; 3]> {
+        Some(self.looked_up(self.pixel(x, y)?))
+    }
+
+    fn looked_up(&self, [r, g, b]: [u8; 3]) -> [u8; 3] {
+        let [red, green, blue] = &self.tables;
+        [red[usize::from(r)], green[usize::from(g)], blue[usize::from(b)]]
+    }
+
     /// Whether every pixel is as at the start.
     pub fn is_blank(&self) -> bool {
         self.pixels.iter().all(|pixel| *pixel == [0; 3])
@@ -124,9 +134,7 @@ impl FrameBuffer {
 
     /// What the monitor shows, after the tables: top line first, left to right.
     pub fn output(&self) -> Vec<[u8; 3]> {
-        let [red, green, blue] = &self.tables;
-        let shown = |[r, g, b]: &[u8; 3]| [red[usize::from(*r)], green[usize::from(*g)], blue[usize::from(*b)]];
-        self.pixels.chunks_exact(WIDTH).rev().flatten().map(shown).collect()
+        self.pixels.chunks_exact(WIDTH).rev().flatten().map(|pixel| self.looked_up(*pixel)).collect()
     }
 
     /// What the monitor shows, as linear light: its PNG holds the bytes of [`Self::output`].

@@ -58,8 +58,10 @@ impl Default for Light {
 
 impl Light {
     /// A light whose direction goes through a matrix; none if nothing is left of the direction.
+    ///
+    /// ILLUMINATION says where the light goes: a client of the time, whose eye looks along +z, lights what it sees with 0,0,1.
     pub fn new(light: &Illumination, matrix: &DMat3) -> Option<Light> {
-        let direction = (*matrix * light.direction).try_normalize()?;
+        let direction = -(*matrix * light.direction).try_normalize()?;
         Some(Light { direction, color: rgb(light.color), ambient: light.ambient.clamp(0.0, 1.0) })
     }
 }
@@ -154,7 +156,7 @@ mod tests {
     fn directions_of_lights_go_through_the_matrix_and_may_vanish() {
         let lamp = Illumination { direction: DVec3::new(0.0, 0.0, 5.0), color: [0.0, 0.0, 1.0], ambient: 1.0 };
         let turned = Light::new(&lamp, &DMat3::from_rotation_y(std::f64::consts::FRAC_PI_2)).unwrap();
-        assert!((turned.direction - DVec3::X).length() < 1e-12);
+        assert!((turned.direction - DVec3::NEG_X).length() < 1e-12, "towards the light");
         assert_eq!(Light::new(&lamp, &DMat3::ZERO), None);
     }
 }

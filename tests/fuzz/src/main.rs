@@ -24,4 +24,4 @@ fn chosen() -> Reader {
     })
 }
 
-fuzz_target!(init: _ = CHOSEN.set(chosen()), |bytes: &[u8]| (CHOSEN.get_or_init(chosen).read)(bytes));
+fuzz_target!(init: { _ = CHOSEN.set(chosen()) }, |bytes: &[u8]| (CHOSEN.get_or_init(chosen).read)(bytes));

@@ -106,7 +106,7 @@ pub(super) const ROWS: &[CommandRow] = &[
         summary: "A light at infinity; stands in a structure like data",
         syntax: &["name := ILLUMination x,y,z [COLOR h [,s [,i]]] [AMBIENT a];"],
         options: &[
-            option("x,y,z", "from the object towards the light", "", ""),
+            option("x,y,z", "where the light goes: 0,0,1 comes from behind the viewer", "", ""),
             option("COLOR h,s,i", "as in ATTRIBUTES", "", "0,0,1"),
             option("AMBIENT a", "its share in the ambient light", "0 to 1", "1"),
         ],
@@ -116,7 +116,7 @@ pub(super) const ROWS: &[CommandRow] = &[
             input("<3>", "real", "ambient share"),
         ],
         routines: &["PILLUM"],
-        example: "SUN := ILLUMINATION 1,1,-1 COLOR 180,0.2,0.9 AMBIENT 0.3;",
+        example: "SUN := ILLUMINATION -1,-1,1 COLOR 180,0.2,0.9 AMBIENT 0.3;",
     },
     CommandRow {
         name: "PATTERN",

@@ -77,7 +77,7 @@ pub struct Attributes {
 /// `ILLUMINATION x,y,z COLOR h,s,i AMBIENT a`: a light at infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
-    /// From the object towards the light.
+    /// Where the light goes, of any length: 0,0,1 goes along the line of sight, from behind the viewer.
     pub direction: DVec3,
     /// Hue in degrees, saturation and intensity 0..=1; default white.
     pub color: [f64; 3],

@@ -94,7 +94,7 @@ fn gouraud_is_even_in_space_not_on_the_screen() {
 #[test]
 fn lights_below_the_node_turn_with_it_and_colour_the_surface() {
     let level = polygon(&[[-0.5, -0.5, 0.0], [0.0, 0.7, 0.0], [0.5, -0.5, 0.0]]);
-    let red = Illumination { direction: DVec3::X, color: [120.0, 1.0, 1.0], ambient: 0.0 };
+    let red = Illumination { direction: DVec3::NEG_X, color: [120.0, 1.0, 1.0], ambient: 0.0 };
     let scene = Scene::new(vec![level]).below(Node::Illumination(red));
     let dull = ShadingEnvironment { highlights: false, ..plain() };
     assert_eq!(at(&scene.image(Rendering::Flat, &dull), 0.0, 0.0), [0; 3], "it comes from the side");
