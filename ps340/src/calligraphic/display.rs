@@ -189,6 +189,19 @@ impl Display {
         self.unexposed = false;
     }
 
+    /// Shows strokes that come part by part, as a picture that has stood there for long and is refreshed in every frame. The
+    /// processor writes their light.
+    ///
+    /// - `give`: hands the parts to what it gets, in their order; together they are as one list.
+    pub fn show_parts(&mut self, give: impl FnOnce(&mut dyn FnMut(&[Stroke]))) {
+        let Self { light, bins, .. } = self;
+        light.write(bins, &[]);
+        give(&mut |strokes| light.add(bins, strokes));
+        self.glow(1, f64::INFINITY, 1, 0);
+        self.written = Some(Written { version: u64::MAX, frame: 0, refreshed: 0, period: 1, stood: u64::MAX / 2 });
+        self.expose(true);
+    }
+
     /// The pixels: red, green, blue (sRGB) and 255, row after row from the top.
     pub fn frame(&self) -> &[u8] {
         &self.rgba

@@ -115,6 +115,11 @@ impl Light {
     /// order.
     pub(super) fn write(&mut self, bins: &mut Bins, strokes: &[Stroke]) {
         self.tiles.par_iter_mut().for_each(|tile| tile.lit = false);
+        self.add(bins, strokes);
+    }
+
+    /// Writes more strokes behind those that were written before.
+    pub(super) fn add(&mut self, bins: &mut Bins, strokes: &[Stroke]) {
         let (optics, guns, extent) = (self.optics, self.guns, tiles(self.optics.size));
         let mut rest = strokes;
         while !rest.is_empty() {

@@ -18,8 +18,8 @@ use tokio::{
 
 /// Hosts that may be attached to a socket at once; each may hold an open statement and an open vector list.
 pub const MAX_HOSTS: usize = 64;
-/// Bytes taken from a line at a time.
-const READ_BYTES: usize = 256 << 10;
+/// Bytes taken from a line at a time: so few that an order behind all that waits is carried out soon.
+const READ_BYTES: usize = 64 << 10;
 
 /// The way to a host that is not there: what it is told is captured, and that is all. Needs a tokio runtime.
 pub(super) fn silent_writer(line: LineId, around: Surroundings) -> Writer {

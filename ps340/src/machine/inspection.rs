@@ -47,14 +47,14 @@ impl Machine {
         self.log.iter().map(String::as_str)
     }
 
-    /// What the machine has counted.
+    /// What the machine has counted. Strokes and refresh are those of the latest picture that was drawn: one of many vectors
+    /// is drawn when somebody looks ([`Machine::renew_picture`]).
     pub fn counters(&self) -> Counters {
         let refresh = self.refresh();
         Counters {
             frame: self.frame,
             objects: self.memory.objects.len() as u64,
             bytes: self.memory.bytes() as u64,
-            strokes: self.update.strokes.len() as u64,
             vectors: self.update.vectors,
             refresh_micros: refresh.micros as u64,
             refresh_frames: refresh.frames,

@@ -247,9 +247,9 @@ impl Machine {
         self.network_idle && self.waiting.is_empty() && self.renderings.are_done() && self.streams.are_quiet()
     }
 
-    /// Makes the picture of now, as the next frame would.
+    /// Makes the picture of now, with all its strokes.
     pub fn renew_picture(&mut self) {
-        self.update_picture();
+        self.draw_picture();
         self.settle();
         self.update_overlay();
     }

@@ -46,8 +46,9 @@ mod tests {
         machine.step([Input::Attach(LineId(1))], 0);
         let mut tell = |text: &str| {
             machine.step([Input::Bytes(LineId(1), text.as_bytes().to_vec())], 0);
+            machine.renew_picture();
             machine.next_frame();
-            let shown = machine.vector_picture(Some([64, 64])).pixels().iter().any(|pixel| pixel[1] > 0.0);
+            let shown = machine.vector_frame([64, 64]).chunks_exact(4).any(|pixel| pixel[1] > 0);
             (machine.was_relieved(), shown, machine.update.strokes.capacity(), machine.sight_strokes())
         };
         let vectors = "-1,0 1,0 ".repeat(200_000);

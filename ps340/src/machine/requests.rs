@@ -7,7 +7,7 @@ use crate::{
     port::ObjectId,
     structure::{Node, Operation},
     traversal::{
-        self, PickHit, PickRequest, Requests, Stroke, Transformed, Trouble, Update,
+        self, MAX_KEPT, PickHit, PickRequest, Requests, Stroke, Transformed, Trouble, Update,
         write_back::{self, RECORD, RECORDS_PER_MESSAGE},
     },
 };
@@ -21,6 +21,9 @@ use std::sync::Arc;
 
 /// Requests of one kind that wait for an update; more are refused. Ours.
 const MAX_WAITING: usize = 1_000;
+/// Vectors of a picture that is drawn in each frame in which it changes, though nobody may look: about a tenth of the frame.
+/// Ours.
+const ALWAYS_DRAWN: u64 = 200_000;
 
 /// Requests that wait for the next update.
 #[derive(Debug, Default)]
@@ -65,6 +68,11 @@ impl Waiting {
         self.transforms.is_empty() && self.picks.is_empty() && self.write_backs.is_empty()
     }
 
+    /// Whether the strokes of the picture themselves are wanted.
+    fn want_strokes(&self) -> bool {
+        !self.write_backs.is_empty()
+    }
+
     pub(super) fn add_transform(&mut self, request: TransformRequest) -> bool {
         let room = self.transforms.len() < MAX_WAITING;
         if room {
@@ -94,8 +102,22 @@ impl Waiting {
 impl Machine {
     /// Makes the picture anew if something of it changed, or something is wanted of it.
     ///
-    /// A picture that stands still costs nothing.
+    /// A picture that stands still costs nothing. One of many vectors is drawn when somebody looks; till then its vectors
+    /// are counted, so that frames pass and orders are answered in time.
     pub(super) fn update_picture(&mut self) {
+        let is_looked_at = self.is_followed() || self.waiting.want_strokes();
+        self.update_picture_of(if is_looked_at { MAX_KEPT } else { ALWAYS_DRAWN });
+    }
+
+    /// The same with all strokes, for somebody who looks.
+    pub(super) fn draw_picture(&mut self) {
+        self.update_picture_of(MAX_KEPT);
+    }
+
+    /// Brings the picture up to date.
+    ///
+    /// - `most`: vectors whose strokes are made.
+    fn update_picture_of(&mut self, most: u64) {
         if self.memory.structures.is_held() {
             return; // between BEGIN and END
         }
@@ -105,7 +127,8 @@ impl Machine {
         }
         let version = self.memory.structures.version();
         let stays = self.update.next_change.is_none_or(|change| self.frame < change);
-        if self.updated == Some(version) && self.waiting.is_empty() && stays {
+        let is_there = !self.update.is_counted_only || most < MAX_KEPT;
+        if self.updated == Some(version) && self.waiting.is_empty() && stays && is_there {
             return;
         }
         let waiting = std::mem::take(&mut self.waiting);
@@ -118,8 +141,11 @@ impl Machine {
             pick: pick.as_ref().map(|pick| self.pick_request(pick)),
         };
         let room = std::mem::take(&mut self.update.strokes);
-        let update = traversal::update_into(&self.memory.structures, self.frame, &requests, room);
+        let update = traversal::update_into(&self.memory.structures, self.frame, &requests, room, most);
         self.counters.updates += 1;
+        if !update.is_counted_only {
+            self.counters.strokes = update.strokes.len() as u64;
+        }
         self.say_trouble(&update);
         for request in waiting.transforms {
             self.answer_transform(request, &update);
@@ -133,7 +159,8 @@ impl Machine {
         // Each pick looks for itself; that there are several in one frame is rare.
         for pick in picks {
             let requests = Requests { pick: Some(self.pick_request(&pick)), ..Requests::default() };
-            let picked = traversal::update(&self.memory.structures, self.frame, &requests).picked;
+            let update = traversal::update_into(&self.memory.structures, self.frame, &requests, Vec::new(), 0);
+            let picked = update.picked;
             self.answer_pick(pick, picked.as_ref());
         }
         self.update = update;

@@ -6,8 +6,9 @@
 
 use super::Machine;
 use crate::{
-    calligraphic::{Controls, Display, Refresh, Scene, Screen},
+    calligraphic::{Controls, DISPLAY_SIZE, Display, Refresh, Scene, Screen},
     picture::Picture,
+    traversal,
 };
 use std::{cell::Cell, sync::Arc};
 
@@ -67,11 +68,11 @@ impl Machine {
         }
     }
 
-    /// How long the beam needs for the picture of now, on all screens together.
+    /// How long the beam needs for the picture, on all screens together: that of now, or the latest that was drawn.
     pub fn refresh(&self) -> Refresh {
         let key = self.picture_version();
         if let Some((of, refresh)) = self.sight.refresh.get()
-            && of == key
+            && (of == key || self.update.is_counted_only)
         {
             return refresh;
         }
@@ -120,6 +121,14 @@ impl Machine {
     /// - `size`: width and height in pixels; those of the display if none are given. A picture of another size shows
     ///   no afterglow.
     pub fn vector_picture(&mut self, size: Option<[u32; 2]>) -> Picture {
+        if !self.is_followed() {
+            self.update_picture();
+            self.settle();
+            self.update_overlay();
+            if self.update.is_counted_only {
+                return self.large_picture(size);
+            }
+        }
         self.renew_picture();
         let standing = self.sight.screen.size();
         if let Some(size) = size.filter(|size| standing.is_some_and(|standing| standing != *size)) {
@@ -129,6 +138,27 @@ impl Machine {
             return display.picture();
         }
         self.look(size, Display::picture)
+    }
+
+    /// A picture of so many vectors that their strokes are written as they are made, and not kept.
+    fn large_picture(&self, size: Option<[u32; 2]>) -> Picture {
+        let Sight { screen, controls, .. } = &self.sight;
+        let size = size.or(screen.size()).unwrap_or(DISPLAY_SIZE);
+        let mut display = Display::drawn_by(screen.drawer().clone(), *controls, size);
+        display.show_parts(|take| {
+            if self.tube.graphics && !self.tube.blanked {
+                traversal::draw_in_parts(&self.memory.structures, self.frame, controls.screen, take);
+            }
+            if !self.tube.blanked {
+                take(self.overlay());
+            }
+        });
+        display.picture()
+    }
+
+    /// Whether each frame is looked at: by a window, or since the display glows on or flickers.
+    pub(super) fn is_followed(&self) -> bool {
+        self.sight.is_watched || self.sight.controls.remembers()
     }
 
     /// Lets nothing refer to strokes of before, and gives the room of them back.

@@ -104,3 +104,40 @@ fn the_refresh_counts_the_strokes_of_all_screens_that_are_seen() {
     machine.tube.graphics = false;
     assert_eq!(machine.refresh().micros, 0.0);
 }
+
+#[test]
+fn a_picture_of_many_vectors_is_drawn_when_somebody_looks_and_is_the_same() {
+    let vectors = |n: usize| (0..n).map(|i| format!("{},{} ", (i % 91) as f32 / 91.0, (i % 7) as f32 / 7.0)).collect::<String>();
+    let text = format!("A := VECTOR_LIST {}; DISPLAY A; SEND 'HI' TO <1>MESSAGE_DISPLAY;", vectors(250_000));
+    let machine = || {
+        let mut machine = Machine::new(Settings::default());
+        machine.step([Input::Attach(LineId(1)), Input::Bytes(LineId(1), text.clone().into())], 0);
+        machine.next_frame();
+        machine
+    };
+    let (mut in_parts, mut whole) = (machine(), machine());
+    assert!(in_parts.latest_update().is_counted_only && in_parts.is_idle());
+    assert_eq!((in_parts.counters().vectors, in_parts.counters().strokes), (250_000, 0));
+    let size = Some([90, 60]);
+    let picture = in_parts.vector_picture(size);
+    assert!(in_parts.latest_update().is_counted_only, "its strokes were not kept");
+    whole.renew_picture();
+    assert_eq!((whole.counters().strokes, whole.latest_update().strokes.len()), (249_999, 249_999));
+    assert_eq!(picture.to_srgb(), whole.vector_picture(size).to_srgb());
+    // A glow needs every frame, and so every stroke.
+    let controls = Controls { steady: false, ..*in_parts.controls() };
+    in_parts.set_controls(controls);
+    in_parts.next_frame();
+    assert!(!in_parts.latest_update().is_counted_only);
+}
+
+#[test]
+fn what_is_written_back_has_its_strokes() {
+    let mut machine = Machine::new(Settings::default());
+    let lists = "0,0 1,0 ".repeat(110_000);
+    let text = format!("A := VECTOR_LIST {lists}; W := WRITEBACK THEN B; B := VECTOR_LIST 0,0 0.5,0; DISPLAY A; DISPLAY W; SEND TRUE TO <1>W;");
+    machine.step([Input::Attach(LineId(1)), Input::Bytes(LineId(1), text.into())], 0);
+    machine.next_frame();
+    assert!(!machine.latest_update().is_counted_only);
+    assert_eq!(machine.latest_update().write_back.iter().map(|range| range.len()).sum::<usize>(), 1);
+}

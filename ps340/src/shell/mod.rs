@@ -21,7 +21,7 @@ use std::{io, path::PathBuf, sync::Arc, time::Duration};
 use tokio::sync::{mpsc, oneshot};
 use turns::Turns;
 
-/// Events that wait for the machine; with [`LineEvent::Bytes`] of a quarter megabyte this bounds memory.
+/// Events that wait for the machine; with [`LineEvent::Bytes`] of 64 KiB this bounds memory.
 const WAITING_EVENTS: usize = 16;
 
 /// How long the machine may take to end after a signal.

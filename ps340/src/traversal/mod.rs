@@ -25,7 +25,9 @@ pub use pick::{PickHit, PickRequest, PickedKind};
 pub use state::State;
 pub use stroke::Stroke;
 pub use update::{Requests, Transformed, Trouble, Update};
-pub use walk::{MAX_DEPTH, MAX_GATHERED, MAX_VECTORS, MAX_VISITS, alone, gather, update, update_into};
+pub use walk::{
+    MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, alone, draw_in_parts, gather, update, update_into,
+};
 
 #[cfg(test)]
 mod tests;

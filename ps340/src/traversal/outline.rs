@@ -49,6 +49,17 @@ pub(super) fn pieces(node: &Node, state: &State, structures: &Structures, sink: 
     }
 }
 
+/// Vectors, characters and edges of a data node: how many pieces it has at least, without making them.
+pub(super) fn parts(node: &Node) -> usize {
+    match node {
+        Node::Vectors(vectors) => vectors.drawn().points.len(),
+        Node::Characters(characters) => characters.text.len(),
+        Node::Labels(block) => block.labels.iter().map(|(label, _)| label.text.len()).sum(),
+        Node::Polygons(block) => block.polygons.iter().map(|polygon| polygon.vertices.len()).sum(),
+        _ => 0,
+    }
+}
+
 fn list(list: &VectorList, state: &State, sink: Sink) -> ControlFlow<()> {
     let blending = if list.fourth == Fourth::Hue { state.blending } else { None };
     let intensity = |i: usize| if list.fourth == Fourth::Intensity { f64::from(list.points[i][3]) } else { 1.0 };

@@ -1,6 +1,6 @@
 //! What an update is asked for, and what it gives.
 
-use super::{MAX_DEPTH, MAX_GATHERED, MAX_VECTORS, MAX_VISITS, PickHit, PickRequest, Stroke, state::ALL_SCOPES};
+use super::{MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickRequest, Stroke, state::ALL_SCOPES};
 use crate::port::ObjectId;
 use glam::{DMat4, DVec3};
 use std::{
@@ -34,6 +34,9 @@ pub enum Trouble {
     /// More than [`MAX_VECTORS`] vectors.
     #[error("an update draws at most {MAX_VECTORS} vectors")]
     TooManyVectors,
+    /// More than [`MAX_KEPT`] vectors in a picture whose strokes are kept.
+    #[error("a window and lists of strokes show at most {MAX_KEPT} vectors")]
+    TooManyKept,
     /// More than [`MAX_GATHERED`] vectors below XFORM VECTOR.
     #[error("XFORM VECTOR gathers at most {MAX_GATHERED} vectors")]
     TooManyGathered,
@@ -65,6 +68,8 @@ pub struct Update {
     pub picked: Option<PickHit>,
     /// The frame from which the picture is another, though nothing of the structure changes.
     pub next_change: Option<u64>,
+    /// Whether the picture has more vectors than were to be drawn: then they are counted only, and there is no stroke.
+    pub is_counted_only: bool,
     /// Nodes visited.
     pub visits: u64,
     /// Vectors and character strokes that went into the pipeline.

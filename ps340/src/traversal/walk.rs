@@ -17,37 +17,65 @@ use protocol::{
     value::PickedPlace,
 };
 use rayon::prelude::*;
-use std::{collections::BTreeSet, ops::ControlFlow};
+use std::{
+    collections::BTreeSet,
+    ops::{ControlFlow, Range},
+};
 
 /// How deep nodes may nest. The real stack held tens of levels.
 pub const MAX_DEPTH: usize = 10_000;
 /// How many nodes one update visits, so that instances of instances of instances end.
 pub const MAX_VISITS: u64 = 20_000_000;
-/// How many vectors one update draws; their strokes take 36 bytes each.
-pub const MAX_VECTORS: u64 = 20_000_000;
+/// How many vectors one update draws or counts.
+pub const MAX_VECTORS: u64 = 200_000_000;
+/// How many vectors are drawn where their strokes are kept; these take 36 bytes each.
+pub const MAX_KEPT: u64 = 20_000_000;
 /// How many vectors XFORM VECTOR gathers.
 pub const MAX_GATHERED: usize = 1 << 20;
 
 /// Vectors of one list that one thread takes at a time: so few that they stay in its cache.
 const PIECE: usize = 1 << 11;
+/// Vectors of one list that all threads take together.
+const BLOCK: usize = 64 * PIECE;
 
 /// Walks everything that is displayed.
 ///
 /// - `frame`: the number of the refresh frame, for SET RATE and blinking.
 pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Update {
-    update_into(structures, frame, requests, Vec::new())
+    update_into(structures, frame, requests, Vec::new(), MAX_KEPT)
 }
 
 /// Walks everything that is displayed, with the room of the strokes of an earlier update; most of the time of a fresh one
 /// goes into its memory.
-pub fn update_into(structures: &Structures, frame: u64, requests: &Requests, mut strokes: Vec<Stroke>) -> Update {
+///
+/// - `most`: vectors that are drawn at most, up to [`MAX_KEPT`]. A picture of more is walked to answer the requests, and
+///   its vectors are counted: [`Update::is_counted_only`].
+pub fn update_into(
+    structures: &Structures,
+    frame: u64,
+    requests: &Requests,
+    mut strokes: Vec<Stroke>,
+    most: u64,
+) -> Update {
     let mut walk = Walk::new(structures, frame, requests);
     strokes.clear();
     walk.update.strokes = strokes;
-    for root in structures.displayed() {
-        walk.root(root, State::default());
-    }
+    walk.drawing = Drawing::Kept { most };
+    walk.displayed();
     walk.update
+}
+
+/// Draws everything that a screen shows, and hands the strokes on part by part, in their order, so that a picture of any
+/// number of vectors needs no room.
+///
+/// - `screen`: which of the screens that SET DISPLAYS tells apart, 0..=3.
+/// - `take`: gets the parts.
+pub fn draw_in_parts(structures: &Structures, frame: u64, screen: u8, take: &mut dyn FnMut(&[Stroke])) {
+    let requests = Requests::default();
+    let mut walk = Walk::new(structures, frame, &requests);
+    walk.drawing = Drawing::HandedOn { screen: 1_u8.checked_shl(screen.into()).unwrap_or(0), take };
+    walk.displayed();
+    walk.hand_on(0);
 }
 
 /// Walks one object with a state of its own, as the cursor that the system shows.
@@ -73,6 +101,7 @@ struct Walk<'a> {
     structures: &'a Structures,
     frame: u64,
     requests: &'a Requests,
+    drawing: Drawing<'a>,
     /// What is gathered instead of drawn.
     gatherer: Option<Gatherer<'a>>,
     update: Update,
@@ -81,6 +110,14 @@ struct Walk<'a> {
     entered: Vec<u64>,
     /// Clip-space points of the list at hand; kept to save allocations.
     clip: Vec<DVec4>,
+}
+
+/// What becomes of strokes.
+enum Drawing<'t> {
+    /// They stay in the update, unless there are more vectors than this.
+    Kept { most: u64 },
+    /// Those that one screen shows, a bit, go to somebody who takes them.
+    HandedOn { screen: u8, take: &'t mut dyn FnMut(&[Stroke]) },
 }
 
 /// A level of the structure that the walk is inside of.
@@ -140,11 +177,19 @@ impl<'a> Walk<'a> {
             structures,
             frame,
             requests,
+            drawing: Drawing::Kept { most: MAX_KEPT },
             gatherer: None,
             update: Update::default(),
             identifiers: IdentifierChains::default(),
             entered: vec![0; structures.extent().div_ceil(64)],
             clip: Vec::new(),
+        }
+    }
+
+    /// Walks all that is displayed.
+    fn displayed(&mut self) {
+        for root in self.structures.displayed() {
+            self.root(root, State::default());
         }
     }
 
@@ -287,7 +332,11 @@ impl<'a> Walk<'a> {
                 return;
             }
         }
-        if state.scopes != 0 {
+        let seen_by = match &self.drawing {
+            Drawing::Kept { .. } => state.scopes,
+            Drawing::HandedOn { screen, .. } => state.scopes & screen,
+        };
+        if seen_by != 0 {
             self.update.drawn_by(state.scopes);
             let first = self.update.strokes.len();
             match node {
@@ -324,20 +373,55 @@ impl<'a> Walk<'a> {
         true
     }
 
+    /// Whether the vectors that were counted last are drawn.
+    fn is_drawn(&mut self) -> bool {
+        match self.drawing {
+            Drawing::Kept { most } if self.update.vectors > most => {
+                if most == MAX_KEPT {
+                    self.update.trouble = Some(Trouble::TooManyKept);
+                } else if !self.update.is_counted_only {
+                    self.update.is_counted_only = true;
+                    self.update.strokes.clear();
+                    self.update.scopes.clear();
+                }
+                false
+            }
+            _ => true,
+        }
+    }
+
+    /// Gives strokes to who takes them, if there are at least so many.
+    fn hand_on(&mut self, least: usize) {
+        if let Drawing::HandedOn { take, .. } = &mut self.drawing
+            && self.update.strokes.len() >= least
+        {
+            take(&self.update.strokes);
+            self.update.strokes.clear();
+        }
+    }
+
     fn vectors(&mut self, list: &VectorList, state: &State) {
-        if !self.counted(list.points.len()) {
+        if !self.counted(list.points.len()) || !self.is_drawn() {
             return;
         }
         let clipper = Clipper::new(state);
         if list.points.len() <= PIECE {
             clip(list, 0..list.points.len(), &state.ctm, &clipper, &mut self.clip, &mut self.update.strokes);
-            return;
+            return self.hand_on(BLOCK);
         }
-        let starts: Vec<usize> = (0..list.points.len()).step_by(PIECE).collect();
+        for start in (0..list.points.len()).step_by(BLOCK) {
+            self.block(list, start..(start + BLOCK).min(list.points.len()), state, &clipper);
+            self.hand_on(BLOCK);
+        }
+    }
+
+    /// Draws the vectors of a range of a list.
+    fn block(&mut self, list: &VectorList, range: Range<usize>, state: &State, clipper: &Clipper) {
+        let starts: Vec<usize> = range.clone().step_by(PIECE).collect();
         if rayon::current_num_threads() == 1 {
             for start in starts {
-                let end = (start + PIECE).min(list.points.len());
-                clip(list, start..end, &state.ctm, &clipper, &mut self.clip, &mut self.update.strokes);
+                let end = (start + PIECE).min(range.end);
+                clip(list, start..end, &state.ctm, clipper, &mut self.clip, &mut self.update.strokes);
             }
             return;
         }
@@ -345,9 +429,9 @@ impl<'a> Walk<'a> {
         let parts: Vec<Vec<Stroke>> = starts
             .into_par_iter()
             .map(|start| {
-                let end = (start + PIECE).min(list.points.len());
+                let end = (start + PIECE).min(range.end);
                 let mut strokes = Vec::with_capacity(PIECE);
-                clip(list, start..end, &state.ctm, &clipper, &mut Vec::with_capacity(PIECE + 1), &mut strokes);
+                clip(list, start..end, &state.ctm, clipper, &mut Vec::with_capacity(PIECE + 1), &mut strokes);
                 strokes
             })
             .collect();
@@ -357,6 +441,10 @@ impl<'a> Walk<'a> {
 
     /// Draws text, polygons and blended lists.
     fn pieces(&mut self, node: &Node, state: &State) {
+        if !self.is_drawn() {
+            self.counted(outline::parts(node));
+            return;
+        }
         let mut clipper = Clipper::new(state);
         let is_text = matches!(node, Node::Characters(_) | Node::Labels(_));
         if is_text && state.orientation == CharacterOrientation::ScreenFixed {
@@ -365,7 +453,7 @@ impl<'a> Walk<'a> {
         let structures = self.structures;
         // That a piece was one too many is told by the account.
         let _ = outline::pieces(node, state, structures, &mut |piece: Piece| {
-            if !self.counted(1) {
+            if !self.counted(1) || !self.is_drawn() {
                 return ControlFlow::Break(());
             }
             let clipper = piece.color.map_or(clipper, |color| clipper.in_color(color));
@@ -373,6 +461,7 @@ impl<'a> Walk<'a> {
                 true => clipper.dot(piece.ends[0], piece.intensity[0]),
                 false => clipper.line(piece.ends[0], piece.ends[1], piece.intensity),
             });
+            self.hand_on(BLOCK);
             ControlFlow::Continue(())
         });
     }
@@ -435,7 +524,7 @@ impl<'a> Walk<'a> {
 /// Transforms and clips the vectors *to* the points of `range`.
 fn clip(
     list: &VectorList,
-    range: std::ops::Range<usize>,
+    range: Range<usize>,
     ctm: &DMat4,
     clipper: &Clipper,
     clip: &mut Vec<DVec4>,

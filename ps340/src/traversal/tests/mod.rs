@@ -263,3 +263,53 @@ fn text_under_instances_of_instances_ends() {
     structures.display(ObjectId::new(3));
     assert_eq!(update(&structures, 0, &Requests::default()).trouble, Some(Trouble::TooManyVectors));
 }
+
+/// A text and lists of 1 to 300,000 vectors, the second on screen 1 only.
+fn crowd() -> Structures {
+    let mut structures = Structures::default();
+    let long = |count: u32| {
+        let points: Vec<[f32; 3]> = (0..count).map(|i| [(i % 997) as f32 / 997.0, (i % 13) as f32 / 13.0, 0.0]).collect();
+        list(VectorClass::Connected, &points)
+    };
+    let text = Characters { position: DVec3::ZERO, step: DVec2::X, text: (*b"TEXT").into() };
+    let members = vec![
+        Member::Unnamed(long(2)),
+        operate(Operation::Displays { scopes: 0b1101, on: false }),
+        Member::Unnamed(long(5_000)),
+        operate(Operation::Displays { scopes: 0b1111, on: true }),
+        Member::Unnamed(Node::Characters(Box::new(text))),
+        Member::Unnamed(long(300_000)),
+    ];
+    structures.define(ObjectId::new(0), Node::Group(members));
+    structures.display(ObjectId::new(0));
+    structures
+}
+
+#[test]
+fn parts_are_together_what_a_screen_shows() {
+    let structures = crowd();
+    let whole = update(&structures, 0, &Requests::default());
+    assert!(whole.strokes.len() > 305_000 && !whole.is_counted_only);
+    for screen in 0..4 {
+        let (mut parts, mut strokes) = (0, Vec::new());
+        draw_in_parts(&structures, 0, screen, &mut |part| {
+            parts += 1;
+            strokes.extend_from_slice(part);
+        });
+        let shown: Vec<Stroke> = whole.on_screen(screen).copied().collect();
+        assert!(strokes == shown, "screen {screen}: {} and {}", strokes.len(), shown.len());
+        assert!(parts > 2, "{parts}");
+    }
+}
+
+#[test]
+fn a_picture_of_too_many_vectors_is_counted_and_answers_requests() {
+    let structures = crowd();
+    let whole = update(&structures, 0, &Requests::default());
+    let counted = update_into(&structures, 0, &Requests::default(), Vec::new(), 100_000);
+    assert!(counted.is_counted_only && counted.strokes.is_empty() && counted.scopes.is_empty());
+    assert_eq!(counted.vectors, whole.vectors);
+    assert_eq!(counted.visits, whole.visits);
+    let enough = update_into(&structures, 0, &Requests::default(), Vec::new(), whole.vectors);
+    assert!(!enough.is_counted_only && enough.strokes == whole.strokes);
+}
