@@ -31,7 +31,12 @@ impl Png {
         if row > MOST_OF_ROW {
             return Err(format!("its rows of {row} bytes are longer than {MOST_OF_ROW}"));
         }
-        decoder.read_info().map(Png).map_err(said)
+        let reader = decoder.read_info().map_err(said)?;
+        // The decoder takes any number of bytes for a palette, and fails at others than these.
+        match reader.info().palette.as_deref().map_or(3, <[u8]>::len) {
+            length if (3..=768).contains(&length) && length.is_multiple_of(3) => Ok(Png(reader)),
+            length => Err(format!("its palette has {length} bytes: three for each of 1 to 256 colours are needed")),
+        }
     }
 
     pub(super) fn size(&self) -> [u32; 2] {
@@ -79,4 +84,36 @@ fn bands_of(color: ColorType) -> usize {
 fn spread<T: Copy>(bands: usize, band: impl Fn(usize) -> T, covered: T) -> [T; 4] {
     let alpha = if bands.is_multiple_of(2) { band(bands - 1) } else { covered };
     if bands < 3 { [band(0), band(0), band(0), alpha] } else { [band(0), band(1), band(2), alpha] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{BufReader, Write};
+
+    /// A file of 2 by 2 pixels that look up a palette of so many bytes.
+    fn with_palette(length: usize) -> Result<usize, String> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 2, 2);
+        encoder.set_color(ColorType::Indexed);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_palette(vec![7; length]);
+        let mut writer = encoder.write_header().map_err(|e| e.to_string())?;
+        writer.write_image_data(&[0; 4]).map_err(|e| e.to_string())?;
+        writer.finish().map_err(|e| e.to_string())?;
+        let mut file = tempfile::tempfile().map_err(|e| e.to_string())?;
+        file.write_all(&bytes).and_then(|()| std::io::Seek::rewind(&mut file)).map_err(|e| e.to_string())?;
+        let mut pixels = 0;
+        Png::open(BufReader::new(file))?.each(&mut |_, _, _| pixels += 1)?;
+        Ok(pixels)
+    }
+
+    #[test]
+    fn a_palette_of_a_wrong_length_is_an_error() {
+        assert_eq!(with_palette(3), Ok(4));
+        assert_eq!(with_palette(768), Ok(4));
+        for length in [0, 1, 2, 4, 769, 771] {
+            assert!(with_palette(length).is_err(), "{length}");
+        }
+    }
 }
