@@ -61,7 +61,8 @@ fn main() {
                 host.send(list(lists + number));
             }
         });
-        let orders = ["panel", "dial 1 0.01", "counters", "button 1", "show V1", "puck move 0.1 0.1", "terminal", "log"];
+        let orders =
+            ["panel", "dial 1 0.01", "counters", "button 1", "show V1", "puck move 0.1 0.1", "terminal", "log"];
         let times: Vec<Duration> = (orders.iter().cycle().take(ORDERS))
             .map(|order| {
                 let start = Instant::now();

@@ -14,8 +14,14 @@ use std::{cell::RefCell, collections::BTreeSet, fs, path::Path, time::Duration};
 use tests::{
     Machine,
     conformance::{
-        self, Case, Operator, Report, Target, Way, case::Step, line::Place, person, person::OrderFault,
-        report::failure_text, walk,
+        self, Case, Operator, Report, Target, Way,
+        case::Step,
+        line::Place,
+        mutation::{self, Change, Mutant, Mutations},
+        person,
+        person::OrderFault,
+        report::failure_text,
+        walk,
     },
 };
 
@@ -148,7 +154,7 @@ fn strokes_come_over_the_host_line_where_nobody_is_at_the_machine() {
     assert!(failed.is_empty(), "{}", failed.concat());
     // What needs a person, frames one after the other, or more strokes than the line brings.
     let tally = report.tally();
-    assert!(tally.passed > 9 * tally.skipped, "{}", report.text());
+    assert!(tally.passed > 5 * tally.skipped, "{}", report.text());
 }
 
 #[test]
@@ -168,6 +174,77 @@ fn a_wrong_expectation_fails_at_its_line() {
     let report = play(machine(), Way::default(), None, &cases);
     let failures: Vec<(&str, usize)> = report.failures().map(|(case, f)| (case.id.as_str(), f.line)).collect();
     assert_eq!(failures, [("a", 4), ("b", 7), ("c", 11), ("d", 14)]);
+}
+
+/// Plays mutants of cases on two machines side by side, each with half of the cases.
+fn mutate(cases: &[Case], choose: fn(&Case) -> Vec<Mutant>) -> Mutations {
+    let half = |of: usize| {
+        let machine = machine();
+        let place = format!("tcp:{}", machine.line).parse().unwrap();
+        let target = Target { reboots: true, ..target(place, Way::default(), None) };
+        let machine = RefCell::new(machine);
+        let mut here = Here(&machine);
+        let share = cases.iter().skip(of).step_by(2);
+        mutation::run(&target, &mut Some(&mut here), share, choose, |_, _| {}).unwrap()
+    };
+    std::thread::scope(|scope| {
+        let other = scope.spawn(|| half(1));
+        let mut found = half(0);
+        found.join(other.join().unwrap());
+        found
+    })
+}
+
+#[test]
+fn no_case_passes_without_what_it_is_named_after() {
+    let cases = all();
+    let found = mutate(&cases, mutation::subject_mutants);
+    assert!(found.unsound.is_empty(), "failed without a change: {:?}", found.unsound);
+    let insensitive: Vec<String> =
+        found.insensitive().map(|(case, subject)| format!("{} to the loss of {subject}", case.id)).collect();
+    assert!(insensitive.is_empty(), "insensitive: {}", insensitive.join(", "));
+    assert!(found.subjects.all > 600, "{}", found.subjects.all);
+}
+
+#[test]
+fn the_table_of_mutations_is_that_of_the_cases() {
+    let table = include_str!("../conformance/mutations.md");
+    let mut cases = known();
+    cases.retain(|case| !case.is_long);
+    if is_long() {
+        let found = mutate(&cases, mutation::mutants);
+        assert!(table.ends_with(&found.table()), "the table of today:\n{}", found.table());
+        return;
+    }
+    // How many mutants there are is known without playing them.
+    let mutants: Vec<Mutant> = cases.iter().flat_map(mutation::mutants).collect();
+    let count = |change: Change| mutants.iter().filter(|mutant| mutant.change == change).count().to_string();
+    let sums = table.lines().find_map(|line| line.strip_prefix("| all | ")).expect("the table has sums");
+    let sums: Vec<&str> = sums.trim_end_matches(" |").split(" | ").collect();
+    assert_eq!([sums[0], sums[2]], [count(Change::LeftOut), count(Change::Changed)], "make the table anew");
+}
+
+/// The facts that the table of broken machines has.
+fn broken() -> BTreeSet<&'static str> {
+    let rows = include_str!("../conformance/broken.md").lines().filter_map(|line| line.strip_prefix("| "));
+    rows.skip(1).filter_map(|row| Some(row.split_once(" | ")?.0)).collect()
+}
+
+#[test]
+fn every_fact_was_broken_once_and_its_cases_noticed() {
+    let ids: BTreeSet<String> = known().into_iter().map(|case| case.id).collect();
+    for row in include_str!("../conformance/broken.md").lines().filter_map(|line| line.strip_prefix("| ")).skip(1) {
+        let [fact, how, cases] = row.trim_end_matches(" |").split(" | ").collect::<Vec<_>>()[..] else {
+            panic!("a row has three cells: {row}");
+        };
+        assert!(!how.is_empty() && cases.split(", ").all(|case| ids.contains(case)), "{fact}: {cases}");
+    }
+    let facts =
+        include_str!("../conformance/facts.txt").lines().filter(|line| line.starts_with(|c| ('1'..='5').contains(&c)));
+    let broken = broken();
+    let missing: Vec<&str> =
+        facts.filter_map(|line| Some(line.split_once(" | ")?.0)).filter(|fact| !broken.contains(fact)).collect();
+    assert!(missing.is_empty(), "never broken: {missing:?}");
 }
 
 #[test]

@@ -107,7 +107,8 @@ fn the_refresh_counts_the_strokes_of_all_screens_that_are_seen() {
 
 #[test]
 fn a_picture_of_many_vectors_is_drawn_when_somebody_looks_and_is_the_same() {
-    let vectors = |n: usize| (0..n).map(|i| format!("{},{} ", (i % 91) as f32 / 91.0, (i % 7) as f32 / 7.0)).collect::<String>();
+    let vectors =
+        |n: usize| (0..n).map(|i| format!("{},{} ", (i % 91) as f32 / 91.0, (i % 7) as f32 / 7.0)).collect::<String>();
     let text = format!("A := VECTOR_LIST {}; DISPLAY A; SEND 'HI' TO <1>MESSAGE_DISPLAY;", vectors(250_000));
     let machine = || {
         let mut machine = Machine::new(Settings::default());
@@ -135,7 +136,9 @@ fn a_picture_of_many_vectors_is_drawn_when_somebody_looks_and_is_the_same() {
 fn what_is_written_back_has_its_strokes() {
     let mut machine = Machine::new(Settings::default());
     let lists = "0,0 1,0 ".repeat(110_000);
-    let text = format!("A := VECTOR_LIST {lists}; W := WRITEBACK THEN B; B := VECTOR_LIST 0,0 0.5,0; DISPLAY A; DISPLAY W; SEND TRUE TO <1>W;");
+    let text = format!(
+        "A := VECTOR_LIST {lists}; W := WRITEBACK THEN B; B := VECTOR_LIST 0,0 0.5,0; DISPLAY A; DISPLAY W; SEND TRUE TO <1>W;"
+    );
     machine.step([Input::Attach(LineId(1)), Input::Bytes(LineId(1), text.into())], 0);
     machine.next_frame();
     assert!(!machine.latest_update().is_counted_only);

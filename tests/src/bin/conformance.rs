@@ -3,8 +3,7 @@
 use clap::Parser;
 use std::{path::PathBuf, process::ExitCode, time::Duration};
 use tests::conformance::{
-    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Verdict, Way, line::Place,
-    mutation, walk,
+    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Verdict, Way, line::Place, mutation, walk,
 };
 
 /// Runs the conformance suite of the PS 340 against a machine; see protocol/CONFORMANCE.md.

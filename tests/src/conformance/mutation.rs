@@ -143,7 +143,11 @@ fn other_literal(kind: TokenKind, text: &str) -> Option<String> {
         }),
         TokenKind::String => Some(match text.len() {
             2 => "'X'".into(),
-            length => format!("{}{}'", &text[..text.floor_char_boundary(length - 2)], if text.ends_with("X'") { "Y" } else { "X" }),
+            length => format!(
+                "{}{}'",
+                &text[..text.floor_char_boundary(length - 2)],
+                if text.ends_with("X'") { "Y" } else { "X" }
+            ),
         }),
         TokenKind::Name => match text.to_ascii_uppercase().as_str() {
             "TRUE" => Some("FALSE".into()),
@@ -331,6 +335,21 @@ impl Mutations {
         }
     }
 
+    /// Adds what came of other mutants.
+    pub fn join(&mut self, other: Mutations) {
+        let add = |sum: &mut Count, count: Count| {
+            sum.all += count.all;
+            sum.unnoticed += count.unnoticed;
+        };
+        for (name, counts) in other.commands {
+            let row = self.commands.entry(name).or_default();
+            row.iter_mut().zip(counts).for_each(|(sum, count)| add(sum, count));
+        }
+        add(&mut self.subjects, other.subjects);
+        self.unnoticed.extend(other.unnoticed);
+        self.unsound.extend(other.unsound);
+    }
+
     /// The cases that do not notice the loss of what they are named after, with that.
     pub fn insensitive(&self) -> impl Iterator<Item = (&Case, &str)> {
         self.unnoticed.iter().filter_map(|mutant| match &mutant.change {
@@ -365,7 +384,11 @@ impl Mutations {
         let Count { all, unnoticed } = self.subjects;
         let _ = writeln!(out, "{all} losses of what a case is named after, {unnoticed} unnoticed");
         for (case, subject) in self.insensitive() {
-            let _ = writeln!(out, "INSENSITIVE {} [{}] {}:{} to the loss of {subject}", case.id, case.section, case.file, case.line);
+            let _ = writeln!(
+                out,
+                "INSENSITIVE {} [{}] {}:{} to the loss of {subject}",
+                case.id, case.section, case.file, case.line
+            );
         }
         for id in &self.unsound {
             let _ = writeln!(out, "UNSOUND {id}: failed without a change");
@@ -426,7 +449,8 @@ mod tests {
         let changed: Vec<_> = all.iter().filter(|m| m.change == Change::Changed).map(|m| m.text.1.as_deref()).collect();
         let of_send = ["SEND 'bX' TO <1>HOST_MESSAGE;", "SEND 'b;' TO <2>HOST_MESSAGE;"];
         assert_eq!(changed, [Some("A := SCALE 4 THEN B;"), Some(of_send[0]), Some(of_send[1])]);
-        let subjects: Vec<_> = all.iter().filter_map(|m| matches!(&m.change, Change::Subject(_)).then_some(&m.change)).collect();
+        let subjects: Vec<_> =
+            all.iter().filter_map(|m| matches!(&m.change, Change::Subject(_)).then_some(&m.change)).collect();
         assert_eq!(subjects, [&Change::Subject("DELETE".into())]);
     }
 

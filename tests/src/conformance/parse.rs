@@ -164,9 +164,7 @@ impl Reader<'_> {
         };
         match self.cases.last() {
             Some(case) if !case.steps.iter().any(|(_, s)| expects(s)) => Err(Problem::Idle(case.id.clone())),
-            Some(case) if !case.steps.iter().any(|(_, s)| is_heard_or_seen(s)) => {
-                Err(Problem::Silent(case.id.clone()))
-            }
+            Some(case) if !case.steps.iter().any(|(_, s)| is_heard_or_seen(s)) => Err(Problem::Silent(case.id.clone())),
             _ => Ok(()),
         }
     }

@@ -268,7 +268,8 @@ fn text_under_instances_of_instances_ends() {
 fn crowd() -> Structures {
     let mut structures = Structures::default();
     let long = |count: u32| {
-        let points: Vec<[f32; 3]> = (0..count).map(|i| [(i % 997) as f32 / 997.0, (i % 13) as f32 / 13.0, 0.0]).collect();
+        let points: Vec<[f32; 3]> =
+            (0..count).map(|i| [(i % 997) as f32 / 997.0, (i % 13) as f32 / 13.0, 0.0]).collect();
         list(VectorClass::Connected, &points)
     };
     let text = Characters { position: DVec3::ZERO, step: DVec2::X, text: (*b"TEXT").into() };
