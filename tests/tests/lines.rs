@@ -118,6 +118,8 @@ fn memory_goes_back_after_initialize() {
         host.send(format!("A{list} := VECTOR_LIST SEPARATE N = 2 {vectors}; DISPLAY A{list};"));
     }
     host.synchronize();
+    // The list of strokes keeps them all; a picture alone would not.
+    machine.order("strokes 1");
     machine.order(&picture);
     let full = machine.resident_megabytes();
     assert!(full > before + f64::from(count) * 30.0 / 1e6, "{before} MB, then {full} MB");
