@@ -40,7 +40,7 @@ const MAX_PEER: usize = 1024;
 pub struct Record {
     /// Microseconds since the capture began.
     pub micros: u64,
-    /// Which line.
+    /// The number of the line.
     pub line: u64,
     /// What.
     pub event: Event,

@@ -64,7 +64,7 @@ pub enum ColorError {
     /// A line of a table cannot be read.
     #[error("line {line}: {problem}")]
     Line {
-        /// Which, from 1.
+        /// The number of the line, from 1.
         line: usize,
         /// What is wrong.
         problem: String,

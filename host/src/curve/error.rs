@@ -68,7 +68,7 @@ pub enum SplineError {
     /// A knot below the one before it.
     #[error("knot {index} is {value}, below the knot before it")]
     Decreasing {
-        /// Which knot.
+        /// The index of the knot, from 0.
         index: usize,
         /// The knot.
         value: f64,

@@ -30,17 +30,17 @@ pub enum PolygonError {
     /// Two edges cross, or a corner passes through an edge.
     #[error("{first} crosses {second}")]
     Crossing {
-        /// One of them.
+        /// One of the two edges.
         first: PolygonEdge,
-        /// The other.
+        /// The other edge.
         second: PolygonEdge,
     },
     /// Two edges share more than a point.
     #[error("{first} overlaps {second}")]
     Overlap {
-        /// One of them.
+        /// One of the two edges.
         first: PolygonEdge,
-        /// The other.
+        /// The other edge.
         second: PolygonEdge,
     },
     /// More corners than indices of 32 bits can tell apart.

@@ -19,7 +19,7 @@ pub struct Cage {
 /// Makes parts of a polyhedron sharp.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sharpening {
-    /// Which parts.
+    /// The edges or vertices that become sharp.
     pub of: Sharp,
     /// For so many steps they stay sharp; without a number for ever.
     pub steps: Option<f64>,

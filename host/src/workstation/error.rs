@@ -9,7 +9,7 @@ pub enum WorkstationError {
     /// The emulator's program does not start.
     #[error("cannot start the workstation {}: {reason}", program.display())]
     Start {
-        /// Which program.
+        /// The program that was to be started.
         program: PathBuf,
         /// Why.
         reason: String,
@@ -17,7 +17,7 @@ pub enum WorkstationError {
     /// Nobody listens at the line.
     #[error("cannot attach to the workstation at {line}: {reason}")]
     Attach {
-        /// Which line.
+        /// The address of the line.
         line: Address,
         /// Why.
         reason: String,
@@ -50,7 +50,7 @@ pub enum WorkstationError {
     /// An order to the operator line was refused.
     #[error("the workstation's operator line refused '{order}': {reason}")]
     Order {
-        /// Which order.
+        /// The order, as it was sent.
         order: String,
         /// Why.
         reason: String,

@@ -37,7 +37,7 @@ const BACK_INTENSITY: f64 = 0.25;
 /// Which lines of the objects are sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawing {
-    /// Which edges.
+    /// Which edges of the objects are sent.
     pub lines: Lines,
     /// Edges at which two triangles meet at more than this angle are sent whatever `lines` says, degrees.
     pub crease_degrees: f64,

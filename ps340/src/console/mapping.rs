@@ -59,7 +59,7 @@ pub struct Mapping {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}: {problem}")]
 pub struct MappingError {
-    /// Which, from 1.
+    /// The number of the line in the file, from 1.
     pub line: usize,
     /// What is wrong.
     pub problem: MappingProblem,

@@ -190,7 +190,11 @@ impl std::fmt::Display for Message {
 pub(super) fn inputs_of(node: &Node, name: &str) -> String {
     match node {
         Node::Group(_) => format!("a structure has no inputs, nodes that are named inside it do, such as {name}.NODE"),
-        node => format!("a {} has {}", node.word(), node.inputs()),
+        node => {
+            let word = node.word();
+            let article = if word.starts_with(['A', 'E', 'I', 'O', 'U']) { "an" } else { "a" };
+            format!("{article} {word} has {}", node.inputs())
+        }
     }
 }
 

@@ -32,7 +32,7 @@ pub enum Effect {
     },
     /// Text on a label of the dials or of the function keys.
     Label {
-        /// Which one.
+        /// The label that shows the text.
         label: Label,
         /// At most [`Label::width`] bytes.
         text: Box<[u8]>,

@@ -25,7 +25,7 @@ pub enum GoniometryError {
     /// A line of the file.
     #[error("line {line}: {problem}")]
     Line {
-        /// Which, from 1.
+        /// The number of the line, from 1.
         line: usize,
         /// What is wrong.
         problem: String,

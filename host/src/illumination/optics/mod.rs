@@ -48,7 +48,7 @@ impl Mixture<'_> {
     }
 }
 
-/// Which of the lobes.
+/// One of the lobes of a surface.
 ///
 /// The first two carry rays from the eye on. A way of light may be told by them: each of its turns is by a broad lobe or by a narrow one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
