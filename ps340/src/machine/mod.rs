@@ -222,9 +222,7 @@ impl Machine {
         self.with_parallels(|parallel, machine, out| parallel.frame(machine, out));
         self.advance_renderings();
         self.settle();
-        self.update_picture();
-        self.settle();
-        self.update_overlay();
+        self.update_sight();
         self.follow_frame();
         self.relieve();
     }
@@ -250,6 +248,13 @@ impl Machine {
     /// Makes the picture of now, with all its strokes.
     pub fn renew_picture(&mut self) {
         self.draw_picture();
+        self.settle();
+        self.update_overlay();
+    }
+
+    /// Brings the picture, and what is drawn over it, up to date as a frame does.
+    fn update_sight(&mut self) {
+        self.update_picture();
         self.settle();
         self.update_overlay();
     }

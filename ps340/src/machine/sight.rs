@@ -122,9 +122,7 @@ impl Machine {
     ///   no afterglow.
     pub fn vector_picture(&mut self, size: Option<[u32; 2]>) -> Picture {
         if !self.is_followed() {
-            self.update_picture();
-            self.settle();
-            self.update_overlay();
+            self.update_sight();
             if self.update.is_counted_only {
                 return self.large_picture(size);
             }

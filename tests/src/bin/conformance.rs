@@ -44,7 +44,7 @@ struct Arguments {
     #[arg(long)]
     long: bool,
     /// Play mutants of the cases instead: each command left out, each number, text and switch changed.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "junit")]
     mutate: bool,
     /// Where the files of cases are.
     #[arg(long, value_name = "FOLDER")]

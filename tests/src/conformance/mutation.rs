@@ -27,7 +27,7 @@ use std::{
 struct Statement {
     /// Where it stands in the whole text of the case.
     range: Range<usize>,
-    /// The row of the reference that it belongs to; for a function and the like see [`Statement::subjects`].
+    /// The row of the reference that it belongs to.
     command: &'static str,
     /// What it is about: its command, the function that it makes, the initial instances that it names.
     subjects: BTreeSet<String>,
@@ -426,13 +426,12 @@ mod tests {
     use super::*;
     use crate::conformance::parse;
 
-    fn sent(case: &Case) -> Vec<&str> {
-        let text = |(_, step): &'_ (usize, Step)| match step {
+    fn sent(case: &Case) -> Vec<String> {
+        let text = |(_, step): &(usize, Step)| match step {
             Step::Send(text) | Step::Each { text, .. } => Some(text.trim_end().to_string()),
             _ => None,
         };
-        let texts: Vec<String> = case.steps.iter().filter_map(text).collect();
-        texts.into_iter().map(|text| &*text.leak()).collect()
+        case.steps.iter().filter_map(text).collect()
     }
 
     #[test]
