@@ -186,8 +186,12 @@ impl<W: Write> Rows<'_, W> {
             Route::Message => {
                 self.text(body.at(0), whole);
                 if let Some(form) = MessageForm::requested(body.payload) {
-                    let wish = if form == MessageForm::Text { "text" } else { "packets" };
-                    self.note(format_args!("if it is from the host: messages as {wish}"));
+                    let wish = match form {
+                        MessageForm::Text => "messages as text",
+                        MessageForm::Packets => "messages as packets",
+                        MessageForm::Own => "messages of its own, as packets",
+                    };
+                    self.note(format_args!("if it is from the host: {wish}"));
                 }
             }
             Route::Channel(_) | Route::Terminal | Route::Diagnostic | Route::Other(_) => self.text(body.at(0), whole),

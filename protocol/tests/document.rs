@@ -105,8 +105,14 @@ fn stream(name: &str) -> Option<Vec<u8>> {
         "request for packets" => MessageForm::Packets.write_request(&mut out),
         "messages as packets" => {
             let mut writer = MessageWriter::default();
-            assert!(writer.request(MessageForm::Packets.request()));
+            writer.set_form(MessageForm::Packets);
             writer.write(b"1V 0.25,-0.125", &mut out).expect("it is short");
+        }
+        "request for messages of its own" => MessageForm::Own.write_request(&mut out),
+        "report" => {
+            let mut writer = MessageWriter::default();
+            writer.set_form(MessageForm::Own);
+            writer.write_report("E 2 *** Name not found: CUBE", &mut out).expect("it is short");
         }
         "raster" => {
             let commands = [
@@ -135,7 +141,7 @@ fn dump(name: &str) -> String {
     let stream = stream(name).unwrap_or_else(|| panic!("no dump is called {name}"));
     let mut text = String::new();
     // A request for packets is what a host sends.
-    let sender = if name.starts_with("messages as") { Sender::Machine } else { Sender::Host };
+    let sender = if name.starts_with("messages as") || name == "report" { Sender::Machine } else { Sender::Host };
     let mut listing = Listing::of(sender);
     listing.push(&stream, &mut text).expect("a string takes all text");
     listing.finish(&mut text).expect("a string takes all text");

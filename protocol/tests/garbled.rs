@@ -54,7 +54,7 @@ fn decode(stream: &[u8], size: usize) -> String {
         listing.push(piece, &mut text).expect("a string takes all text");
     }
     listing.finish(&mut text).expect("a string takes all text");
-    for form in [MessageForm::Text, MessageForm::Packets] {
+    for form in MessageForm::ALL {
         let mut reader = MessageReader::default();
         reader.expect(form);
         stream.chunks(size).for_each(|piece| reader.push(piece));

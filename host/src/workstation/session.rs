@@ -87,7 +87,8 @@ impl std::fmt::Debug for Session {
 }
 
 impl Session {
-    /// Attaches to a workstation, and asks for its messages as packets.
+    /// Attaches to a workstation, and asks for messages of its own as packets: other programs on other lines read theirs,
+    /// and what the workstation reports about commands of this session is logged here.
     ///
     /// - `patience`: how long the workstation may take, now and later.
     ///
@@ -112,8 +113,8 @@ impl Session {
             messages: VecDeque::new(),
             marks: 0,
         };
-        MessageForm::Packets.write_request(&mut session.out);
-        session.reader.expect(MessageForm::Packets);
+        MessageForm::Own.write_request(&mut session.out);
+        session.reader.expect(MessageForm::Own);
         // A host that has said nothing may have to give its place to another.
         session.flush()?;
         Ok(session)
@@ -190,6 +191,9 @@ impl Session {
                 Ok(0) => return Err(WorkstationError::Closed { reason: String::new() }),
                 Ok(n) => {
                     self.reader.push(&buffer[..n]);
+                    while let Some(report) = self.reader.next_report() {
+                        log(&report);
+                    }
                     for message in self.reader.by_ref() {
                         let lost = |e: MessageError| WorkstationError::Closed { reason: e.to_string() };
                         self.messages.push_back(message.map_err(lost)?);
@@ -208,8 +212,7 @@ impl Session {
     /// [`WorkstationError::Silent`], [`WorkstationError::Closed`].
     pub fn synchronize(&mut self) -> Result<(), WorkstationError> {
         self.marks += 1;
-        // Every host gets every message: the process tells the marks of two hosts apart.
-        let mark = format!("PERIS MARK {} {}", std::process::id(), self.marks);
+        let mark = format!("PERIS MARK {}", self.marks);
         self.commands(&[network::send(Value::string(&mark), 1, "HOST_MESSAGE")])?;
         let mut others = VecDeque::new();
         let wait = Wait::begin("the end of what was sent", self.patience.answer);
@@ -267,6 +270,15 @@ impl Session {
     }
 }
 
+/// An error is to be seen; a warning, that a name is defined anew, is usual.
+fn log(report: &str) {
+    if report.starts_with('E') {
+        tracing::warn!("the workstation reports: {report}");
+    } else {
+        tracing::debug!("the workstation reports: {report}");
+    }
+}
+
 /// Opens a line; takes as long as the system wants.
 fn open(address: &Address) -> io::Result<Box<dyn Line>> {
     Ok(match address {
@@ -308,7 +320,7 @@ mod tests {
     /// Says something else for ever.
     fn talk(mut partner: TcpStream) -> io::Result<()> {
         let mut writer = MessageWriter::default();
-        assert!(writer.request(MessageForm::Packets.request()), "it knows packets");
+        writer.set_form(MessageForm::Own);
         let mut message = Vec::new();
         writer.write(b"SOMETHING ELSE", &mut message).map_err(io::Error::other)?;
         loop {

@@ -1,10 +1,12 @@
-//! Messages to the host, one string each, in two forms.
+//! Messages to the host, one string each, in three forms.
 //!
 //! A connection begins in the text form: the bytes of a message, then CR LF. The CR is historical \[M\]; the LF is ours, so
 //! that a terminal shows lines. A CR that ends the message is that of CR LF: a typed RETURN, which is a message of one CR,
 //! ends one line and not two. A packet on the route `=` with the body `P` switches the messages of that connection to
-//! the packet form: one long packet on the route `=` for each message, with exactly its bytes; the body `T` switches
-//! back. Both are ours.
+//! the packet form: one long packet on the route `=` for each message, with exactly its bytes. The body `O` asks for
+//! packets of the connection's own: messages that its own commands lead to HOST_MESSAGE, and, on the route `?`, what the
+//! machine reports about its commands; no other host receives them, and it receives those of no other. The body `T`
+//! switches back. All three are ours.
 
 use super::{
     deframe::{Frame, FrameDecoder, NoiseReason},
@@ -16,7 +18,7 @@ use std::collections::VecDeque;
 /// Longest message, in bytes. Ours.
 pub const MAX_MESSAGE: usize = MAX_PAYLOAD;
 
-/// How the messages of a connection travel.
+/// How the messages of a connection travel, and whose they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MessageForm {
     /// The bytes, then CR LF.
@@ -24,20 +26,26 @@ pub enum MessageForm {
     Text,
     /// Packets on the route `=`.
     Packets,
+    /// Packets of this connection alone: its messages on the route `=`, reports about its commands on the route `?`.
+    Own,
 }
 
 impl MessageForm {
+    /// All of them.
+    pub const ALL: [MessageForm; 3] = [MessageForm::Text, MessageForm::Packets, MessageForm::Own];
+
     /// The body of the packet from the host that asks for the form.
     pub const fn request(self) -> &'static [u8] {
         match self {
             MessageForm::Text => b"T",
             MessageForm::Packets => b"P",
+            MessageForm::Own => b"O",
         }
     }
 
     /// The form that the body of a packet on the route `=` from the host asks for.
     pub fn requested(body: &[u8]) -> Option<MessageForm> {
-        [MessageForm::Text, MessageForm::Packets].into_iter().find(|form| form.request() == body)
+        MessageForm::ALL.into_iter().find(|form| form.request() == body)
     }
 
     /// Appends the packet that asks for the form.
@@ -69,11 +77,9 @@ impl MessageWriter {
         self.form
     }
 
-    /// Obeys the body of a packet on the route `=` from the host; false if it means nothing.
-    pub fn request(&mut self, body: &[u8]) -> bool {
-        let form = MessageForm::requested(body);
-        self.form = form.unwrap_or(self.form);
-        form.is_some()
+    /// Writes in this form from now on.
+    pub fn set_form(&mut self, form: MessageForm) {
+        self.form = form;
     }
 
     /// Appends a message to what goes to the host.
@@ -91,8 +97,17 @@ impl MessageWriter {
                 out.extend_from_slice(if message.ends_with(b"\r") { b"\n" } else { b"\r\n" });
                 Ok(())
             }
-            MessageForm::Packets => write_packet(Route::Message, message, out),
+            MessageForm::Packets | MessageForm::Own => write_packet(Route::Message, message, out),
         }
+    }
+
+    /// Appends a report about a command to what goes to a host that asked for [`MessageForm::Own`]; nothing else has a
+    /// place for it in the other forms.
+    ///
+    /// # Errors
+    /// A report longer than [`MAX_MESSAGE`].
+    pub fn write_report(&self, report: &str, out: &mut Vec<u8>) -> Result<(), EncodeError> {
+        if self.form == MessageForm::Own { write_packet(Route::Diagnostic, report.as_bytes(), out) } else { Ok(()) }
     }
 }
 
@@ -100,11 +115,15 @@ impl MessageWriter {
 ///
 /// It takes every byte for text until [`expect`](Self::expect) says that packets were asked for. From then on it takes
 /// both, since messages that were on their way still come as text.
+///
+/// It gives the messages as an iterator. Reports about the host's own commands are apart from them, in
+/// [`next_report`](Self::next_report).
 #[derive(Clone, Debug)]
 pub struct MessageReader {
     form: MessageForm,
     decoder: FrameDecoder,
     lines: Lines,
+    reports: VecDeque<String>,
 }
 
 /// Lines of text out of pieces.
@@ -119,7 +138,7 @@ struct Lines {
 impl Default for MessageReader {
     fn default() -> Self {
         let decoder = FrameDecoder::long_packets_only();
-        MessageReader { form: MessageForm::Text, decoder, lines: Lines::default() }
+        MessageReader { form: MessageForm::Text, decoder, lines: Lines::default(), reports: VecDeque::new() }
     }
 }
 
@@ -131,18 +150,27 @@ impl MessageReader {
 
     /// Takes more of the stream.
     pub fn push(&mut self, bytes: &[u8]) {
-        let MessageReader { form, decoder, lines } = self;
+        let MessageReader { form, decoder, lines, reports } = self;
         if *form == MessageForm::Text && !decoder.is_unfinished() {
             return lines.push(bytes);
         }
         decoder.feed(bytes, |frame| match frame {
             Frame::Text(text) => lines.push(text),
             Frame::Packet { route: Route::Message, payload, .. } => lines.ready.push_back(Ok(payload.to_vec())),
+            Frame::Packet { route: Route::Diagnostic, payload, .. } if *form == MessageForm::Own => {
+                reports.push_back(String::from_utf8_lossy(payload).into_owned());
+            }
             Frame::Packet { .. } | Frame::Empty(_) => {}
             // In what is left of the text form a start byte is a character like any other.
             Frame::Noise { bytes, reason: NoiseReason::BadHeader | NoiseReason::BadCount } => lines.push(bytes),
             Frame::Noise { reason, .. } => lines.ready.push_back(Err(MessageError::Lost(reason))),
         });
+    }
+
+    /// The next report of the machine about a command of this host, such as `E 2 *** Name not found: CUBE`. It stood in the
+    /// stream before every message that was read after it.
+    pub fn next_report(&mut self) -> Option<String> {
+        self.reports.pop_front()
     }
 
     /// Whether a message has begun and its end is still to come.
@@ -199,9 +227,33 @@ mod tests {
     }
 
     fn packets() -> MessageWriter {
-        let mut writer = MessageWriter::default();
-        assert!(writer.request(b"P") && !writer.request(b"?"));
-        writer
+        MessageWriter { form: MessageForm::Packets }
+    }
+
+    #[test]
+    fn a_form_is_asked_for_by_its_letter() {
+        for (body, form) in [(&b"T"[..], MessageForm::Text), (b"P", MessageForm::Packets), (b"O", MessageForm::Own)] {
+            assert_eq!(MessageForm::requested(body), Some(form));
+        }
+        assert_eq!(MessageForm::requested(b"?"), None);
+    }
+
+    #[test]
+    fn reports_come_apart_from_messages_and_only_to_those_who_asked() {
+        let mut writer = packets();
+        let mut stream = Vec::new();
+        writer.write_report("E 1", &mut stream).unwrap();
+        assert!(stream.is_empty());
+        writer.set_form(MessageForm::Own);
+        writer.write_report("E 2", &mut stream).unwrap();
+        writer.write(b"A", &mut stream).unwrap();
+        writer.write_report("E 3", &mut stream).unwrap();
+        let mut reader = MessageReader::default();
+        reader.expect(MessageForm::Own);
+        stream.chunks(3).for_each(|piece| reader.push(piece));
+        assert_eq!(reader.by_ref().collect::<Vec<_>>(), [Ok(b"A".to_vec())]);
+        let reports: Vec<String> = std::iter::from_fn(|| reader.next_report()).collect();
+        assert_eq!(reports, ["E 2", "E 3"]);
     }
 
     #[test]

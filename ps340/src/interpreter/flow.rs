@@ -28,7 +28,7 @@ pub(super) fn instance(
 /// The object that sends or receives under a name, made if need be.
 fn endpoint(name: &Name, memory: &mut MassMemory) -> Result<ObjectId, Refusal> {
     let id = memory.object(name)?;
-    Ok(memory.structures.follow(id))
+    Ok(memory.resolve(id))
 }
 
 /// Makes an arc. The message about a display node without such a port is a warning; the arc is there all the same.

@@ -77,7 +77,7 @@ pub(super) async fn serve(
     host: Host,
     around: Surroundings,
 ) {
-    let line = LineId::next();
+    let line = super::next_line();
     let (read, write) = tokio::io::split(stream);
     let (writer, waiting) = Writer::new();
     if !around.attach(line, host.peer.clone(), host.interface, writer).await {

@@ -15,6 +15,7 @@ mod replay;
 mod source;
 mod operator;
 
+pub use crate::port::LineId;
 pub use capture::Capture;
 pub use hosts::MAX_HOSTS;
 pub use listener::{Listener, SocketFile, Visitors};
@@ -32,16 +33,10 @@ use std::{
 };
 use tokio::sync::mpsc;
 
-/// Which host line; numbers are never used twice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct LineId(pub u64);
-
-impl LineId {
-    /// A number that was not used before in this process.
-    fn next() -> LineId {
-        static NEXT_LINE: AtomicU64 = AtomicU64::new(1);
-        LineId(NEXT_LINE.fetch_add(1, Ordering::Relaxed))
-    }
+/// A number of a line that was not used before in this process.
+fn next_line() -> LineId {
+    static NEXT_LINE: AtomicU64 = AtomicU64::new(1);
+    LineId(NEXT_LINE.fetch_add(1, Ordering::Relaxed))
 }
 
 /// What a host line carries.

@@ -154,7 +154,7 @@ async fn play(
                         Some(line) => *line,
                         None if lines.len() >= MAX_HOSTS => continue,
                         None => {
-                            let line = LineId::next();
+                            let line = super::next_line();
                             lines.insert(record.line, line);
                             let (kind, interface) = interface(&record.event);
                             let peer = format!("{kind}{peer} line {}", record.line);

@@ -60,9 +60,10 @@ impl Machine {
                 let text = Value::string(self.memory_line());
                 self.memory.network.emit(function, 1, text, &mut self.memory.effects);
             }
-            Effect::Host { bytes, binary } => self.send_to_host(&bytes, binary),
-            Effect::HostCharacters(bytes) => {
-                self.writers.keys().for_each(|line| self.outputs.push(*line, bytes.to_vec()));
+            Effect::Host { object, bytes, binary } => self.send_to_host(object, &bytes, binary),
+            Effect::HostCharacters { object, bytes } => {
+                let hearers = self.hearers(object);
+                hearers.into_iter().for_each(|(line, _)| self.outputs.push(line, bytes.to_vec()));
             }
             Effect::Terminal(text) => self.show_text(None, &text),
             Effect::TerminalColor { hue, saturation } => {

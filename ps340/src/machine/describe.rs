@@ -15,7 +15,10 @@ const SHOWN: usize = 20;
 pub(super) fn describe(memory: &MassMemory, id: ObjectId) -> String {
     let name = memory.objects.name(id);
     if let Some(row) = memory.network.function(id) {
-        return format!("{name} := F:{}", row.name);
+        return match memory.line_of(id) {
+            Some(_) => memory.title(id),
+            None => format!("{name} := F:{}", row.name),
+        };
     }
     let target = memory.structures.follow(id);
     if target != id {

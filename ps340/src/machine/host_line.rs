@@ -137,9 +137,7 @@ impl Decoders {
                         format!("{} bytes for CHANNEL{number}, more than {MAX_STRING}, are dropped", payload.len());
                     return machine.report(Message::Line(text));
                 }
-                machine.emit(vec![(CHANNELS[usize::from(number) % 10], 1, Value::string(payload))]);
-                machine.carry_effects();
-                machine.settle();
+                machine.emit_from_line(CHANNELS[usize::from(number) % 10], Value::string(payload));
             }
             Route::Terminal => machine.show_text(Some(self.line), payload),
             Route::Diagnostic => {
@@ -147,10 +145,8 @@ impl Decoders {
                 machine.report(Message::Diagnostic(text));
             }
             Route::Message => {
-                // A line without a writer has only one form.
-                let writer = machine.writers.get_mut(&self.line);
-                if writer.is_some_and(|w| !w.request(payload)) {
-                    machine.report(Message::Line("a packet on the route of messages asks for no form".into()));
+                if let Err(message) = machine.request_form(self.line, payload) {
+                    machine.report(message);
                 }
             }
             Route::Other(code) => {

@@ -40,7 +40,7 @@ use host_line::HostLine;
 use keyboard::Keyboard;
 use outgoing::Outgoing;
 use parallel::{Mailbox, ParallelLine};
-use protocol::wire::MessageWriter;
+use protocol::wire::{MessageForm, MessageWriter};
 use relief::Relief;
 use renderings::Renderings;
 use requests::Waiting;
@@ -95,6 +95,8 @@ pub struct Machine {
     mailboxes: BTreeMap<LineId, Mailbox>,
     /// How messages go to each host.
     writers: BTreeMap<LineId, MessageWriter>,
+    /// The line whose commands are carried out, if it asked for messages of its own.
+    speaking: Option<LineId>,
     devices: Devices,
     keyboard: Keyboard,
     terminal: Terminal,
@@ -134,6 +136,7 @@ impl Machine {
             parallels: BTreeMap::new(),
             mailboxes: BTreeMap::new(),
             writers: BTreeMap::new(),
+            speaking: None,
             devices: Devices::default(),
             keyboard: Keyboard::default(),
             terminal: Terminal::default(),
@@ -272,6 +275,7 @@ impl Machine {
     fn receive(&mut self, line: LineId, bytes: &[u8]) {
         self.activity();
         self.counters.bytes_in += bytes.len() as u64;
+        self.speak_for(line);
         if let Some(mut host) = self.lines.remove(&line) {
             host.receive(bytes, self);
             self.lines.insert(line, host);
@@ -281,6 +285,7 @@ impl Machine {
             self.parallels.insert(line, parallel);
             self.answer(line, answer);
         }
+        self.speaking = None;
     }
 
     /// Does something with every host on the parallel interface, and sends what it answers.
@@ -304,7 +309,7 @@ impl Machine {
     }
 
     fn detach(&mut self, line: LineId) {
-        self.writers.remove(&line);
+        self.speak_for(line);
         self.keyboard.detach(line);
         self.mailboxes.remove(&line);
         let host = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory));
@@ -312,6 +317,9 @@ impl Machine {
         if let Some(open) = host.or(parallel) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
+        self.speaking = None;
+        self.writers.remove(&line);
+        self.memory.close_line(line);
     }
 
     /// Runs the network until it rests or has used up its share of this frame, and does what it wants.
@@ -355,6 +363,11 @@ impl Machine {
         self.memory.structures.set_frame(self.frame);
         self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
         self.lines.values_mut().for_each(HostLine::restart);
+        let own = self.writers.iter().filter(|(_, writer)| writer.form() == MessageForm::Own);
+        for line in own.map(|(line, _)| *line) {
+            let made = self.memory.open_line(line);
+            debug_assert!(made.is_ok(), "nothing else is there");
+        }
         self.devices = Devices::default();
         self.panel = Panel::default();
         self.frame_buffer = FrameBuffer::default();
@@ -399,6 +412,8 @@ pub fn time_of_frame(frame: u64) -> Micros {
 mod answer_tests;
 #[cfg(test)]
 mod device_tests;
+#[cfg(test)]
+mod line_tests;
 #[cfg(test)]
 mod rendering_tests;
 #[cfg(test)]

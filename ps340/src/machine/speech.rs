@@ -1,8 +1,14 @@
 //! What the machine says: messages to its hosts, and its own numbered messages.
 
 use super::Machine;
-use crate::interpreter::{Class, Message};
-use protocol::{Value, wire::MessageForm};
+use crate::{
+    interpreter::{Class, Message},
+    port::{LineId, ObjectId},
+};
+use protocol::{
+    Value,
+    wire::{MessageForm, MessageWriter},
+};
 use std::collections::VecDeque;
 
 /// Messages of the machine that reach ERROR, WARNING, INFORMATION and the terminal between two frames; the rest are logged and
@@ -45,12 +51,15 @@ impl Kept {
 }
 
 impl Machine {
-    /// A message to the host goes to every host that is attached; a `binary` one without an end of line.
-    pub(super) fn send_to_host(&mut self, message: &[u8], binary: bool) {
+    /// A message to the host goes to every host that asked for none of its own, and that of an instance of one line to
+    /// this line alone; a `binary` one goes without an end of line.
+    pub(super) fn send_to_host(&mut self, object: ObjectId, message: &[u8], binary: bool) {
         self.counters.messages_out += 1;
         self.to_host.push(message);
-        self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
-        for (line, writer) in &self.writers {
+        if self.memory.line_of(object).is_none() {
+            self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
+        }
+        for (line, writer) in self.hearers(object) {
             let mut bytes = Vec::new();
             let written = if binary && writer.form() == MessageForm::Text {
                 bytes.extend_from_slice(message);
@@ -59,13 +68,52 @@ impl Machine {
                 writer.write(message, &mut bytes).is_ok()
             };
             if written {
-                self.outputs.push(*line, bytes);
+                self.outputs.push(line, bytes);
             }
         }
     }
 
-    /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION. Of a name that is not known, the one
-    /// that was probably meant is told, as long as it is no flood of messages.
+    /// The lines with a writer to which an instance of the host line sends.
+    pub(super) fn hearers(&self, object: ObjectId) -> Vec<(LineId, MessageWriter)> {
+        let of = self.memory.line_of(object).map(|(line, _)| line);
+        let hears = |line: &LineId, writer: &MessageWriter| match of {
+            Some(owner) => *line == owner,
+            None => writer.form() != MessageForm::Own,
+        };
+        self.writers.iter().filter(|(line, writer)| hears(line, writer)).map(|(line, w)| (*line, *w)).collect()
+    }
+
+    /// Obeys the body of a packet on the route of messages from a host.
+    ///
+    /// # Errors
+    /// Why it is not obeyed.
+    pub(super) fn request_form(&mut self, line: LineId, body: &[u8]) -> Result<(), Message> {
+        // A line without a writer has only one form.
+        if !self.writers.contains_key(&line) {
+            return Ok(());
+        }
+        let unknown = || Message::Line("a packet on the route of messages asks for no form".into());
+        let form = MessageForm::requested(body).ok_or_else(unknown)?;
+        if form == MessageForm::Own {
+            self.memory.open_line(line)?;
+        } else {
+            self.memory.close_line(line);
+        }
+        self.writers.entry(line).or_default().set_form(form);
+        self.speak_for(line);
+        Ok(())
+    }
+
+    /// What is reported from now on is about the commands of a line: if it asked for messages of its own, it alone is
+    /// told.
+    pub(super) fn speak_for(&mut self, line: LineId) {
+        let own = |writer: &MessageWriter| writer.form() == MessageForm::Own;
+        self.speaking = self.writers.get(&line).is_some_and(own).then_some(line);
+    }
+
+    /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION, or to the line whose command it is
+    /// about, if that asked for messages of its own. Of a name that is not known, the one that was probably meant is
+    /// told, as long as it is no flood of messages.
     pub(super) fn report(&mut self, message: Message) {
         let unknown = message.unknown().filter(|_| self.reported < LOGGED_PER_FRAME);
         let text = match unknown.and_then(|name| self.memory.meant(&name)) {
@@ -88,6 +136,14 @@ impl Machine {
         self.log.push_back(text.clone());
         if self.reported <= REPORTS_PER_FRAME {
             self.show_message(&text);
+        }
+        if let Some(line) = self.speaking {
+            let mut bytes = Vec::new();
+            let written = self.writers.get(&line).map(|writer| writer.write_report(&text, &mut bytes));
+            if written.is_some_and(|written| written.is_ok()) {
+                self.outputs.push(line, bytes);
+            }
+        } else if self.reported <= REPORTS_PER_FRAME {
             self.emit(vec![(instance, 1, Value::string(&text))]);
         }
     }

@@ -104,6 +104,8 @@ impl Machine {
         if piece.fresh {
             reader = Reader::default();
         }
+        // The commands that a function gives are nobody's, whoever caused them.
+        let speaking = self.speaking.take();
         self.streams.busy = true;
         let completed = match piece.stream {
             Stream::Text => self.interpret_text(&mut reader, &piece.bytes),
@@ -111,6 +113,7 @@ impl Machine {
             Stream::Raster => raster_records(&piece.bytes, self),
         };
         self.streams.busy = false;
+        self.speaking = speaking;
         self.streams.interpreters.insert(piece.function, reader);
         self.reply(piece.function, 1, Value::Integer(i32::try_from(completed).unwrap_or(i32::MAX)));
         true
@@ -165,9 +168,36 @@ impl Machine {
     /// that the queues fill, and what is too much for them is counted and reported.
     pub(super) fn execute(&mut self, interpreter: &mut Interpreter, command: Command) {
         self.counters.commands += 1;
+        let rested = self.network_idle;
+        self.memory.set_speaker(self.speaking);
         interpreter.execute(command, &mut self.memory, &mut self.messages);
+        self.memory.set_speaker(None);
         self.network_idle = false;
         self.carry_effects();
+        self.settle_after(rested);
+    }
+
+    /// A message from an initial instance of the host line, or the one of the line that speaks, and what it causes.
+    pub(super) fn emit_from_line(&mut self, instance: &str, value: Value) {
+        let rested = self.network_idle;
+        self.memory.set_speaker(self.speaking);
+        let object = self.memory.objects.find(instance).map(|id| self.memory.resolve(id));
+        self.memory.set_speaker(None);
+        if let Some(object) = object {
+            self.memory.network.note_speech(object);
+            self.memory.network.emit(object, 1, value, &mut self.memory.effects);
+        }
+        self.network_idle = false;
+        self.carry_effects();
+        self.settle_after(rested);
+    }
+
+    /// Lets the network work. What functions report while they work is told to the line that speaks only if the network
+    /// had come to rest before: otherwise nobody knows whose doing it is.
+    fn settle_after(&mut self, rested: bool) {
+        let speaking = self.speaking.filter(|_| rested);
+        let speaking = std::mem::replace(&mut self.speaking, speaking);
         self.settle();
+        self.speaking = speaking;
     }
 }

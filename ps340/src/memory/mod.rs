@@ -5,6 +5,7 @@ mod system;
 mod initial;
 mod physical;
 mod insertion;
+mod line_instances;
 mod deletion;
 mod rendering;
 mod title;
@@ -21,6 +22,7 @@ use crate::{
 };
 use initial::InitialStructures;
 use insertion::Insertions;
+use line_instances::LineInstances;
 use protocol::{Name, Value, command::Input};
 use std::collections::HashSet;
 
@@ -48,6 +50,7 @@ pub struct MassMemory {
     /// Whether the command at hand comes from a line in configure mode, which may change what is the system's.
     pub privileged: bool,
     insertions: Insertions,
+    line_instances: LineInstances,
 }
 
 impl MassMemory {
@@ -63,10 +66,9 @@ impl MassMemory {
         self.objects.object(name).map_err(|_| Refusal::Full)
     }
 
-    /// The object whose messages a name takes: that of the name, or the one that it is another name of. None if the
-    /// name is not known.
+    /// The object whose messages a name takes: see [`resolve`](Self::resolve). None if the name is not known.
     pub fn target(&self, name: &Name) -> Option<ObjectId> {
-        self.objects.find(name.as_str()).map(|id| self.structures.follow(id))
+        self.objects.find(name.as_str()).map(|id| self.resolve(id))
     }
 
     /// Bytes in use.
@@ -283,6 +285,7 @@ impl MassMemory {
         self.insertions.clear();
         self.effects.push(Effect::ForgetRequests);
         self.objects.clear_user();
+        self.restore_line_instances();
         self.system.working_storage = INITIAL_WORKING_STORAGE;
         self.structures.clear_displayed();
         self.restore_arcs();

@@ -13,10 +13,13 @@ const SHORTEST: usize = 3;
 const DEPTH: usize = 64;
 
 impl MassMemory {
-    /// What to call an object in messages: its name, or what it is and where.
+    /// What to call an object in messages: its name, or what it is and where, or of which host line.
     pub fn title(&self, id: ObjectId) -> String {
         if self.objects.has_name(id) {
             return self.objects.name(id).to_owned();
+        }
+        if let Some((line, shared)) = self.line_of(id) {
+            return format!("{} of line {}", self.objects.name(shared), line.0);
         }
         let what = match (self.network.function(id), self.structures.node(id)) {
             (Some(row), _) => format!("F:{}", row.name),

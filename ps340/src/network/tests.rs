@@ -440,6 +440,7 @@ fn sinks_ask_the_machine_for_effects() {
     let monitor = bench.id("MEMORY_MONITOR");
     let mut effects = bench.run();
     effects.sort_by_key(|effect| matches!(effect, Effect::Host { .. }));
-    let host = Effect::Host { bytes: (*b"E 7 ***").into(), binary: true };
+    let object = bench.id("HOST_MESSAGEB");
+    let host = Effect::Host { object, bytes: (*b"E 7 ***").into(), binary: true };
     assert_eq!(effects, [Effect::ReportMemory { function: monitor }, host]);
 }

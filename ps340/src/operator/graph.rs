@@ -41,9 +41,10 @@ pub(super) fn graph(machine: &Machine, subject: Subject, language: Language) -> 
     }
 }
 
-/// What an object is called: its name, or its number if it has none.
+/// What an object is called: its name, whose instance it is, or its number if it has no name.
 pub fn title(memory: &MassMemory, id: ObjectId) -> String {
     match memory.objects.name(id) {
+        "?" if memory.line_of(id).is_some() => memory.title(id),
         "?" => format!("#{}", id.0),
         name => name.into(),
     }
@@ -64,7 +65,7 @@ fn functions(memory: &MassMemory) -> Vec<FunctionView<'_>> {
 fn type_of(memory: &MassMemory, view: &FunctionView<'_>) -> String {
     let name = view.row().name;
     match view.size() {
-        _ if memory.objects.is_system(view.object()) => name.into(),
+        _ if memory.objects.is_system(view.object()) || memory.line_of(view.object()).is_some() => name.into(),
         0 => format!("F:{name}"),
         size => format!("F:{name}({size})"),
     }

@@ -25,6 +25,8 @@ pub enum Effect {
     },
     /// A message to the host.
     Host {
+        /// The instance that sends it: it says to which lines.
+        object: ObjectId,
         /// Its bytes, without an end of line.
         bytes: Box<[u8]>,
         /// Whether it goes out as it is (HOST_MESSAGEB), or as a line of text (HOST_MESSAGE).
@@ -67,7 +69,12 @@ pub enum Effect {
         request: RenderingRequest,
     },
     /// Characters to the host line, without any frame.
-    HostCharacters(Box<[u8]>),
+    HostCharacters {
+        /// The instance that sends them: it says to which lines.
+        object: ObjectId,
+        /// The characters.
+        bytes: Box<[u8]>,
+    },
     /// How a dial is sampled from now on.
     Dial {
         /// 1..=8.

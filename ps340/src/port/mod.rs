@@ -42,6 +42,10 @@ impl ObjectId {
     }
 }
 
+/// The identity of a host line; numbers are never used twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LineId(pub u64);
+
 /// An input of a function: what it accepts and how messages wait there.
 #[derive(Clone, Copy, Debug)]
 pub struct PortSpec {

@@ -34,7 +34,7 @@ fn run(input: &[u8], features: &mut Features) {
     }
     check_listing(&list(&[input]), input.len());
     check_listing(&list(&pieces), input.len());
-    for form in [MessageForm::Text, MessageForm::Packets] {
+    for form in MessageForm::ALL {
         let messages = |pieces: &[&[u8]]| {
             let mut reader = MessageReader::default();
             reader.expect(form);

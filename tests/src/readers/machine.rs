@@ -71,7 +71,7 @@ pub fn packets(bytes: &[u8]) {
         let counted = decoder.counters();
         assert_eq!(counted.packet_bytes + counted.text_bytes + counted.noise_bytes, bytes.len() as u64);
     }
-    for form in [MessageForm::Text, MessageForm::Packets] {
+    for form in MessageForm::ALL {
         let [whole, cut] = pieces(bytes).map(|pieces| {
             let mut reader = MessageReader::default();
             reader.expect(form);

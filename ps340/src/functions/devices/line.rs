@@ -30,8 +30,8 @@ pub static ROWS: &[FunctionRow] = &[
         source: Source::manual(""),
         inputs: TEXT,
         behaviour: |f| {
-            let text = f.string(1)?.into();
-            ask(f, Effect::HostCharacters(text))
+            let bytes = f.string(1)?.into();
+            ask(f, Effect::HostCharacters { object: f.object(), bytes })
         },
         ..FunctionRow::PLAIN
     },
@@ -47,5 +47,5 @@ pub static ROWS: &[FunctionRow] = &[
 
 fn host(f: &mut Firing, binary: bool) -> Result<(), Problem> {
     let bytes = f.string(1)?.into();
-    ask(f, Effect::Host { bytes, binary })
+    ask(f, Effect::Host { object: f.object(), bytes, binary })
 }

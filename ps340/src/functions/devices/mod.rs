@@ -55,6 +55,11 @@ pub fn initial() -> impl Iterator<Item = Initial> {
     })
 }
 
+/// The initial instances of the host line, of which a line may have its own.
+pub fn of_line() -> impl Iterator<Item = Initial> {
+    initial().filter(|initial| line::ROWS.iter().any(|row| row.name == initial.function.name))
+}
+
 fn ask(f: &mut Firing, effect: Effect) -> Result<(), Problem> {
     f.effect(effect);
     Ok(())
