@@ -18,8 +18,10 @@ pub const DIAGONALS_PER_TURN: f64 = 0.5;
 
 /// What a message to the host begins with when a function key was pressed; the number follows.
 pub const KEY_PREFIX: &str = "KEY ";
-/// The function that answers with the matrix of the view when it gets TRUE at `<1>`.
-pub const VIEW_TRIGGER: &str = "PERIS_VIEW";
+/// The function that gives the matrix of the view when it gets TRUE at `<1>`.
+const VIEW_TRIGGER: &str = "PERIS_VIEW";
+/// The function that gives the matrix as text.
+const VIEW_TEXT: &str = "PERIS_PRINT";
 
 /// The function that asks for a shaded picture when no message came for a while.
 const QUIET: &str = "PERIS_QUIET";
@@ -119,12 +121,25 @@ pub fn commands(diagonal: f64) -> Vec<Command> {
     }
     build.function(VIEW_TRIGGER, "XFORMDATA");
     build.function("PERIS_LIST", "LIST");
-    build.function("PERIS_PRINT", "PRINT");
+    build.function(VIEW_TEXT, "PRINT");
     build.send(Value::string(format!("{ROOT}.MATRIX")), 2, VIEW_TRIGGER);
     build.connect(VIEW_TRIGGER, 1, 1, "PERIS_LIST");
-    build.connect("PERIS_LIST", 1, 1, "PERIS_PRINT");
-    build.connect("PERIS_PRINT", 1, 1, "HOST_MESSAGE");
+    build.connect("PERIS_LIST", 1, 1, VIEW_TEXT);
     build.commands
+}
+
+/// Asks for the matrix of the view, whoever set up the network that answers.
+pub(super) fn ask_view() -> Vec<Command> {
+    let mut build = Build::default();
+    build.connect(VIEW_TEXT, 1, 1, "HOST_MESSAGE");
+    build.send(Value::Boolean(true), 1, VIEW_TRIGGER);
+    build.commands
+}
+
+/// Ends the question: the answers to others who ask do not come here.
+pub(super) fn leave_view() -> Command {
+    let destination = Some(Destination { input: Input::Number(1), name: name("HOST_MESSAGE") });
+    Command::Disconnect { source: name(VIEW_TEXT), output: Some(1), destination }
 }
 
 /// Shades the light of a solution on the raster screen when the dials have stood still for a while: the vectors turn with

@@ -228,14 +228,15 @@ impl Session {
         result
     }
 
-    /// The matrix of the view that is set at the workstation, by the network of [`network::commands`].
+    /// The matrix of the view that is set at the workstation, by the network of [`network::commands`], which another session
+    /// may have sent.
     ///
     /// Returns scene coordinates (z negated) to clip space, in the glam form of [`protocol::Value`].
     ///
     /// # Errors
     /// [`WorkstationError::Silent`], [`WorkstationError::Closed`], [`WorkstationError::Answer`].
     pub fn view(&mut self) -> Result<DMat4, WorkstationError> {
-        self.commands(&[network::send(Value::Boolean(true), 1, network::VIEW_TRIGGER)])?;
+        self.commands(&network::ask_view())?;
         let mut lines = Vec::new();
         let mut others = VecDeque::new();
         let wait = Wait::begin("the matrix of the view", self.patience.answer);
@@ -249,6 +250,7 @@ impl Session {
         }
         others.append(&mut self.messages);
         self.messages = others;
+        self.commands(&[network::leave_view()])?;
         let mut rows = [[0.0; 4]; 4];
         for (row, line) in rows.iter_mut().zip(&lines[1..]) {
             let failed = || WorkstationError::Answer { answer: line.clone(), expected: "a row of four numbers" };
