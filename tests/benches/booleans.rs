@@ -202,7 +202,7 @@ fn row(case: &Case, folder: &std::path::Path) {
     let import = start.elapsed().as_secs_f64();
     let operands: Vec<&Solid> = solids.iter().collect();
     let expression = case.expression();
-    let (result, outcome) = Solid::evaluate(&operands, &expression);
+    let (result, outcome) = Solid::evaluate(&operands, &expression).expect("it settles");
     let volume = result.mesh().signed_volume();
     let check = Solid::new(result.mesh().clone());
     assert!(check.is_ok(), "{}: {}", case.name, check.unwrap_err());

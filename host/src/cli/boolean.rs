@@ -47,7 +47,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         solids.push(solid);
     }
     let start = Instant::now();
-    let (result, outcome) = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
+    let evaluated = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
+    let (result, outcome) = evaluated.map_err(|error| Failure::new(Exit::Failed, error))?;
     let seconds = start.elapsed().as_secs_f64();
     let grouped = Grouped { mesh: result.into_mesh(), names, looks };
     mesh::write_grouped(&grouped, &destination)?;

@@ -323,7 +323,7 @@ fn results_and_bare_meshes_are_sides_too() {
     let ball = solid(sphere(1.0).unwrap(), 0.01, DAffine3::IDENTITY);
     let drill = solid(cylinder(0.5, 3.0).unwrap(), 0.01, DAffine3::IDENTITY);
     let less = Expression::difference(Expression::Operand(0), Expression::Operand(1));
-    let (ring, _) = ExactSolid::evaluate(&[&ball, &drill], &less);
+    let (ring, _) = ExactSolid::evaluate(&[&ball, &drill], &less).unwrap();
     let found = curves(&ring, Open::square(DVec3::ZERO, DVec3::X, DVec3::Y, 2.0).sheet());
     // A section of the ring: two closed curves of two arcs and two lines.
     assert_eq!(found.branches.len(), 2);

@@ -16,6 +16,9 @@ use serde::{Deserialize, Serialize};
 /// Deepest nesting of composites.
 pub const MAX_NESTING: u32 = 100;
 
+/// Operands that a message names.
+const NAMED: usize = 4;
+
 /// A set operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -67,7 +70,7 @@ impl Composite {
     /// composites are done at once.
     ///
     /// # Errors
-    /// [`ShapeError`] if an operand has no triangles, or bounds no solid, or if the result has no end.
+    /// [`ShapeError`] if an operand has no triangles, or bounds no solid, or if the result has no end or crosses itself.
     pub fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
         let mut leaves = Vec::new();
         let expression = self.collect(&DMat4::IDENTITY, None, tolerance.chord, &mut leaves);
@@ -80,7 +83,8 @@ impl Composite {
             None => leaf.half_space(&bounds),
         });
         let solids: Vec<ExactSolid> = filled.collect::<Result<_, _>>()?;
-        let (result, outcome) = ExactSolid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
+        let (result, outcome) = ExactSolid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression)
+            .map_err(|source| ShapeError::Solid { object: self.title(), source })?;
         let (mesh, surfaces) = result.into_parts();
         // A half-space reaches far beyond all others: what keeps its end has none itself.
         let reach = bounds.diagonal();
@@ -90,6 +94,13 @@ impl Composite {
         }
         let operand_of = outcome.sources.iter().map(|[operand, _]| *operand).collect();
         Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
+    }
+
+    /// What it is called in messages.
+    fn title(&self) -> String {
+        let names: Vec<&str> = self.operands.iter().map(|operand| operand.name.as_str()).take(NAMED).collect();
+        let more = if self.operands.len() > names.len() { " ..." } else { "" };
+        format!("{}({}{more})", self.operation.word(), names.join(", "))
     }
 
     /// The materials of the operands that are no composites, in the order in which triangles name them.

@@ -36,6 +36,21 @@ pub enum SolidError {
         /// Pairs of triangles that have more in common than corners and edges; 0 if parts only lie in each other.
         overlaps: usize,
     },
+    /// The result of an operation crosses itself when its points are rounded, and moving them by some roundings did not
+    /// mend it.
+    #[error(
+        "rounded to numbers, the result crosses itself ({overlaps} pairs of triangles, the first near {near}), and \
+         moving its points by {most} units in the last place does not mend it; moving an operand by a millionth of its \
+         size may help"
+    )]
+    Unsettled {
+        /// Pairs of triangles that have more in common than corners and edges.
+        overlaps: usize,
+        /// A corner of the first.
+        near: DVec3,
+        /// How far points were moved, in units in the last place of the largest coordinate there.
+        most: f64,
+    },
     /// The surface crosses itself so often that it is not put right, nor told how.
     #[error("the surface crosses itself too often to be taken for one: more than {most} {what}")]
     Tangled {

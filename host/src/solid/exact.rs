@@ -90,9 +90,12 @@ impl ExactSolid {
     /// Evaluates an expression over some solids at once, as [`Solid::evaluate`] does. The surfaces of the result are those
     /// of all operands, one operand after the other; each corner has the normal and the parameters of the point of its
     /// surface that is nearest. Where the result lies on the other side of a surface, normals are turned.
-    pub fn evaluate(operands: &[&ExactSolid], expression: &Expression) -> (ExactSolid, Outcome) {
+    ///
+    /// # Errors
+    /// As of [`Solid::evaluate`].
+    pub fn evaluate(operands: &[&ExactSolid], expression: &Expression) -> Result<(ExactSolid, Outcome), SolidError> {
         let solids: Vec<&Solid> = operands.iter().map(|operand| &operand.solid).collect();
-        let (result, outcome) = Solid::evaluate(&solids, expression);
+        let (result, outcome) = Solid::evaluate(&solids, expression)?;
         let mut firsts = Vec::new();
         let mut surfaces = Vec::new();
         for operand in operands {
@@ -111,7 +114,7 @@ impl ExactSolid {
             firsts[operand as usize] + operands[operand as usize].solid.mesh().surfaces[source as usize]
         };
         mesh.surfaces = outcome.sources.iter().map(number).collect();
-        (ExactSolid { solid: Solid::of(mesh), surfaces }, outcome)
+        Ok((ExactSolid { solid: Solid::of(mesh), surfaces }, outcome))
     }
 
     /// Normals and parameters at the corners of a triangle of a result that is a part of triangle `source` of this solid.
@@ -205,7 +208,7 @@ mod tests {
         ] {
             let place = DAffine3::from_translation(center) * turn * DAffine3::from_scale(DVec3::new(mirror, 1.0, 1.0));
             let drill = exact(cylinder(0.7, 6.0).unwrap(), place);
-            let (result, _) = ExactSolid::evaluate(&[&ball, &drill], &expression);
+            let (result, _) = ExactSolid::evaluate(&[&ball, &drill], &expression).unwrap();
             // The sphere is surface 0; of the drill the lower disc is 1, the cylinder 2, the upper disc 3.
             check(&result, &[(0, &|p| (p - center).normalize()), (2, &|p| -across(p).normalize())]);
         }
@@ -217,8 +220,8 @@ mod tests {
         let drill = exact(cylinder(0.5, 3.0).unwrap(), DAffine3::IDENTITY);
         let cut = exact(block(DVec3::splat(4.0)).unwrap(), DAffine3::from_translation(DVec3::X * 2.1));
         let less = Expression::difference(Expression::Operand(0), Expression::Operand(1));
-        let (ring, _) = ExactSolid::evaluate(&[&ball, &drill], &less);
-        let (half, outcome) = ExactSolid::evaluate(&[&ring, &cut], &less);
+        let (ring, _) = ExactSolid::evaluate(&[&ball, &drill], &less).unwrap();
+        let (half, outcome) = ExactSolid::evaluate(&[&ring, &cut], &less).unwrap();
         let across = |p: DVec3| DVec3::new(-p.x, 0.0, -p.z).normalize();
         // The block counts its faces from 4 on; that of least x is the first.
         check(&half, &[(0, &|p| p.normalize()), (2, &across), (4, &|_| DVec3::X)]);
@@ -232,7 +235,7 @@ mod tests {
         let bare = Mesh { vertices: mesh.vertices, triangles: mesh.triangles, ..Mesh::default() };
         let bare = ExactSolid::new(bare, Vec::new()).unwrap();
         let both = Expression::Union(vec![Expression::Operand(0), Expression::Operand(1)]);
-        let (mesh, surfaces) = ExactSolid::evaluate(&[&known, &bare], &both).0.into_parts();
+        let (mesh, surfaces) = ExactSolid::evaluate(&[&known, &bare], &both).unwrap().0.into_parts();
         assert!(surfaces.len() == 7 && surfaces[6].is_none());
         for triangle in 0..mesh.triangles.len() {
             let face = mesh.face_normal(triangle).unwrap();

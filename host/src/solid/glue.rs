@@ -48,7 +48,7 @@ impl ExactSolid {
         if !two_goes.contains(&true) {
             return Err(GlueError::NoFace);
         }
-        let common = self.solid().intersection(other.solid());
+        let common = self.solid().intersection(other.solid())?;
         if !common.mesh().triangles.is_empty() {
             return Err(GlueError::Overlap { volume: common.mesh().signed_volume() });
         }
@@ -142,7 +142,7 @@ mod tests {
         let glued = column.glued(&roof).unwrap();
         assert!((glued.solid().mass().volume - PI * (2.0 + 1.0 / 3.0)).abs() < 0.02);
         let both = Expression::Union(vec![Expression::Operand(0), Expression::Operand(1)]);
-        let (union, _) = ExactSolid::evaluate(&[&column, &roof], &both);
+        let (union, _) = ExactSolid::evaluate(&[&column, &roof], &both).unwrap();
         assert!((union.solid().mass().volume - glued.solid().mass().volume).abs() < 1e-13);
         // Disc, cylinder and the two of the column; of the cone only its side is left.
         let mut seen = glued.solid().mesh().surfaces.clone();

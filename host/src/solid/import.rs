@@ -4,6 +4,7 @@ use super::boolean::{Lattice, Resolution, UnionFind, resolve};
 use super::tangle::overlaps;
 use super::{Solid, SolidError};
 use crate::mesh::Mesh;
+use crate::numeric::exact::{Exact, cross, dot};
 use crate::numeric::implicit::projection;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -13,14 +14,14 @@ const NAMED: usize = 8;
 
 impl SolidError {
     /// An error of the mesh that was put on a lattice, in the coordinates that the mesh had before.
-    fn brought_back(mut self, lattice: &Lattice) -> SolidError {
+    pub(super) fn brought_back(mut self, lattice: &Lattice) -> SolidError {
         match &mut self {
             SolidError::Mesh(_) | SolidError::Tangled { .. } => {}
             SolidError::NotClosed { edges, .. } => {
                 edges.iter_mut().flatten().for_each(|end| *end = lattice.place(*end));
             }
             SolidError::InsideOut { volume } => *volume = lattice.volume(*volume),
-            SolidError::Crossing { near, .. } => *near = lattice.place(*near),
+            SolidError::Crossing { near, .. } | SolidError::Unsettled { near, .. } => *near = lattice.place(*near),
         }
         self
     }
@@ -43,7 +44,7 @@ fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidE
     let mut mesh = without_collapsed(mesh);
     let sheets = check_edges(&mesh)?;
     dissolve(&mut mesh);
-    let volume = mesh.signed_volume();
+    let volume = certain_volume(&mesh);
     if volume < 0.0 {
         return Err(SolidError::InsideOut { volume });
     }
@@ -52,9 +53,24 @@ fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidE
     if overlaps == 0 && sheets == 1 {
         return Ok((solid, None));
     }
-    let Resolution { outcome, is_same, odd } = resolve(solid.mesh());
+    let Resolution { outcome, is_same, odd } = resolve(solid.mesh())?;
     let crossing = odd.map(|(winding, near)| SolidError::Crossing { winding, near, overlaps });
     Ok((if is_same { solid } else { Solid::of(outcome.mesh) }, crossing))
+}
+
+/// The volume inside a mesh, whose sign is that of the true one however thin the mesh is.
+fn certain_volume(mesh: &Mesh) -> f64 {
+    let volume = mesh.signed_volume();
+    let reach = mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+    // The rounding of each product and that of their sum, all of them as large as can be.
+    if volume.abs() > 72.0 * f64::EPSILON * reach.powi(3) * mesh.triangles.len() as f64 {
+        return volume;
+    }
+    let sixfold = (0..mesh.triangles.len()).fold(Exact::default(), |sum, triangle| {
+        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(Exact::from));
+        sum + dot(&a, &cross(&b, &c))
+    });
+    sixfold.over(&Exact::from(6.0))
 }
 
 /// Puts right what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.

@@ -34,8 +34,8 @@ use std::sync::{Arc, OnceLock};
 /// touch itself, as where two cubes share an edge.
 ///
 /// Results have rounded points. Where surfaces lie within a few roundings of each other, that could make a result cross
-/// itself; it is then made simple again, for which points move by a few roundings more. An expression that is given to
-/// [`Solid::evaluate`] as a whole is rounded only once.
+/// itself; it is then made simple again, for which points move by a few roundings more, or refused. An expression that is
+/// given to [`Solid::evaluate`] as a whole is rounded only once.
 ///
 /// Coordinates below 8e-62 of the largest, of one solid or of all operands of an operation, are rounded to 9e-78 of that.
 #[derive(Clone, Debug, Default)]
@@ -99,31 +99,44 @@ impl Solid {
     }
 
     /// Evaluates an expression over some solids at once. The result may be empty.
-    pub fn evaluate(operands: &[&Solid], expression: &Expression) -> (Solid, Outcome) {
-        let mut outcome = boolean::evaluate(operands.par_iter().map(|solid| solid.operand()).collect(), expression);
+    ///
+    /// # Errors
+    /// [`SolidError::Unsettled`] if the result crosses itself when it is rounded, and that could not be mended.
+    pub fn evaluate(operands: &[&Solid], expression: &Expression) -> Result<(Solid, Outcome), SolidError> {
+        let operands = operands.par_iter().map(|solid| solid.operand()).collect();
+        let mut outcome = boolean::evaluate(operands, expression)?;
         let mesh = std::mem::take(&mut outcome.mesh);
-        (Solid::of(mesh), outcome)
+        Ok((Solid::of(mesh), outcome))
     }
 
     /// What is in either.
-    pub fn union(&self, other: &Solid) -> Solid {
+    ///
+    /// # Errors
+    /// As of [`Solid::evaluate`].
+    pub fn union(&self, other: &Solid) -> Result<Solid, SolidError> {
         self.with(other, Expression::Union)
     }
 
     /// What is in both.
-    pub fn intersection(&self, other: &Solid) -> Solid {
+    ///
+    /// # Errors
+    /// As of [`Solid::evaluate`].
+    pub fn intersection(&self, other: &Solid) -> Result<Solid, SolidError> {
         self.with(other, Expression::Intersection)
     }
 
     /// What is in this one and not in the other.
-    pub fn difference(&self, other: &Solid) -> Solid {
+    ///
+    /// # Errors
+    /// As of [`Solid::evaluate`].
+    pub fn difference(&self, other: &Solid) -> Result<Solid, SolidError> {
         let expression = Expression::difference(Expression::Operand(0), Expression::Operand(1));
-        Solid::evaluate(&[self, other], &expression).0
+        Solid::evaluate(&[self, other], &expression).map(|(solid, _)| solid)
     }
 
-    fn with(&self, other: &Solid, operation: fn(Vec<Expression>) -> Expression) -> Solid {
+    fn with(&self, other: &Solid, operation: fn(Vec<Expression>) -> Expression) -> Result<Solid, SolidError> {
         let both = vec![Expression::Operand(0), Expression::Operand(1)];
-        Solid::evaluate(&[self, other], &operation(both)).0
+        Solid::evaluate(&[self, other], &operation(both)).map(|(solid, _)| solid)
     }
 }
 

@@ -39,7 +39,7 @@ fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
     let sorted: Vec<Sorted> = meshes.iter().map(|mesh| Sorted::new(&mesh.vertices, &mesh.triangles)).collect();
     let mates: Vec<Vec<u32>> = meshes.iter().map(|mesh| boolean::mates(mesh)).collect();
     let operand = |k: usize| boolean::Operand { mesh: meshes[k], sorted: &sorted[k], mates: &mates[k] };
-    boolean::evaluate((0..meshes.len()).map(operand).collect(), expression)
+    boolean::evaluate((0..meshes.len()).map(operand).collect(), expression).unwrap()
 }
 
 #[test]
@@ -313,10 +313,12 @@ fn results_serve_as_operands() {
             let next = Solid::new(mesh.clone()).unwrap();
             let operand = Expression::Operand(index);
             (solid, expression) = match (round + index) % 3 {
-                0 => (solid.difference(&next), Expression::difference(expression, operand)),
-                1 => (solid.union(&next), Expression::Union(vec![expression, operand])),
-                _ if index == 4 => (solid.intersection(&next), Expression::Intersection(vec![expression, operand])),
-                _ => (solid.union(&next), Expression::Union(vec![expression, operand])),
+                0 => (solid.difference(&next).unwrap(), Expression::difference(expression, operand)),
+                1 => (solid.union(&next).unwrap(), Expression::Union(vec![expression, operand])),
+                _ if index == 4 => {
+                    (solid.intersection(&next).unwrap(), Expression::Intersection(vec![expression, operand]))
+                }
+                _ => (solid.union(&next).unwrap(), Expression::Union(vec![expression, operand])),
             };
             let at_once = evaluate(meshes.iter().collect(), &expression).mesh;
             let (step, whole) = (exact_volume(solid.mesh()), exact_volume(&at_once));
@@ -364,7 +366,7 @@ fn surfaces_that_cross_themselves_are_refused_or_made_simple() {
             Err(SolidError::Crossing { winding: found, .. }) => assert_eq!(found, winding, "{name}"),
             other => panic!("{name}: {other:?}"),
         }
-        let simple = resolve(&mesh).outcome.mesh;
+        let simple = resolve(&mesh).unwrap().outcome.mesh;
         assert!((simple.signed_volume() - volume).abs() < 1e-15, "{name}: {} {volume}", simple.signed_volume());
         assert_eq!(Solid::new(simple.clone()).map(Solid::into_mesh), Ok(simple), "{name}");
     }

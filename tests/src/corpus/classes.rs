@@ -3,6 +3,7 @@
 use super::Case;
 use glam::{DAffine3, DVec3};
 use host::mesh::{Mesh, bunny};
+use host::solid::Expression;
 use host::surface::{Sphere, Tolerance, box_faces, tessellate};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -40,6 +41,7 @@ pub const CLASSES: &[Class] = &[
     Class { name: "crossing themselves", cases: 80, make: self_crossing },
     Class { name: "empty results", cases: 60, make: empty },
     Class { name: "results as operands", cases: 80, make: chain },
+    Class { name: "boxes of one lattice, turned", cases: 160, make: lattice },
 ];
 
 fn cube(low: DVec3, high: DVec3) -> Mesh {
@@ -227,4 +229,54 @@ fn chain(random: &mut Pcg64Mcg) -> Case {
         shifted(&turned(&unit(), random, by), at)
     };
     Case::Chain((0..5).map(|_| next()).collect())
+}
+
+/// Up to ten boxes of one lattice, all turned at once: faces that coincide but for a rounding, each in its own way.
+fn lattice(random: &mut Pcg64Mcg) -> Case {
+    const CELLS: usize = 4;
+    let count = random.random_range(2..=10);
+    let corners: Vec<[[usize; 3]; 2]> = (0..count)
+        .map(|_| {
+            let low = [0; 3].map(|_| random.random_range(0..CELLS));
+            [low, low.map(|x| random.random_range(x + 1..=CELLS))]
+        })
+        .collect();
+    let expression = expression(random, count);
+    let step = [1.0, 0.1, 1.0 / 3.0][random.random_range(0..3)];
+    let by = DAffine3::from_axis_angle(direction(random), random.random_range(0.0..3.0));
+    let place = |corner: [usize; 3]| DVec3::from(corner.map(|x| x as f64 * step));
+    let solids = corners.iter().map(|[low, high]| moved(&cube(place(*low), place(*high)), by)).collect();
+    let is_inside = |cell: [usize; 3]| {
+        let inside: Vec<bool> =
+            corners.iter().map(|[low, high]| (0..3).all(|k| (low[k]..high[k]).contains(&cell[k]))).collect();
+        expression.contains(&inside)
+    };
+    let cells = (0..CELLS.pow(3)).filter(|n| is_inside([n % CELLS, n / CELLS % CELLS, n / CELLS / CELLS])).count();
+    let volume = Some(cells as f64 * step.powi(3));
+    Case::Tree { solids, expression, volume }
+}
+
+/// One operation on all, or a tree of operations.
+fn expression(random: &mut Pcg64Mcg, count: usize) -> Expression {
+    let all = || (0..count).map(Expression::Operand).collect::<Vec<_>>();
+    match random.random_range(0..5) {
+        0 => Expression::Union(all()),
+        1 => Expression::Intersection(all()),
+        2 => Expression::difference(Expression::Operand(0), Expression::Union(all().split_off(1))),
+        3 => Expression::SymmetricDifference(all()),
+        _ => {
+            let mut trees = all();
+            while trees.len() > 1 {
+                let one = trees.swap_remove(random.random_range(0..trees.len()));
+                let two = trees.swap_remove(random.random_range(0..trees.len()));
+                trees.push(match random.random_range(0..4) {
+                    0 => Expression::Union(vec![one, two]),
+                    1 => Expression::Intersection(vec![one, two]),
+                    2 => Expression::difference(one, two),
+                    _ => Expression::SymmetricDifference(vec![one, two]),
+                });
+            }
+            trees.remove(0)
+        }
+    }
 }

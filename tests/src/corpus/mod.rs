@@ -21,6 +21,15 @@ pub enum Case {
     },
     /// Operations one after the other, each on the result before: against all of them at once.
     Chain(Vec<Mesh>),
+    /// An expression over several solids at once.
+    Tree {
+        /// The solids.
+        solids: Vec<Mesh>,
+        /// What is made of them.
+        expression: Expression,
+        /// The volume of the result, where that is known.
+        volume: Option<f64>,
+    },
     /// A surface that is not simple: it must be refused, and repaired to this volume.
     NotSimple {
         /// The surface.
@@ -72,6 +81,7 @@ fn judge(case: &Case) -> Result<Score, Score> {
     match case {
         Case::Pair { solids, common } => pair(solids, *common)?,
         Case::Chain(meshes) => chain(meshes)?,
+        Case::Tree { solids, expression, volume } => tree(solids, expression, *volume)?,
         Case::NotSimple { mesh, volume } => not_simple(mesh, *volume)?,
     }
     Ok(Score::Passed)
@@ -83,11 +93,9 @@ fn solid(mesh: &Mesh) -> Result<Solid, Score> {
 
 /// The result, if it is a solid and says that it is.
 fn result(operands: &[&Solid], expression: &Expression) -> Result<Mesh, Score> {
-    let (solid, Outcome { counts, sources, .. }) = Solid::evaluate(operands, expression);
+    let evaluated = Solid::evaluate(operands, expression);
+    let (solid, Outcome { sources, .. }) = evaluated.map_err(|error| Score::Refused(error.to_string()))?;
     let mesh = solid.into_mesh();
-    if counts.crossing > 0 {
-        return Err(Score::Refused(format!("{} pairs of triangles overlap", counts.crossing)));
-    }
     if sources.len() != mesh.triangles.len() {
         return Err(Score::Wrong("a triangle has no source".into()));
     }
@@ -163,6 +171,14 @@ fn chain(meshes: &[Mesh]) -> Result<(), Score> {
         close("step by step", volume(step.mesh()), at_once, bound * index as f64)?;
     }
     Ok(())
+}
+
+fn tree(meshes: &[Mesh], expression: &Expression, expected: Option<f64>) -> Result<(), Score> {
+    let solids = meshes.iter().map(solid).collect::<Result<Vec<Solid>, Score>>()?;
+    let operands: Vec<&Solid> = solids.iter().collect();
+    let found = volume(&result(&operands, expression)?);
+    let bound = bound(&meshes.iter().collect::<Vec<_>>());
+    expected.map_or(Ok(()), |expected| close("the expression", found, expected, bound))
 }
 
 fn not_simple(mesh: &Mesh, expected: f64) -> Result<(), Score> {

@@ -76,8 +76,6 @@ pub struct Counts {
     pub rays: u64,
     /// If rounding made the result cross itself: the attempt that made it simple again, the first as 1.
     pub settled: u64,
-    /// Pairs of triangles of the result that overlap, because no attempt succeeded.
-    pub crossing: u64,
 }
 
 /// The points, carriers and contents of the faces near other operands.

@@ -15,6 +15,7 @@ use super::simple::{Resolution, resolve};
 use super::{Expression, evaluate_on_lattice, mates};
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
+use crate::solid::SolidError;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -92,33 +93,38 @@ impl Lattice {
     }
 
     /// The surface of a solid on the lattice, with the triangles of the solid that its triangles are part of.
-    fn laid(&self, mesh: &Mesh) -> (Mesh, Vec<u32>) {
+    fn laid(&self, mesh: &Mesh) -> Result<(Mesh, Vec<u32>), SolidError> {
         let mut laid = Outcome { mesh: mesh.clone(), ..Outcome::default() };
         laid.sources = (0..mesh.triangles.len() as u32).map(|triangle| [0, triangle]).collect();
         if self.lay(&mut laid.mesh) {
             laid.clean();
-            let Resolution { mut outcome, is_same, .. } = resolve(&laid.mesh);
+            let Resolution { mut outcome, is_same, .. } = resolve(&laid.mesh)?;
             if !is_same {
                 outcome.sources.iter_mut().for_each(|source| *source = laid.sources[source[1] as usize]);
                 laid = outcome;
             }
         }
-        (laid.mesh, laid.sources.into_iter().map(|[_, triangle]| triangle).collect())
+        Ok((laid.mesh, laid.sources.into_iter().map(|[_, triangle]| triangle).collect()))
     }
 
     /// Evaluates an expression over solids that are put on the lattice.
-    pub fn evaluate(&self, solids: &[Operand<'_>], expression: &Expression) -> Outcome {
-        let laid: Vec<(Mesh, Vec<u32>)> = solids.par_iter().map(|solid| self.laid(solid.mesh)).collect();
+    ///
+    /// # Errors
+    /// [`SolidError::Unsettled`].
+    pub fn evaluate(&self, solids: &[Operand<'_>], expression: &Expression) -> Result<Outcome, SolidError> {
+        let back = |error: SolidError| error.brought_back(self);
+        let laid = solids.par_iter().map(|solid| self.laid(solid.mesh).map_err(back));
+        let laid: Vec<(Mesh, Vec<u32>)> = laid.collect::<Result<_, _>>()?;
         let filed = laid.par_iter().map(|(mesh, _)| (Sorted::new(&mesh.vertices, &mesh.triangles), mates(mesh)));
         let filed: Vec<(Sorted, Vec<u32>)> = filed.collect();
         let operands = laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, mates });
-        let mut outcome = evaluate_on_lattice(operands.collect(), expression);
+        let mut outcome = evaluate_on_lattice(operands.collect(), expression).map_err(back)?;
         let source = |[operand, triangle]: [u32; 2]| [operand, laid[operand as usize].1[triangle as usize]];
         outcome.sources.iter_mut().for_each(|of| *of = source(*of));
         let meshes: Vec<&Mesh> = solids.iter().map(|solid| solid.mesh).collect();
         Tables::of(&meshes).name_surfaces(&mut outcome, &meshes);
         self.bring_back(&mut outcome.mesh);
-        outcome
+        Ok(outcome)
     }
 }
 
@@ -169,9 +175,9 @@ mod tests {
     #[test]
     fn corners_that_nearly_touch_an_axis_do_no_harm() {
         let one = turned([[1.0, 3.0], [0.5, 0.25], [0.25, 1.5]]);
-        let on_axis = one.union(&turned([[3.0, 3.0], [1.0, 3.0], [0.0, 1.5]])).mesh().signed_volume();
+        let on_axis = one.union(&turned([[3.0, 3.0], [1.0, 3.0], [0.0, 1.5]])).unwrap().mesh().signed_volume();
         for x in [1e-17, 1e-40, 1e-60, 1e-70, 1e-77, 1e-100, 1e-200, 1e-300, 5e-324] {
-            let both = one.union(&turned([[3.0, 3.0], [1.0, 3.0], [x, 1.5]]));
+            let both = one.union(&turned([[3.0, 3.0], [1.0, 3.0], [x, 1.5]])).unwrap();
             assert!((both.mesh().signed_volume() / on_axis - 1.0).abs() < 1e-12, "{x}");
             assert!(Solid::new(both.into_mesh()).is_ok(), "{x}");
         }
@@ -186,7 +192,7 @@ mod tests {
             for (operation, volume) in
                 [(all, 1.5), (Expression::difference(Expression::Operand(0), Expression::Operand(1)), 0.5)]
             {
-                let (result, outcome) = Solid::evaluate(&[&one, &two], &operation);
+                let (result, outcome) = Solid::evaluate(&[&one, &two], &operation).unwrap();
                 assert!((result.mesh().signed_volume() - volume).abs() < 1e-12, "{x} {y} {z}");
                 assert!(Solid::new(result.mesh().clone()).is_ok());
                 assert_eq!(outcome.sources.len(), result.mesh().triangles.len());
@@ -198,11 +204,11 @@ mod tests {
     fn what_is_thinner_than_the_lattice_is_gone() {
         let one = block([-1.0; 3], [1.0; 3]);
         let speck = block([0.0; 3], [1e-300; 3]);
-        assert_eq!(one.difference(&speck).mesh().signed_volume(), 8.0);
-        assert_eq!(one.union(&speck).mesh().triangles.len(), 12);
-        assert!(one.intersection(&speck).mesh().triangles.is_empty());
+        assert_eq!(one.difference(&speck).unwrap().mesh().signed_volume(), 8.0);
+        assert_eq!(one.union(&speck).unwrap().mesh().triangles.len(), 12);
+        assert!(one.intersection(&speck).unwrap().mesh().triangles.is_empty());
         let vast = block([-1e300; 3], [1e300; 3]);
-        assert_eq!(vast.union(&one).mesh().vertices.len(), 8);
+        assert_eq!(vast.union(&one).unwrap().mesh().vertices.len(), 8);
         assert!(block([0.0; 3], [1.0, 1.0, 1e-300]).mesh().triangles.is_empty());
     }
 
@@ -211,7 +217,7 @@ mod tests {
         let meshes = [cuboid([0.0; 3], [1.0; 3]), cuboid([0.3, 0.2, 0.1], [1.7, 0.9, 1.3])];
         let difference = |size: f64| {
             let [one, two] = meshes.each_ref().map(|mesh| Solid::new(scaled(mesh, size)).unwrap());
-            one.difference(&two).into_mesh()
+            one.difference(&two).unwrap().into_mesh()
         };
         let usual = difference(1.0);
         for power in [-900, -400, -101, 99, 300, 1000] {

@@ -6,7 +6,8 @@
 //! points where edges pierce faces are kept as what defines them and not as rounded numbers. Touched faces are divided
 //! along all that crosses them. The surfaces fall into parts that nothing crosses; a ray from each part tells which
 //! operands are in front of it and behind it, and a part is kept if the result is on one side only. Where divided faces
-//! lie beside each other in one plane, points that bound nothing are left out again. Only then are the points rounded.
+//! lie beside each other in one plane, points that bound nothing are left out again. Only then are the points rounded. Where that makes the
+//! surface cross itself, it is made simple again (`simple`) or the operation is refused.
 //!
 //! All operands of an expression are worked on at once: no intermediate result is made or rounded. Where there are many,
 //! what lies deep inside others is found by cells first, and left out.
@@ -30,6 +31,7 @@ mod faces;
 mod facets;
 mod lattice;
 mod merge;
+mod nudging;
 mod operand;
 mod overlap;
 mod parts;
@@ -54,6 +56,7 @@ pub use result::Outcome;
 pub(super) use simple::{Resolution, resolve};
 pub(super) use union_find::UnionFind;
 
+use super::SolidError;
 use arrangement::Arrangement;
 use operand::Operands;
 use parts::Parts;
@@ -94,7 +97,10 @@ impl Expression {
 }
 
 /// Evaluates an expression over meshes that bound solids simply.
-pub(super) fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Outcome {
+///
+/// # Errors
+/// [`SolidError::Unsettled`].
+pub(super) fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Outcome, SolidError> {
     match Lattice::of(solids.iter().map(|solid| solid.mesh)) {
         Some(lattice) => lattice.evaluate(&solids, expression),
         None => evaluate_on_lattice(solids, expression),
@@ -102,10 +108,10 @@ pub(super) fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Out
 }
 
 /// Evaluates an expression over meshes with coordinates that predicates can be exact with.
-fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Outcome {
+fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Outcome, SolidError> {
     let operands = Operands::new(solids, true);
     let Work { outcome, must_settle, .. } = work(&operands, expression);
-    if must_settle { simple::settled(outcome) } else { outcome }
+    if must_settle { simple::settled(outcome) } else { Ok(outcome) }
 }
 
 /// What is known when an expression was evaluated once.

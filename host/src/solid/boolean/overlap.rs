@@ -43,6 +43,38 @@ impl PlaneTile {
         (0..3).all(|axis| self.plane.facing(axis) == 0.0) && projection(self.tile.corners).is_none()
     }
 
+    /// What is near here, if `units` units in the last place of the largest coordinate are.
+    fn near(&self, units: f64) -> f64 {
+        let [a, b, c] = self.tile.corners.map(DVec3::abs);
+        units * f64::EPSILON * a.max(b).max(c).max_element()
+    }
+
+    /// Whether a corner is near the side opposite to it, but for roundings.
+    ///
+    /// - `units`: what is near, in units in the last place of the largest coordinate.
+    pub fn is_thin(&self, units: f64) -> bool {
+        let [a, b, c] = self.tile.corners;
+        let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        let near = self.near(units);
+        self.plane.normal.length_squared() <= near * near * longest
+    }
+
+    /// Whether another triangle with a common edge is folded back onto this one: its third corner is near the plane, on the
+    /// side of the edge where this one is.
+    ///
+    /// - `units`: what is near, in units in the last place of the largest coordinate.
+    pub fn is_lain_on(&self, other: &Tile, units: f64) -> bool {
+        let Tile { names, corners } = &self.tile;
+        let mut free = (0..3).filter(|&k| !names.contains(&other.names[k]));
+        let (Some(third), None) = (free.next(), free.next()) else { return false };
+        let Some(apex) = (0..3).find(|&k| !other.names.contains(&names[k])) else { return false };
+        let [from, to] = [corners[(apex + 1) % 3], corners[(apex + 2) % 3]];
+        let (normal, p) = (self.plane.normal, other.corners[third] - from);
+        let height = p.dot(normal);
+        let near = self.near(units);
+        height * height <= near * near * normal.length_squared() && (to - from).cross(p).dot(normal) > 0.0
+    }
+
     /// Whether all of another that is not common lies on one side of the plane.
     fn is_beside(&self, other: &Tile) -> bool {
         let mut side = 0.0;

@@ -1,4 +1,4 @@
-//! Whether rounded points made a surface cross itself.
+//! Whether rounded points made a surface cross itself, or may have turned a part of it inside out.
 
 use super::operand::Operands;
 use super::overlap::{PlaneTile, Tile, overlap};
@@ -14,7 +14,11 @@ pub struct Kept {
     pub of_vertex: Vec<u32>,
 }
 
-/// Whether triangles of a result that were made anew have no area, overlap each other or triangles that stayed whole.
+/// What is as thin as this may have been turned inside out, in units in the last place of the largest coordinate there.
+const THIN: f64 = 8.0;
+
+/// Whether triangles of a result that were made anew have no area or hardly any, overlap each other or triangles that stayed
+/// whole, or lie on a neighbour.
 ///
 /// - `first`: the first triangle of the result that was made anew.
 /// - `is_moved`: whether rounding moved a vertex of the result.
@@ -28,13 +32,18 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
     let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| result.vertices[vertex as usize]) };
     let tiles = moved.par_iter().with_min_len(1024).map(|&triangle| tile(triangle).with_plane());
     let tiles: Vec<PlaneTile> = tiles.collect();
-    if tiles.par_iter().with_min_len(1024).any(PlaneTile::is_flat) {
+    if tiles.par_iter().with_min_len(1024).any(|tile| tile.is_thin(THIN) || tile.is_flat()) {
         return true;
     }
     let of_moved = |triangle: u32| &tiles[triangle as usize];
-    let is_overlap = |a: u32, two: Tile| overlap(of_moved(a), &two, || two.with_plane());
+    let is_overlap =
+        |a: u32, two: Tile| of_moved(a).is_lain_on(&two, THIN) || overlap(of_moved(a), &two, || two.with_plane());
     let sorted = Sorted::new(&result.vertices, &moved);
-    if !sorted.pairs_within(|a, b| overlap(of_moved(a), of_moved(b).tile(), || *of_moved(b))).is_empty() {
+    let is_own = |a: u32, b: u32| {
+        let (one, two) = (of_moved(a), of_moved(b));
+        one.is_lain_on(two.tile(), THIN) || overlap(one, two.tile(), || *two)
+    };
+    if !sorted.pairs_within(is_own).is_empty() {
         return true;
     }
     let unmoved = Sorted::new(&result.vertices, &still);

@@ -3,26 +3,26 @@
 //! A surface is simple if it winds once or not at all around every point off it. What any closed surface bounds are
 //! the points that it winds around more than not at all.
 
+use super::nudging::nudge;
 use super::operand::{Operand, Operands, overlaps};
 use super::result::Outcome;
 use super::sides::Sides;
-use super::snapping::snapped;
+use super::snapping::{Scope, snapped};
 use super::union_find::UnionFind;
 use super::{Expression, Work, work};
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
+use crate::solid::SolidError;
 use crate::solid::import::is_closed;
 use glam::DVec3;
 
-/// What counts as near when a surface is drawn together, in units in the last place, one attempt after the other.
-const ROUNDINGS: [f64; 4] = [2.0, 16.0, 128.0, 1024.0];
-/// When surfaces are drawn together, one round of attempts after the other: the first turn, how many in a row, and turns
-/// from there to the next such row. In all others they are divided; drawing together may make what only that settles.
-const RHYTHMS: [[usize; 3]; 4] = [[0, 2, 3], [0, 1, 3], [0, 1, TURNS], [2, 1, 4]];
-/// Most turns of an attempt.
-const TURNS: usize = 15;
-/// Most turns of all attempts together; each takes about as long as an operation on the result.
-const MOST_TURNS: usize = 150;
+/// How far points are moved, in units in the last place of the largest coordinate there, and what is drawn together within
+/// that distance: all that is near triangles that overlap, or only these, which serves better where sheets cross at small
+/// angles. One after the other, until one succeeds.
+const ATTEMPTS: [(f64, Scope); 4] =
+    [(4.0, Scope::Near), (4.0, Scope::Overlapping), (32.0, Scope::Near), (32.0, Scope::Overlapping)];
+/// How often points are drawn together and nudged in an attempt.
+const TURNS: usize = 3;
 
 /// What a closed surface bounds.
 pub struct Resolution {
@@ -35,87 +35,94 @@ pub struct Resolution {
 }
 
 /// Makes a closed surface simple.
-pub fn resolve(mesh: &Mesh) -> Resolution {
+///
+/// # Errors
+/// [`SolidError::Unsettled`].
+pub fn resolve(mesh: &Mesh) -> Result<Resolution, SolidError> {
     let mesh = separated(mesh);
     let Work { mut outcome, is_all_kept, odd, .. } = divided(&mesh);
     outcome.clean();
-    Resolution { outcome: settled(outcome), is_same: is_all_kept, odd }
+    Ok(Resolution { outcome: settled(outcome)?, is_same: is_all_kept, odd })
 }
 
-/// The outcome made simple where rounding made it cross itself; as it is where that does not succeed.
+/// The outcome made simple where rounding made it cross itself or turned parts of it inside out.
 ///
-/// What lies within a few roundings becomes one, and what crosses nevertheless is divided there and rounded anew. Where that
-/// does not settle it soon, it begins again with more roundings or another rhythm, until [`MOST_TURNS`] are used up.
-pub fn settled(mut outcome: Outcome) -> Outcome {
+/// What lies within a few roundings becomes one: then sheets that nearly coincide have the same triangles, which cancel.
+/// What is left on the wrong side of something is nudged to the right one. Both may have to be done again, since what was
+/// moved meets others. Whatever comes out is looked at exactly: no two triangles overlap, and the surface winds once around
+/// what is inside and not at all around what is outside. No point is farther from where it was rounded to than three times the
+/// distance of the last attempt.
+///
+/// # Errors
+/// [`SolidError::Unsettled`] if none of the attempts succeeds.
+pub fn settled(mut outcome: Outcome) -> Result<Outcome, SolidError> {
     outcome.clean();
-    let pairs = overlapping(&outcome.mesh);
-    if pairs.is_empty() {
-        return outcome;
+    let first = overlapping(&outcome.mesh);
+    if first.is_empty() {
+        return Ok(right_side_out(&outcome).unwrap_or(outcome));
     }
-    // What rounding may make of the volume. Whoever moves points further has spoilt something.
-    let reach = outcome.mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
-    let (volume, bound) = (outcome.mesh.signed_volume(), 8.0 * f64::EPSILON * reach * outcome.mesh.area());
-    let never = Attempt { rhythm: [TURNS, 0, TURNS], roundings: 0.0 };
-    let drawn = RHYTHMS.into_iter().flat_map(|rhythm| ROUNDINGS.map(|roundings| Attempt { rhythm, roundings }));
-    let mut turns = MOST_TURNS;
-    for (attempt, number) in std::iter::once(never).chain(drawn).zip(1..) {
-        if let Some(mut settled) = attempt.on(outcome.clone(), pairs.clone(), &mut turns)
-            && (settled.mesh.signed_volume() - volume).abs() <= bound
-        {
+    let (volume, bound) = (outcome.mesh.signed_volume(), change_of_volume(&outcome.mesh));
+    for ((most, scope), number) in ATTEMPTS.into_iter().zip(1..) {
+        let is_right = |settled: &Outcome| {
+            let change = (settled.mesh.signed_volume() - volume).abs();
+            change <= (2.0 * most + 8.0) * bound && is_closed(&settled.mesh) && overlapping(&settled.mesh).is_empty()
+        };
+        let settled = attempt(outcome.clone(), first.clone(), most, scope);
+        // What was turned inside out goes now.
+        let settled = settled.map(|settled| right_side_out(&settled).unwrap_or(settled));
+        if let Some(mut settled) = settled.filter(is_right) {
             settled.counts.settled = number;
-            return settled;
+            return Ok(settled);
         }
     }
-    outcome.counts.crossing = pairs.len() as u64;
-    outcome
+    let [near, ..] = outcome.mesh.corners(first[0][0] as usize);
+    let most = ATTEMPTS.iter().map(|(most, _)| *most).fold(0.0, f64::max);
+    Err(SolidError::Unsettled { overlaps: first.len(), near, most })
 }
 
-/// A way to make a surface simple, which may succeed. In each turn it is drawn together or divided.
-struct Attempt {
-    /// When it is drawn together; one of [`RHYTHMS`].
-    rhythm: [usize; 3],
-    /// What counts as near when it is drawn together, in units in the last place.
-    roundings: f64,
-}
-
-impl Attempt {
-    /// The outcome made simple, if that succeeds.
-    ///
-    /// - `pairs`: the triangles that overlap.
-    /// - `turns`: how many are left; those that it takes are taken from them.
-    fn on(&self, mut trial: Outcome, mut pairs: Vec<[u32; 2]>, turns: &mut usize) -> Option<Outcome> {
-        let [first_draw, draws, period] = self.rhythm;
-        let first = pairs.len();
-        let mut least = first;
-        for turn in 0..TURNS.min(*turns) {
-            *turns -= 1;
-            trial = match turn.checked_sub(first_draw) {
-                Some(turn) if turn % period < draws => snapped(trial, &pairs, self.roundings),
-                _ => again(trial),
-            };
+/// The outcome without triangles that overlap, if that succeeds.
+fn attempt(mut trial: Outcome, mut pairs: Vec<[u32; 2]>, most: f64, scope: Scope) -> Option<Outcome> {
+    let limit = 2 * pairs.len() + 20;
+    for _ in 0..TURNS {
+        trial = snapped(trial, &pairs, most, scope);
+        pairs = overlapping(&trial.mesh);
+        if !pairs.is_empty() {
+            nudge(&mut trial.mesh, &pairs, most);
+            trial.clean();
             pairs = overlapping(&trial.mesh);
-            if pairs.is_empty() {
-                // What was turned inside out goes now.
-                let trial = again(trial);
-                return (overlapping(&trial.mesh).is_empty() && is_closed(&trial.mesh)).then_some(trial);
-            }
-            if pairs.len() > 4 * first + 100 || turn > 2 && pairs.len() > 4 * least + 20 {
-                return None;
-            }
-            least = least.min(pairs.len());
         }
-        None
+        if pairs.is_empty() {
+            return Some(trial);
+        }
+        if pairs.len() > limit {
+            return None;
+        }
     }
+    None
 }
 
-/// Divides a surface where it crosses itself, and rounds again.
-fn again(outcome: Outcome) -> Outcome {
+/// The border of what a surface winds around more than not at all; nothing if that is all of it.
+fn right_side_out(outcome: &Outcome) -> Option<Outcome> {
     let mesh = separated(&outcome.mesh);
-    let mut next = divided(&mesh).outcome;
+    let Work { outcome: mut next, is_all_kept, .. } = divided(&mesh);
+    if is_all_kept {
+        return None;
+    }
     next.clean();
     next.sources.iter_mut().for_each(|source| *source = outcome.sources[source[1] as usize]);
     next.counts = outcome.counts;
-    next
+    Some(next)
+}
+
+/// What points that are moved by a unit in the last place of the largest coordinate can make of a volume, rounding
+/// included; cubic units.
+fn change_of_volume(mesh: &Mesh) -> f64 {
+    let square = |triangle: usize| {
+        let [a, b, c] = mesh.corners(triangle);
+        a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
+    };
+    let largest = mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+    f64::EPSILON * largest * (0..mesh.triangles.len()).map(square).sum::<f64>()
 }
 
 /// What a mesh bounds, with its surface divided where it crosses itself.

@@ -7,57 +7,67 @@
 //!
 //! # Source
 //! Hobby 1999 for the plane, where one such pass suffices.
+//!
+//! # Cost
+//! n log n in the triangles that are drawn together and the pairs of them that are near each other.
 
 use super::result::{Outcome, Tables};
 use super::triangulation::Triangulation;
 use crate::mesh::Mesh;
+use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::{Definition, Point};
 use crate::octree::Sorted;
 use glam::DVec3;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 /// An edge by its vertices, the lower first.
 type Edge = [u32; 2];
 
-/// What lies near edges and in faces: vertices with their place along the edge from its lower vertex on.
-#[derive(Default)]
-struct Near {
-    edges: FxHashMap<Edge, Vec<(f64, u32)>>,
-    faces: FxHashMap<u32, Vec<u32>>,
-    /// The other ends of the pieces of edges at each vertex.
-    next: FxHashMap<u32, Vec<u32>>,
+/// Among which triangles what is near is drawn together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// Those that overlap others.
+    Overlapping,
+    /// And those near them.
+    Near,
 }
 
 /// Draws together what is near among triangles that overlap.
 ///
 /// - `pairs`: the triangles.
-/// - `roundings`: what is near, in units in the last place of the largest coordinate.
-pub fn snapped(mut outcome: Outcome, pairs: &[[u32; 2]], roundings: f64) -> Outcome {
+/// - `roundings`: what is near, in units in the last place of the largest coordinate there.
+pub fn snapped(mut outcome: Outcome, pairs: &[[u32; 2]], roundings: f64, scope: Scope) -> Outcome {
+    let reach = Reach(roundings * f64::EPSILON);
     let mut involved = pairs.as_flattened().to_vec();
     involved.sort_unstable();
     involved.dedup();
-    let reach = |p: DVec3| roundings * f64::EPSILON * p.abs().max_element();
-    let close = near_triangles(&outcome.mesh, &involved, reach);
-    let common = common_corners(&outcome.mesh, &close, reach);
-    let first_common = outcome.mesh.vertices.len() as u32;
-    outcome.mesh.vertices.extend(common.iter().map(|(place, _)| *place));
-    let mut vertices: Vec<u32> = involved.iter().flat_map(|&t| outcome.mesh.triangles[t as usize]).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    vertices.extend(first_common..outcome.mesh.vertices.len() as u32);
-    let one = clustered(&outcome.mesh, &vertices, reach);
+    if scope == Scope::Near {
+        involved = with_near(&outcome.mesh, involved, reach);
+    }
+    let one = clustered(&outcome.mesh, &involved, reach);
     for triangle in &mut outcome.mesh.triangles {
         *triangle = triangle.map(|vertex| one[vertex as usize]);
     }
-    let mut near = Near::default();
-    for (number, (_, edges)) in (first_common..).zip(&common) {
-        for edge in edges {
-            near.pass(&outcome.mesh.vertices, edge.map(|v| one[v as usize]), one[number as usize]);
-        }
+    let mut near = Near::new(&outcome.mesh, &involved);
+    near.collect(&mut outcome.mesh, &involved, reach);
+    rebuilt(outcome, near, &involved)
+}
+
+/// How far from a place what is near may be.
+#[derive(Clone, Copy)]
+struct Reach(f64);
+
+impl Reach {
+    fn at(self, p: DVec3) -> f64 {
+        self.0 * p.abs().max_element()
     }
-    near.collect(&outcome.mesh, &close, reach);
-    near.follow(&outcome.mesh, &involved);
-    rebuilt(outcome, &near)
+
+    /// The box of some points and of all that is near.
+    fn around(self, points: &[DVec3]) -> [DVec3; 2] {
+        let margin = DVec3::splat(points.iter().map(|p| self.at(*p)).fold(0.0, f64::max));
+        let bounds = Bounds::of(points.iter().copied());
+        [bounds.min - margin, bounds.max + margin]
+    }
 }
 
 fn sorted(a: u32, b: u32) -> Edge {
@@ -68,23 +78,28 @@ fn sides(t: [u32; 3]) -> [Edge; 3] {
     [sorted(t[0], t[1]), sorted(t[1], t[2]), sorted(t[2], t[0])]
 }
 
-/// Pairs of triangles whose boxes are near, both ways.
-fn near_triangles(mesh: &Mesh, involved: &[u32], reach: impl Fn(DVec3) -> f64) -> Vec<[u32; 2]> {
-    let boxes: Vec<DVec3> = involved
-        .iter()
-        .flat_map(|&t| {
-            let corners = mesh.corners(t as usize);
-            let margin = DVec3::splat(corners.into_iter().map(&reach).fold(0.0, f64::max));
-            let (low, high) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
-            [low - margin, high + margin]
-        })
-        .collect();
-    let triangles: Vec<[u32; 3]> = (0..involved.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
-    let set = Sorted::new(&boxes, &triangles);
-    let pairs = set.pairs(&set).into_iter().filter(|[a, b]| a != b);
-    let mut pairs: Vec<[u32; 2]> = pairs.map(|pair| pair.map(|k| involved[k as usize])).collect();
-    pairs.sort_unstable();
-    pairs
+fn is_collapsed(t: [u32; 3]) -> bool {
+    t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
+}
+
+/// Boxes by place.
+fn filed(boxes: impl Iterator<Item = [DVec3; 2]>) -> Sorted {
+    let corners: Vec<DVec3> = boxes.flatten().collect();
+    let boxes: Vec<[u32; 3]> = (0..corners.len() as u32 / 2).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
+    Sorted::new(&corners, &boxes)
+}
+
+/// Some triangles, and those near them.
+fn with_near(mesh: &Mesh, triangles: Vec<u32>, reach: Reach) -> Vec<u32> {
+    let all = Sorted::new(&mesh.vertices, &mesh.triangles);
+    let mut found = triangles.clone();
+    for triangle in triangles {
+        let [min, max] = reach.around(&mesh.corners(triangle as usize));
+        all.touching(Bounds { min, max }, |other| found.push(other));
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// How far a point is from a segment, and where along it the nearest point is, 0..=1.
@@ -94,151 +109,225 @@ fn from_segment(p: DVec3, [a, b]: [DVec3; 2]) -> (f64, f64) {
     ((p - a - d * t).length(), t)
 }
 
-/// Corners for edges that pass near each other between their ends, with those edges.
-fn common_corners(mesh: &Mesh, close: &[[u32; 2]], reach: impl Fn(DVec3) -> f64) -> Vec<(DVec3, [Edge; 2])> {
-    let mut seen: FxHashSet<[Edge; 2]> = FxHashSet::default();
-    let mut found = Vec::new();
-    for [one, two] in close.iter().filter(|[a, b]| a < b) {
-        for e in sides(mesh.triangles[*one as usize]) {
-            for f in sides(mesh.triangles[*two as usize]) {
-                if e.iter().any(|v| f.contains(v)) || !seen.insert(if e < f { [e, f] } else { [f, e] }) {
-                    continue;
-                }
-                let [[a, b], [p, q]] = [e, f].map(|edge| edge.map(|v| mesh.vertices[v as usize]));
-                let (d, g) = (b - a, q - p);
-                let normal = d.cross(g);
-                let size = normal.length_squared();
-                if size == 0.0 {
-                    continue;
-                }
-                let (s, t) = ((p - a).cross(g).dot(normal) / size, (p - a).cross(d).dot(normal) / size);
-                if !(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0) {
-                    continue;
-                }
-                let (x, y) = (a + d * s, p + g * t);
-                let near = reach(x);
-                let is_apart = x.distance(y) > near;
-                if !is_apart && [a, b, p, q].iter().all(|end| end.distance(x) > near && end.distance(y) > near) {
-                    found.push(((x + y) / 2.0, [e, f]));
-                }
-            }
-        }
-    }
-    found
-}
-
-/// For each vertex the one that it becomes: the first of those given that is near.
-fn clustered(mesh: &Mesh, vertices: &[u32], reach: impl Fn(DVec3) -> f64) -> Vec<u32> {
+/// For each vertex the one that it becomes: the lowest of those of the triangles that is near.
+fn clustered(mesh: &Mesh, involved: &[u32], reach: Reach) -> Vec<u32> {
     let mut one: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    let largest = vertices.iter().map(|&v| reach(mesh.vertices[v as usize])).fold(0.0, f64::max);
-    if largest == 0.0 {
-        return one;
-    }
-    let cell = |p: DVec3| (p / largest).floor().to_array().map(|x| x as i64);
-    let mut kept: FxHashMap<[i64; 3], Vec<u32>> = FxHashMap::default();
-    for &vertex in vertices {
-        let at = mesh.vertices[vertex as usize];
-        let [x, y, z] = cell(at);
-        let around = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
-        let near = |other: &&u32| mesh.vertices[**other as usize].distance(at) <= reach(at);
-        match around.flat_map(|key| kept.get(&key).into_iter().flatten()).find(near) {
-            Some(&other) => one[vertex as usize] = other,
-            None => kept.entry([x, y, z]).or_default().push(vertex),
+    let mut vertices: Vec<u32> = involved.iter().flat_map(|&t| mesh.triangles[t as usize]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let place = |k: u32| mesh.vertices[vertices[k as usize] as usize];
+    let near = filed(vertices.iter().map(|&v| reach.around(&[mesh.vertices[v as usize]])));
+    let mut pairs = near.pairs_within(|a, b| place(a).distance(place(b)) <= reach.at(place(a)));
+    pairs.sort_unstable();
+    for pair in pairs {
+        let [a, b] = pair.map(|k| vertices[k as usize]);
+        if one[b as usize] == b {
+            one[b as usize] = one[a as usize];
         }
     }
     one
 }
 
+/// What lies near edges and in faces.
+struct Near {
+    edges: Vec<Edge>,
+    number: FxHashMap<Edge, u32>,
+    /// For each edge: vertices with their place along it from its lower vertex on, in order.
+    on_edges: Vec<Vec<(f64, u32)>>,
+    /// For each triangle that is involved: vertices inside it.
+    in_faces: Vec<Vec<u32>>,
+    /// The other ends of edges at each vertex: those of others run through a face, which is divided along them.
+    next: FxHashMap<u32, Vec<u32>>,
+}
+
 impl Near {
-    /// Makes an edge pass through a vertex.
-    fn pass(&mut self, vertices: &[DVec3], [a, b]: Edge, vertex: u32) {
-        if a == b || vertex == a || vertex == b {
-            return;
-        }
-        let edge = sorted(a, b);
-        let points = self.edges.entry(edge).or_default();
-        if points.iter().all(|(_, v)| *v != vertex) {
-            points.push((from_segment(vertices[vertex as usize], edge.map(|v| vertices[v as usize])).1, vertex));
-        }
+    fn new(mesh: &Mesh, involved: &[u32]) -> Near {
+        let triangles = involved.iter().map(|&t| mesh.triangles[t as usize]);
+        let mut edges: Vec<Edge> = triangles.flat_map(sides).filter(|[a, b]| a != b).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let number = edges.iter().copied().zip(0..).collect();
+        let on_edges = vec![Vec::new(); edges.len()];
+        Near { edges, number, on_edges, in_faces: vec![Vec::new(); involved.len()], next: FxHashMap::default() }
     }
 
-    /// Finds which corners are near which triangles.
-    fn collect(&mut self, mesh: &Mesh, close: &[[u32; 2]], reach: impl Fn(DVec3) -> f64) {
-        for &[face, other] in close {
-            let t = mesh.triangles[face as usize];
-            let corners = mesh.corners(face as usize);
-            if t[0] == t[1] || t[1] == t[2] || t[2] == t[0] {
-                continue;
-            }
-            for vertex in mesh.triangles[other as usize] {
-                if t.contains(&vertex) {
-                    continue;
-                }
-                let p = mesh.vertices[vertex as usize];
-                let near = reach(p);
-                let is_near = |edge: &Edge| from_segment(p, edge.map(|v| mesh.vertices[v as usize])).0 <= near;
-                let mut edges = sides(t).into_iter().filter(is_near).peekable();
-                if edges.peek().is_some() {
-                    edges.for_each(|edge| self.pass(&mesh.vertices, edge, vertex));
-                    continue;
-                }
-                let [a, b, c] = corners;
-                let normal = (b - a).cross(c - a);
-                let height = (p - a).dot(normal) / normal.length();
-                let inside = barycentric(corners, p).iter().all(|w| *w > 0.0);
-                if height.abs() <= near && inside {
-                    let inner = self.faces.entry(face).or_default();
-                    if !inner.contains(&vertex) {
-                        inner.push(vertex);
-                    }
-                }
-            }
+    /// Makes an edge pass through a vertex; whether it did not before.
+    fn pass(&mut self, vertices: &[DVec3], edge: u32, vertex: u32) -> bool {
+        let ends = self.edges[edge as usize];
+        let points = &mut self.on_edges[edge as usize];
+        if ends.contains(&vertex) || points.iter().any(|(_, v)| *v == vertex) {
+            return false;
         }
-        // A triangle that is hardly more than its longest side.
-        let mut involved: Vec<u32> = close.iter().map(|pair| pair[0]).collect();
-        involved.dedup();
-        for face in involved {
-            let t = mesh.triangles[face as usize];
-            for k in 0..3 {
-                let (edge, vertex) = (sorted(t[k], t[(k + 1) % 3]), t[(k + 2) % 3]);
-                let p = mesh.vertices[vertex as usize];
-                if edge[0] != edge[1] && from_segment(p, edge.map(|v| mesh.vertices[v as usize])).0 <= reach(p) {
-                    self.pass(&mesh.vertices, edge, vertex);
-                }
-            }
-        }
-        for points in self.edges.values_mut() {
-            points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        }
+        let t = from_segment(vertices[vertex as usize], ends.map(|v| vertices[v as usize])).1;
+        let place = points.partition_point(|(at, v)| (*at, *v) < (t, vertex));
+        points.insert(place, (t, vertex));
+        true
     }
 
-    /// Notes the pieces of all edges of some triangles: where they run in other faces, those are divided along them.
-    fn follow(&mut self, mesh: &Mesh, triangles: &[u32]) {
-        for &triangle in triangles {
-            for [a, b] in sides(mesh.triangles[triangle as usize]) {
-                let ends = self.along(a, b).into_iter().map(|(_, v)| v).chain([b]);
-                let mut last = a;
-                for end in ends {
-                    for (from, to) in [(last, end), (end, last)] {
-                        let all = self.next.entry(from).or_default();
-                        if from != to && !all.contains(&to) {
-                            all.push(to);
-                        }
-                    }
-                    last = end;
-                }
-            }
-        }
+    fn is_on(&self, edge: u32, vertex: u32) -> bool {
+        self.edges[edge as usize].contains(&vertex) || self.on_edges[edge as usize].iter().any(|(_, v)| *v == vertex)
     }
 
     /// What an edge passes through, from one end to the other.
     fn along(&self, from: u32, to: u32) -> Vec<(f64, u32)> {
-        let mut points = self.edges.get(&sorted(from, to)).cloned().unwrap_or_default();
+        let Some(edge) = self.number.get(&sorted(from, to)) else { return Vec::new() };
+        let mut points = self.on_edges[*edge as usize].clone();
         if from > to {
             points.reverse();
             points.iter_mut().for_each(|point| point.0 = 1.0 - point.0);
         }
         points
+    }
+
+    /// Finds what is near.
+    fn collect(&mut self, mesh: &mut Mesh, involved: &[u32], reach: Reach) {
+        let mut vertices: Vec<u32> = self.edges.as_flattened().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let of_edges = filed(self.edges.iter().map(|edge| reach.around(&edge.map(|v| mesh.vertices[v as usize]))));
+        self.pass_near(mesh, &vertices, &of_edges, reach);
+        let new = self.meet(mesh, &of_edges, reach);
+        self.pass_near(mesh, &new, &of_edges, reach);
+        self.agree(mesh);
+        vertices.extend(new);
+        let faces: Vec<[u32; 3]> = involved.iter().map(|&t| mesh.triangles[t as usize]).collect();
+        let of_faces = filed(faces.iter().map(|t| reach.around(&t.map(|v| mesh.vertices[v as usize]))));
+        let of_vertices = filed(vertices.iter().map(|&v| [mesh.vertices[v as usize]; 2]));
+        let inside = of_vertices.pairs_if(&of_faces.all(), |vertex, face| {
+            let (vertex, t) = (vertices[vertex as usize], faces[face as usize]);
+            if is_collapsed(t) || sides(t).iter().any(|edge| self.is_on(self.number[edge], vertex)) {
+                return false;
+            }
+            let p = mesh.vertices[vertex as usize];
+            let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
+            let normal = (b - a).cross(c - a);
+            let height = (p - a).dot(normal) / normal.length();
+            height.abs() <= reach.at(p) && barycentric([a, b, c], p).iter().all(|w| *w > 0.0)
+        });
+        for [vertex, face] in inside {
+            self.in_faces[face as usize].push(vertices[vertex as usize]);
+        }
+        for inner in &mut self.in_faces {
+            inner.sort_unstable();
+        }
+        for edge in 0..self.edges.len() {
+            let [from, to] = self.edges[edge];
+            let mut last = from;
+            for end in self.on_edges[edge].clone().into_iter().map(|(_, v)| v).chain([to]) {
+                self.note(last, end);
+                last = end;
+            }
+        }
+    }
+
+    /// Notes that there is an edge between two vertices.
+    fn note(&mut self, a: u32, b: u32) {
+        for (from, to) in [(a, b), (b, a)] {
+            let all = self.next.entry(from).or_default();
+            if !all.contains(&to) {
+                all.push(to);
+            }
+        }
+    }
+
+    /// Makes edges pass through vertices that are near.
+    fn pass_near(&mut self, mesh: &Mesh, vertices: &[u32], of_edges: &Sorted, reach: Reach) {
+        let of_vertices = filed(vertices.iter().map(|&v| [mesh.vertices[v as usize]; 2]));
+        let pairs = of_vertices.pairs_if(&of_edges.all(), |vertex, edge| {
+            let (vertex, edge) = (vertices[vertex as usize], self.edges[edge as usize]);
+            let p = mesh.vertices[vertex as usize];
+            !edge.contains(&vertex) && from_segment(p, edge.map(|v| mesh.vertices[v as usize])).0 <= reach.at(p)
+        });
+        for [vertex, edge] in pairs {
+            self.pass(&mesh.vertices, edge, vertices[vertex as usize]);
+        }
+    }
+
+    /// Gives edges that pass near each other, and have no vertex in common, one; returns those that are new.
+    fn meet(&mut self, mesh: &mut Mesh, of_edges: &Sorted, reach: Reach) -> Vec<u32> {
+        let first = mesh.vertices.len() as u32;
+        let mut pairs = of_edges.pairs_within(|one, two| self.meeting(mesh, [one, two], reach).is_some());
+        pairs.sort_unstable();
+        for [one, two] in pairs {
+            // An earlier pair may have given them one.
+            let Some(place) = self.meeting(mesh, [one, two], reach) else { continue };
+            let known = [one, two].into_iter().flat_map(|edge| &self.on_edges[edge as usize]).map(|(_, v)| *v);
+            let near = |v: &u32| mesh.vertices[*v as usize].distance(place) <= reach.at(place);
+            let vertex = known.into_iter().find(near).unwrap_or(mesh.vertices.len() as u32);
+            if vertex as usize == mesh.vertices.len() {
+                mesh.vertices.push(place);
+            }
+            self.pass(&mesh.vertices, one, vertex);
+            self.pass(&mesh.vertices, two, vertex);
+        }
+        (first..mesh.vertices.len() as u32).collect()
+    }
+
+    /// Where two edges pass near each other away from their ends, if they have no vertex in common.
+    fn meeting(&self, mesh: &Mesh, [one, two]: [u32; 2], reach: Reach) -> Option<DVec3> {
+        let [[a, b], [p, q]] = [one, two].map(|edge| self.edges[edge as usize].map(|v| mesh.vertices[v as usize]));
+        let (d, g) = (b - a, q - p);
+        let normal = d.cross(g);
+        let size = normal.length_squared();
+        let (s, t) = ((p - a).cross(g).dot(normal) / size, (p - a).cross(d).dot(normal) / size);
+        if !(s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0) {
+            return None;
+        }
+        let (x, y) = (a + d * s, p + g * t);
+        let near = reach.at(x);
+        if x.distance(y) > near || [a, b, p, q].iter().any(|end| end.distance(x) <= near || end.distance(y) <= near) {
+            return None;
+        }
+        let has_common = |edge: u32, other: u32| {
+            let points = self.on_edges[edge as usize].iter().map(|(_, v)| *v).chain(self.edges[edge as usize]);
+            points.into_iter().any(|v| self.is_on(other, v))
+        };
+        (!has_common(one, two)).then_some((x + y) / 2.0)
+    }
+
+    /// Makes the long side of a triangle that is hardly more than it pass through what the others do, and these through
+    /// what it does, so that nothing of it is left.
+    fn agree(&mut self, mesh: &Mesh) {
+        const MOST: usize = 16;
+        for _ in 0..MOST {
+            let mut is_end = vec![false; mesh.vertices.len()];
+            for (edge, points) in self.edges.iter().zip(&self.on_edges).filter(|(_, points)| !points.is_empty()) {
+                edge.iter().for_each(|v| is_end[*v as usize] = true);
+                points.iter().for_each(|(_, v)| is_end[*v as usize] = true);
+            }
+            let mut has_changed = false;
+            let may_be_long = |t: &&[u32; 3]| !is_collapsed(**t) && t.iter().all(|v| is_end[*v as usize]);
+            for t in mesh.triangles.iter().filter(may_be_long) {
+                for k in 0..3 {
+                    let [a, b, c] = [0, 1, 2].map(|i| t[(k + i) % 3]);
+                    let chain = self.along(a, c);
+                    let Some(middle) = chain.iter().position(|(_, v)| *v == b) else { continue };
+                    let long = self.edge(a, c);
+                    for (points, side) in [(&chain[..middle], [a, b]), (&chain[middle + 1..], [b, c])] {
+                        let side = self.edge(side[0], side[1]);
+                        for (_, vertex) in points {
+                            has_changed |= self.pass(&mesh.vertices, side, *vertex);
+                        }
+                        for (_, vertex) in self.on_edges[side as usize].clone() {
+                            has_changed |= self.pass(&mesh.vertices, long, vertex);
+                        }
+                    }
+                }
+            }
+            if !has_changed {
+                return;
+            }
+        }
+    }
+
+    /// The number of an edge, also of one that nothing was near to.
+    fn edge(&mut self, a: u32, b: u32) -> u32 {
+        let edge = sorted(a, b);
+        *self.number.entry(edge).or_insert_with(|| {
+            self.edges.push(edge);
+            self.on_edges.push(Vec::new());
+            self.edges.len() as u32 - 1
+        })
     }
 }
 
@@ -249,20 +338,29 @@ fn barycentric([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
 }
 
 /// The surface with all edges and faces through what is near them, less triangles that cancel.
-fn rebuilt(outcome: Outcome, near: &Near) -> Outcome {
+fn rebuilt(outcome: Outcome, mut near: Near, involved: &[u32]) -> Outcome {
     let old = &outcome.mesh;
     let tables = Tables::of(&[old]);
+    let mut place = vec![u32::MAX; old.triangles.len()];
+    involved.iter().zip(0..).for_each(|(&triangle, at)| place[triangle as usize] = at);
     let mut made: Vec<([u32; 3], u32, bool)> = Vec::with_capacity(old.triangles.len());
     for (&t, index) in old.triangles.iter().zip(0..) {
-        if t[0] == t[1] || t[1] == t[2] || t[2] == t[0] {
+        if is_collapsed(t) {
             continue;
         }
         let chains = [0, 1, 2].map(|k| near.along(t[k], t[(k + 1) % 3]));
-        let inner = near.faces.get(&index).map_or(&[][..], Vec::as_slice);
+        if (0..3).any(|k| chains[k].iter().any(|(_, v)| *v == t[(k + 2) % 3])) {
+            continue; // nothing of it is left
+        }
+        let inner = near.in_faces.get(place[index as usize] as usize).cloned().unwrap_or_default();
         if inner.is_empty() && chains.iter().all(Vec::is_empty) {
             made.push((t, index, true));
         } else {
-            let parts = divided(old, index, &chains, inner, &near.next);
+            let parts = divided(old, index, &chains, &inner, &near.next);
+            // Faces near this one are to be divided in the same way.
+            for part in &parts {
+                sides(*part).into_iter().for_each(|[a, b]| near.note(a, b));
+            }
             made.extend(parts.into_iter().map(|corners| (corners, index, false)));
         }
     }

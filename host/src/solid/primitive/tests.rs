@@ -304,12 +304,13 @@ fn a_half_space_covers_what_it_is_combined_with() {
     for (normal, at) in [(DVec3::Y, DVec3::new(9.0, 0.25, -7.0)), (DVec3::new(1.0, 2.0, -0.5), DVec3::X * 0.1)] {
         let bounds = Bounds::of(ball.mesh().vertices.iter().copied());
         let half = solid(&half_space(normal, at, &bounds).unwrap(), 1.0);
-        let behind = ball.intersection(&half).mass().volume;
+        let behind = ball.intersection(&half).unwrap().mass().volume;
         let height = at.dot(normal.normalize());
         let cap = PI * (1.0 + height).powi(2) * (2.0 - height) / 3.0;
         assert!((behind - cap).abs() < 0.01, "{behind} {cap}");
         let (cut, _) =
-            Solid::evaluate(&[&ball, &half], &Expression::difference(Expression::Operand(0), Expression::Operand(1)));
+            Solid::evaluate(&[&ball, &half], &Expression::difference(Expression::Operand(0), Expression::Operand(1)))
+                .unwrap();
         assert!((behind + cut.mass().volume - ball.mass().volume).abs() < 1e-13);
     }
     assert!(half_space(DVec3::ZERO, DVec3::ZERO, &Bounds::EMPTY).is_err());

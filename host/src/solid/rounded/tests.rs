@@ -177,7 +177,7 @@ fn curved_faces_that_stay_keep_their_normals() {
     let drill = solid(cylinder(0.5, 4.0).unwrap());
     let whole = solid(block(DVec3::splat(3.0)).unwrap());
     let expression = Expression::difference(Expression::Operand(0), Expression::Operand(1));
-    let (drilled, _) = ExactSolid::evaluate(&[&whole, &drill], &expression);
+    let (drilled, _) = ExactSolid::evaluate(&[&whole, &drill], &expression).unwrap();
     let upright = [[1.5, 1.5], [1.5, -1.5], [-1.5, 1.5], [-1.5, -1.5]].map(|[x, z]| DVec3::new(x, 0.0, z));
     let round = drilled.rounded(&EdgeChoice::Nearest(upright.to_vec()), 0.2, 1e-3).unwrap();
     let mesh = round.solid().mesh();
