@@ -59,7 +59,7 @@ fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidE
 }
 
 /// The volume inside a mesh, whose sign is that of the true one however thin the mesh is.
-fn certain_volume(mesh: &Mesh) -> f64 {
+pub fn certain_volume(mesh: &Mesh) -> f64 {
     let volume = mesh.signed_volume();
     let reach = mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
     // The rounding of each product and that of their sum, all of them as large as can be.

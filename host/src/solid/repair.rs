@@ -1,6 +1,6 @@
 //! Solids from meshes that are none.
 
-use super::import::{check_edges, without_collapsed};
+use super::import::{certain_volume, check_edges, without_collapsed};
 use super::{Solid, SolidError};
 use crate::mesh::Mesh;
 use std::collections::{HashMap, HashSet};
@@ -40,7 +40,7 @@ impl Solid {
         let mut mesh = mesh.with_holes_filled();
         repair.filled = mesh.triangles.len() - before;
         check_edges(&mesh)?;
-        if mesh.signed_volume() < 0.0 {
+        if certain_volume(&mesh) < 0.0 {
             repair.turned += mesh.triangles.len();
             mesh = mesh.reversed();
         }
