@@ -1,7 +1,9 @@
 //! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
-//! conformance suite; the corpus of Boolean operations; the notices of crates of others; every reader of bytes.
+//! conformance suite; a judge of simple surfaces; the corpus of Boolean operations; the notices of crates of others; every
+//! reader of bytes.
 
 pub mod conformance;
+pub mod simple;
 pub mod corpus;
 pub mod facets;
 pub mod notices;

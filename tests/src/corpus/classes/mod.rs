@@ -1,0 +1,100 @@
+//! The classes of the corpus, and how their cases are made.
+
+mod pairs;
+mod surfaces;
+mod trees;
+
+use super::Case;
+use glam::{DAffine3, DVec3};
+use host::mesh::Mesh;
+use host::surface::{Sphere, Tolerance, box_faces, tessellate};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+/// A kind of difficulty.
+pub struct Class {
+    /// What it is called.
+    pub name: &'static str,
+    /// Number of its cases.
+    pub cases: u32,
+    make: fn(&mut Pcg64Mcg) -> Case,
+}
+
+impl Class {
+    /// A case; always the same for a number.
+    pub fn case(&self, number: u32) -> Case {
+        (self.make)(&mut Pcg64Mcg::seed_from_u64(u64::from(number)))
+    }
+}
+
+/// All classes.
+pub const CLASSES: &[Class] = &[
+    Class { name: "coincident faces", cases: 100, make: pairs::coincident },
+    Class { name: "nearly coincident, 1e-3 to 1e-15", cases: 80, make: pairs::nearly_coincident },
+    Class { name: "cubes turned by 1e-3 to 1e-15", cases: 100, make: pairs::tiny_turn },
+    Class { name: "spheres turned by 1e-3 to 1e-15", cases: 60, make: pairs::spheres_turned },
+    Class { name: "bunnies turned by 1e-1 to 1e-15", cases: 40, make: pairs::bunnies_turned },
+    Class { name: "slivers", cases: 80, make: pairs::slivers },
+    Class { name: "needles", cases: 80, make: pairs::needles },
+    Class { name: "tangent spheres", cases: 80, make: pairs::tangent_spheres },
+    Class { name: "sizes 1e-6 to 1e6 in one model", cases: 80, make: pairs::sizes },
+    Class { name: "1e7 from the origin", cases: 80, make: pairs::far },
+    Class { name: "nested shells", cases: 60, make: pairs::nested },
+    Class { name: "touching themselves", cases: 60, make: pairs::self_touching },
+    Class { name: "crossing themselves", cases: 80, make: surfaces::self_crossing },
+    Class { name: "empty results", cases: 60, make: pairs::empty },
+    Class { name: "results as operands", cases: 80, make: trees::chain },
+    Class { name: "boxes of one lattice, turned", cases: 4000, make: trees::lattice },
+    Class { name: "nested trees", cases: 1500, make: trees::nested },
+    Class { name: "thin plates", cases: 1500, make: trees::plates },
+    Class { name: "scanned meshes", cases: 500, make: trees::scanned },
+    Class { name: "results into results, ten deep", cases: 500, make: trees::deep },
+    Class { name: "results in single precision", cases: 1000, make: trees::single },
+];
+
+fn cube(low: DVec3, high: DVec3) -> Mesh {
+    tessellate(&box_faces(low, high), Tolerance::new(1.0, 90.0)).expect("boxes are within all limits")
+}
+
+fn unit() -> Mesh {
+    cube(DVec3::splat(-0.5), DVec3::splat(0.5))
+}
+
+fn ball(center: DVec3, radius: f64) -> Mesh {
+    tessellate(&[Sphere::new(center, radius)], Tolerance::new(0.04 * radius, 90.0))
+        .expect("spheres are within all limits")
+}
+
+fn moved(mesh: &Mesh, by: DAffine3) -> Mesh {
+    mesh.transformed(&by)
+}
+
+fn shifted(mesh: &Mesh, by: DVec3) -> Mesh {
+    moved(mesh, DAffine3::from_translation(by))
+}
+
+fn joined(meshes: &[Mesh]) -> Mesh {
+    let mut all = Mesh::default();
+    meshes.iter().for_each(|mesh| all.append(mesh, 0));
+    all
+}
+
+fn pair(one: Mesh, two: Mesh) -> Case {
+    Case::Pair { solids: [one, two], common: None }
+}
+
+fn vector(random: &mut Pcg64Mcg) -> DVec3 {
+    DVec3::from([0; 3].map(|_| random.random_range(-1.0..1.0)))
+}
+
+fn direction(random: &mut Pcg64Mcg) -> DVec3 {
+    vector(random).normalize_or(DVec3::Z)
+}
+
+fn power(random: &mut Pcg64Mcg, low: f64, high: f64) -> f64 {
+    10f64.powf(random.random_range(low..high))
+}
+
+fn turned(mesh: &Mesh, random: &mut Pcg64Mcg, angle: f64) -> Mesh {
+    moved(mesh, DAffine3::from_axis_angle(direction(random), angle))
+}
