@@ -1,6 +1,6 @@
 //! Judges cases.
 
-use super::{Case, Class, Score};
+use super::{Case, Class, Score, points};
 use crate::simple;
 use host::mesh::Mesh;
 use host::numeric::exact::{Exact, cross, dot};
@@ -118,7 +118,9 @@ fn chain(meshes: &[Mesh]) -> Result<(), Score> {
 fn tree(meshes: &[Mesh], expression: &Expression, expected: Option<f64>) -> Result<(), Score> {
     let solids = meshes.iter().map(solid).collect::<Result<Vec<Solid>, Score>>()?;
     let operands: Vec<&Solid> = solids.iter().collect();
-    let found = volume(&result(&operands, expression)?);
+    let mesh = result(&operands, expression)?;
+    points::compare(meshes, expression, &mesh).map_err(Score::Wrong)?;
+    let found = volume(&mesh);
     let bound = bound(&meshes.iter().collect::<Vec<_>>());
     if let Some(expected) = expected {
         return close("the expression", found, expected, bound);

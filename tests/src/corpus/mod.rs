@@ -2,6 +2,7 @@
 
 mod classes;
 mod judge;
+mod points;
 
 pub use classes::{CLASSES, Class};
 pub use judge::score;

@@ -33,7 +33,7 @@ pub enum Fault {
     /// It winds otherwise than not at all around what is just before a triangle.
     #[error("before triangle {triangle} it winds {winding} times")]
     Winding {
-        /// Which.
+        /// The number of the triangle.
         triangle: usize,
         /// How often it winds there.
         winding: i32,
