@@ -1,10 +1,13 @@
 //! `peris check`: whether a mesh bounds a solid.
 
 use super::{Exit, Failure, Row, say};
-use crate::mesh;
-use crate::solid::Solid;
+use crate::mesh::{self, BoundaryLoop, Format, Grouped, Mesh};
+use crate::solid::{self, Repair, Solid, SolidError};
+use anyhow::Context;
 use clap::{Args, FromArgMatches};
-use std::path::PathBuf;
+use files::Destination;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 pub(super) const ROW: Row = Row {
     name: "check",
@@ -26,57 +29,102 @@ struct Arguments {
     json: bool,
 }
 
+/// Boundary loops that the text names.
+const NAMED: usize = 8;
+
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let repaired = arguments.repair.as_ref().map(mesh::destination).transpose()?;
-    let mesh = mesh::read(&arguments.mesh)?;
-    let report = mesh.edge_report();
-    let duplicates = mesh.duplicate_triangles();
-    let mut verdict = Solid::new(mesh.clone());
-    let problem = verdict.as_ref().err().map(ToString::to_string);
+    let destination = arguments.repair.as_ref().map(mesh::destination).transpose()?;
+    let grouped = mesh::read_grouped(&arguments.mesh)?;
+    let mesh = &grouped.mesh;
+    let verdict = Solid::new(mesh.clone());
+    let loops = solid::boundary(mesh);
+    let repaired = destination.is_some().then(|| Solid::repaired(mesh.clone()));
     if arguments.json {
-        let known = serde_json::json!({
-            "solid": verdict.is_ok(), "problem": problem, "vertices": report.vertices, "triangles": report.triangles,
-            "edges": report.edges, "open_edges": report.boundary, "crowded_edges": report.crowded,
-            "misoriented_edges": report.misoriented, "collapsed_triangles": report.collapsed,
-            "triangles_without_area": report.slivers, "duplicate_triangles": duplicates,
-            "euler_characteristic": report.euler_characteristic(),
-        });
-        say::report(known);
+        say::report(as_json(mesh, &loops, &verdict, repaired.as_ref()));
     } else {
-        say!("vertices                {}", report.vertices);
-        say!("triangles               {}", report.triangles);
-        say!("edges                   {}", report.edges);
-        say!("  open                  {}", report.boundary);
-        say!("  of several triangles  {}", report.crowded);
-        say!("  misoriented           {}", report.misoriented);
-        say!("collapsed triangles     {}", report.collapsed);
-        say!("triangles without area  {}", report.slivers);
-        say!("duplicate triangles     {duplicates}");
-        say!("Euler characteristic    {}", report.euler_characteristic());
+        tell(mesh, &loops);
         if verdict.is_ok() {
             say!("a solid");
         }
-    }
-    if let Some(destination) = &repaired {
-        verdict = Solid::repaired(mesh).map(|(solid, repair)| {
-            if !arguments.json {
-                say!(
-                    "repaired: {} collapsed and {} double triangles left out, {} turned, {} added in holes{}",
-                    repair.collapsed,
-                    repair.duplicates,
-                    repair.turned,
-                    repair.filled,
-                    if repair.is_resolved { ", divided where it crossed itself" } else { "" }
-                );
-            }
-            solid
-        });
-        if let Ok(solid) = &verdict {
-            mesh::write(solid.mesh(), destination)?;
+        if let Some(Ok((_, repair))) = &repaired {
+            say!("repaired: {repair}");
         }
     }
-    match verdict {
-        Ok(_) => Ok(()),
-        Err(error) => Err(Failure::new(Exit::Failed, anyhow::anyhow!("{}: {error}", arguments.mesh.display()))),
+    let outcome = match (repaired, destination) {
+        (Some(Ok((_, repair))), Some(destination)) if repair.is_nothing() => {
+            keep(&arguments.mesh, &grouped, &destination)?;
+            Ok(())
+        }
+        (Some(Ok((solid, _))), Some(destination)) => {
+            mesh::write_grouped(&Grouped { mesh: solid.into_mesh(), ..grouped }, &destination)?;
+            Ok(())
+        }
+        (Some(Err(error)), _) => Err(error),
+        _ => verdict.map(|_| ()),
+    };
+    outcome.map_err(|error| Failure::new(Exit::Failed, anyhow::anyhow!("{}: {error}", arguments.mesh.display())))
+}
+
+/// Writes a mesh that is a solid already: the same bytes if the format is the same and the file stands alone.
+fn keep(path: &Path, grouped: &Grouped, destination: &Destination) -> Result<(), Failure> {
+    let format = Format::of(path);
+    if format != Format::of(destination.path()) || format == Some(Format::Gltf) {
+        return Ok(mesh::write_grouped(grouped, destination)?);
     }
+    let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
+    Ok(destination.write_or_keep(|file| file.write_all(&bytes))?)
+}
+
+fn tell(mesh: &Mesh, loops: &[BoundaryLoop]) {
+    let report = mesh.edge_report();
+    say!("vertices                {}", report.vertices);
+    say!("triangles               {}", report.triangles);
+    say!("edges                   {}", report.edges);
+    say!("  open                  {}", report.boundary);
+    say!("  of several triangles  {}", report.crowded);
+    say!("  misoriented           {}", report.misoriented);
+    say!("collapsed triangles     {}", report.collapsed);
+    say!("triangles without area  {}", report.slivers);
+    say!("duplicate triangles     {}", mesh.duplicate_triangles());
+    say!("Euler characteristic    {}", report.euler_characteristic());
+    say!("boundary loops          {}", loops.len());
+    let mut longest: Vec<(f64, &BoundaryLoop)> =
+        loops.iter().map(|found| (found.length(&mesh.vertices), found)).collect();
+    longest.sort_by(|one, two| two.0.total_cmp(&one.0));
+    for (length, BoundaryLoop(corners)) in longest.iter().take(NAMED) {
+        let near = mesh.vertices[corners[0] as usize];
+        say!("  {} edges, {length:.6} long, near {near:.6}", corners.len());
+    }
+    if loops.len() > NAMED {
+        say!("  and {} more", loops.len() - NAMED);
+    }
+}
+
+fn as_json(
+    mesh: &Mesh,
+    loops: &[BoundaryLoop],
+    verdict: &Result<Solid, SolidError>,
+    repaired: Option<&Result<(Solid, Repair), SolidError>>,
+) -> serde_json::Value {
+    let report = mesh.edge_report();
+    let told = |found: &BoundaryLoop| {
+        let BoundaryLoop(corners) = found;
+        let near = mesh.vertices[corners[0] as usize].to_array();
+        serde_json::json!({ "edges": corners.len(), "length": found.length(&mesh.vertices), "near": near })
+    };
+    let mut known = serde_json::json!({
+        "solid": verdict.is_ok(), "problem": verdict.as_ref().err().map(ToString::to_string),
+        "vertices": report.vertices, "triangles": report.triangles,
+        "edges": report.edges, "open_edges": report.boundary, "crowded_edges": report.crowded,
+        "misoriented_edges": report.misoriented, "collapsed_triangles": report.collapsed,
+        "triangles_without_area": report.slivers, "duplicate_triangles": mesh.duplicate_triangles(),
+        "euler_characteristic": report.euler_characteristic(),
+        "boundary_loops": loops.iter().map(told).collect::<Vec<_>>(),
+    });
+    match repaired {
+        Some(Ok((_, repair))) => known["repair"] = serde_json::json!(repair),
+        Some(Err(error)) => known["repair_problem"] = serde_json::json!(error.to_string()),
+        None => {}
+    }
+    known
 }

@@ -4,6 +4,7 @@
 //! and [`write_grouped`]; [`Mesh::validate`] and [`Mesh::edge_report`] tell whether
 //! a mesh can be trusted; [`edges`] and [`Polylines`] turn it into vectors.
 
+mod boundary;
 mod check;
 mod compact;
 mod contour;
@@ -23,6 +24,7 @@ mod stl;
 mod simplify;
 mod subdivide;
 
+pub use boundary::BoundaryLoop;
 pub use check::EdgeReport;
 pub use edges::{Eye, Interior, Selection, wire};
 pub use error::{Fault, MeshError, Place, Problem};

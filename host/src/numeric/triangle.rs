@@ -165,6 +165,28 @@ pub fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
     [1.0 - u - v, u, v]
 }
 
+/// The point of a triangle, or of a segment where it has no area, that is nearest to a point.
+///
+/// # Source
+/// Ericson 2005, section 5.1.5: by the regions of the plane in which the nearest point is a corner, on a side, or inside.
+pub fn nearest(point: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let weight = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(normal);
+    let area = normal.length_squared();
+    if area > 0.0 && weight(a, b) >= 0.0 && weight(b, c) >= 0.0 && weight(c, a) >= 0.0 {
+        return point - normal * ((point - a).dot(normal) / area);
+    }
+    let on_side = |from: DVec3, to: DVec3| {
+        let way = to - from;
+        let length = way.length_squared();
+        let part = if length > 0.0 { ((point - from).dot(way) / length).clamp(0.0, 1.0) } else { 0.0 };
+        from + way * part
+    };
+    let nearer = |p: DVec3, q: DVec3| if q.distance_squared(point) < p.distance_squared(point) { q } else { p };
+    nearer(nearer(on_side(a, b), on_side(b, c)), on_side(c, a))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

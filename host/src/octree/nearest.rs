@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::Sorted;
 use crate::mesh::Mesh;
-use crate::numeric::bounds::Bounds;
+use crate::numeric::{bounds::Bounds, triangle};
 
 /// The nearest point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Sorted {
         self.search(
             |bounds: Bounds| distance_to_box(point, bounds),
             |triangle| {
-                let place = nearest_in(point, corners(triangle));
+                let place = triangle::nearest(point, corners(triangle));
                 let distance = place.distance(point);
                 if best.is_none_or(|best| distance < best.distance) {
                     best = Some(Nearest { triangle, point: place, distance });
@@ -66,28 +66,6 @@ fn distance_to_box(point: DVec3, bounds: Bounds) -> f64 {
     point.clamp(bounds.min, bounds.max).distance(point)
 }
 
-/// The point of a triangle, or of a segment where it has no area, that is nearest to a point.
-///
-/// # Source
-/// Ericson 2005, section 5.1.5: by the regions of the plane in which the nearest point is a corner, on a side, or inside.
-fn nearest_in(point: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let (ab, ac) = (b - a, c - a);
-    let normal = ab.cross(ac);
-    let weight = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(normal);
-    let area = normal.length_squared();
-    if area > 0.0 && weight(a, b) >= 0.0 && weight(b, c) >= 0.0 && weight(c, a) >= 0.0 {
-        return point - normal * ((point - a).dot(normal) / area);
-    }
-    let on_side = |from: DVec3, to: DVec3| {
-        let way = to - from;
-        let length = way.length_squared();
-        let part = if length > 0.0 { ((point - from).dot(way) / length).clamp(0.0, 1.0) } else { 0.0 };
-        from + way * part
-    };
-    let nearer = |p: DVec3, q: DVec3| if q.distance_squared(point) < p.distance_squared(point) { q } else { p };
-    nearer(nearer(on_side(a, b), on_side(b, c)), on_side(c, a))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,7 +81,8 @@ mod tests {
         for _ in 0..300 {
             let point = sphere(stream.point()) * 3.0 * stream.uniform();
             let found = sorted.nearest(point, corners).expect("there are triangles");
-            let all = (0..200).map(|t| nearest_in(point, corners(t)).distance(point)).fold(f64::INFINITY, f64::min);
+            let all =
+                (0..200).map(|t| triangle::nearest(point, corners(t)).distance(point)).fold(f64::INFINITY, f64::min);
             assert_eq!(found.distance, all);
             // No point of a lattice on the triangle is nearer.
             let [a, b, c] = corners(found.triangle);

@@ -3,6 +3,9 @@
 use crate::mesh::Fault;
 use glam::DVec3;
 
+/// Loops that an error names.
+const NAMED_LOOPS: usize = 4;
+
 /// Why a mesh is no solid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolidError {
@@ -18,12 +21,27 @@ pub enum SolidError {
         /// The ends of the first of them.
         edges: Vec<[DVec3; 2]>,
     },
-    /// The triangles face inwards.
-    #[error("the surface faces inwards: its volume is {volume}")]
-    InsideOut {
-        /// The volume, cubic units.
-        volume: f64,
+    /// Loops of edges bound the surface, and no patch was found that closes them without meeting the surface.
+    #[error("the surface is open: {}", list_loops(loops))]
+    Open {
+        /// The loops that stay open, the longest first.
+        loops: Vec<OpenLoop>,
     },
+    /// Triangles face inwards: all, or those of bodies that lie in no other.
+    #[error("{}", turned(*bodies, *of, *volume, *near))]
+    InsideOut {
+        /// Bodies that face inwards.
+        bodies: usize,
+        /// Bodies in all.
+        of: usize,
+        /// The volume of the largest of these, cubic units.
+        volume: f64,
+        /// A corner of it.
+        near: DVec3,
+    },
+    /// The surface winds around nothing: its triangles lie back to back or have no area.
+    #[error("the surface bounds nothing: its triangles lie back to back or have no area")]
+    BoundsNothing,
     /// The surface crosses or covers itself, or parts of it lie in each other.
     #[error(
         "the surface crosses or covers itself ({overlaps} pairs of triangles): near {near} it winds {winding} times around a point"
@@ -63,4 +81,34 @@ pub enum SolidError {
 
 fn list(edges: &[[DVec3; 2]]) -> String {
     edges.iter().map(|[a, b]| format!("{a} to {b}")).collect::<Vec<_>>().join(", ")
+}
+
+/// A loop of edges that bounds a surface, and why it stays open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenLoop {
+    /// Number of its edges.
+    pub edges: usize,
+    /// Length, units.
+    pub length: f64,
+    /// Its first corner.
+    pub near: DVec3,
+}
+
+fn list_loops(loops: &[OpenLoop]) -> String {
+    let named = loops
+        .iter()
+        .take(NAMED_LOOPS)
+        .map(|OpenLoop { edges, length, near }| format!("{edges} edges of length {length:.4} near {near:.4}"));
+    let named: Vec<String> = named.collect();
+    let more = loops.len().saturating_sub(named.len());
+    let more = if more == 0 { String::new() } else { format!(", and {more} more") };
+    let one = if loops.len() == 1 { "a loop" } else { "loops" };
+    format!("every patch for {one} of {}{more} meets the surface", named.join(", "))
+}
+
+fn turned(bodies: usize, of: usize, volume: f64, near: DVec3) -> String {
+    match of {
+        1 => format!("the surface faces inwards: its volume is {volume}"),
+        _ => format!("{bodies} of {of} bodies face inwards, the largest near {near}: its volume is {volume}"),
+    }
 }

@@ -1,10 +1,10 @@
 //! From meshes to solids: what must hold is checked, what does no harm is put right.
 
+use super::bodies::{Bodies, certain_volume};
 use super::boolean::{Lattice, Resolution, UnionFind, resolve};
 use super::tangle::overlaps;
 use super::{Solid, SolidError};
 use crate::mesh::Mesh;
-use crate::numeric::exact::{Exact, cross, dot};
 use crate::numeric::implicit::projection;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -16,61 +16,84 @@ impl SolidError {
     /// An error of the mesh that was put on a lattice, in the coordinates that the mesh had before.
     pub(super) fn brought_back(mut self, lattice: &Lattice) -> SolidError {
         match &mut self {
-            SolidError::Mesh(_) | SolidError::Tangled { .. } => {}
+            SolidError::Mesh(_) | SolidError::Tangled { .. } | SolidError::BoundsNothing => {}
             SolidError::NotClosed { edges, .. } => {
                 edges.iter_mut().flatten().for_each(|end| *end = lattice.place(*end));
             }
-            SolidError::InsideOut { volume } => *volume = lattice.volume(*volume),
+            SolidError::Open { loops } => {
+                for open in loops {
+                    open.near = lattice.place(open.near);
+                    open.length = lattice.length(open.length);
+                }
+            }
+            SolidError::InsideOut { volume, near, .. } => {
+                *volume = lattice.volume(*volume);
+                *near = lattice.place(*near);
+            }
             SolidError::Crossing { near, .. } | SolidError::Unsettled { near, .. } => *near = lattice.place(*near),
         }
         self
     }
 }
 
+/// Does something with a mesh whose coordinates predicates can be exact with, and brings back what comes of it.
+pub fn on_lattice<T>(
+    mut mesh: Mesh,
+    make: impl FnOnce(Mesh) -> Result<(Solid, T), SolidError>,
+    bring_back: impl FnOnce(T, &Lattice) -> T,
+) -> Result<(Solid, T), SolidError> {
+    mesh.validate()?;
+    let Some(lattice) = Lattice::of(std::iter::once(&mesh)) else { return make(mesh) };
+    lattice.lay(&mut mesh);
+    let (mut solid, rest) = make(mesh).map_err(|error| error.brought_back(&lattice))?;
+    lattice.bring_back(&mut solid.mesh);
+    Ok((Solid::of(solid.mesh), bring_back(rest, &lattice)))
+}
+
 /// Checks and cleans a mesh. Where its surface crosses itself, that of what it bounds is given, and the error.
 ///
 /// Coordinates below 2^-203 of the largest are rounded to 2^-256 of that.
-pub fn imported(mut mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
-    mesh.validate()?;
-    let Some(lattice) = Lattice::of(std::iter::once(&mesh)) else { return imported_on_lattice(mesh) };
-    lattice.lay(&mut mesh);
-    let back = |error: SolidError| error.brought_back(&lattice);
-    let (mut solid, crossing) = imported_on_lattice(mesh).map_err(back)?;
-    lattice.bring_back(&mut solid.mesh);
-    Ok((Solid::of(solid.mesh), crossing.map(back)))
+pub fn imported(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
+    on_lattice(mesh, imported_on_lattice, |crossing, lattice| Some(crossing?.brought_back(lattice)))
 }
 
-fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
+/// Checks and cleans a mesh that is on a lattice, as [`imported`] does.
+pub fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), SolidError> {
+    let is_empty = mesh.triangles.is_empty();
     let mut mesh = without_collapsed(mesh);
     let sheets = check_edges(&mesh)?;
     dissolve(&mut mesh);
-    let volume = certain_volume(&mesh);
-    if volume < 0.0 {
-        return Err(SolidError::InsideOut { volume });
-    }
+    let is_turned = certain_volume(&mesh, 0..mesh.triangles.len()) < 0.0;
     let solid = Solid::of(mesh);
+    if is_turned && let Some(error) = inside_out(&solid) {
+        return Err(error);
+    }
     let overlaps = overlaps(solid.mesh(), solid.sorted())?.len();
     if overlaps == 0 && sheets == 1 {
         return Ok((solid, None));
     }
     let Resolution { outcome, is_same, odd } = resolve(solid.mesh())?;
+    if let Some((..0, _)) = odd
+        && let Some(error) = inside_out(&solid)
+    {
+        return Err(error);
+    }
+    if outcome.mesh.triangles.is_empty() && !is_empty {
+        return Err(SolidError::BoundsNothing);
+    }
     let crossing = odd.map(|(winding, near)| SolidError::Crossing { winding, near, overlaps });
     Ok((if is_same { solid } else { Solid::of(outcome.mesh) }, crossing))
 }
 
-/// The volume inside a mesh, whose sign is that of the true one however thin the mesh is.
-pub fn certain_volume(mesh: &Mesh) -> f64 {
-    let volume = mesh.signed_volume();
-    let reach = mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
-    // The rounding of each product and that of their sum, all of them as large as can be.
-    if volume.abs() > 72.0 * f64::EPSILON * reach.powi(3) * mesh.triangles.len() as f64 {
-        return volume;
-    }
-    let sixfold = (0..mesh.triangles.len()).fold(Exact::default(), |sum, triangle| {
-        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(Exact::from));
-        sum + dot(&a, &cross(&b, &c))
-    });
-    sixfold.over(&Exact::from(6.0))
+/// The error of a solid of which bodies face inwards, if some do.
+fn inside_out(solid: &Solid) -> Option<SolidError> {
+    let mesh = solid.mesh();
+    let bodies = Bodies::of(mesh);
+    let turned = bodies.inside_out(mesh, solid.sorted());
+    let largest = turned.iter().copied().min_by(|&one, &two| bodies.volume(one).total_cmp(&bodies.volume(two)))?;
+    let near = mesh.corners(bodies.triangles(largest)[0] as usize)[0];
+    let volume = bodies.volume(largest);
+    Some(SolidError::InsideOut { bodies: turned.len(), of: bodies.count(), volume, near })
 }
 
 /// Puts right what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.

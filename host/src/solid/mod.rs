@@ -3,6 +3,7 @@
 pub mod boolean;
 mod error;
 mod tangle;
+mod bodies;
 mod import;
 mod mass;
 mod repair;
@@ -14,12 +15,12 @@ mod rounded;
 
 pub use body::{Body, Face, Measures};
 pub use boolean::{Counts, Expression, Outcome};
-pub use error::SolidError;
+pub use error::{OpenLoop, SolidError};
 pub use exact::{ExactSolid, moved};
 pub use glue::GlueError;
 pub use mass::Mass;
 pub use primitive::{Primitive, PrimitiveError};
-pub use repair::Repair;
+pub use repair::{Repair, boundary};
 pub use rounded::{EdgeChoice, RoundingError};
 
 use crate::mesh::Mesh;

@@ -219,7 +219,7 @@ impl Region<'_> {
 }
 
 /// A triangle far around some points, seen along an axis.
-fn around(axis: usize, points: impl Iterator<Item = DVec3>) -> [Point; 3] {
+pub fn around(axis: usize, points: impl Iterator<Item = DVec3>) -> [Point; 3] {
     let [x, y] = others(axis);
     let reach = points.fold(0.0_f64, |reach, p| reach.max(p.abs().max_element())).max(f64::MIN_POSITIVE);
     [(-8.0, -4.0), (8.0, -4.0), (0.0, 8.0)].map(|(right, up)| {

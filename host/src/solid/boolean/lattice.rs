@@ -82,6 +82,11 @@ impl Lattice {
         point.to_array().map(|x| times(x, -self.power)).into()
     }
 
+    /// The length that one on the lattice stands for.
+    pub fn length(&self, length: f64) -> f64 {
+        times(length, -self.power)
+    }
+
     /// The volume that one on the lattice stands for.
     pub fn volume(&self, volume: f64) -> f64 {
         (0..3).fold(volume, |volume, _| times(volume, -self.power))
@@ -209,7 +214,7 @@ mod tests {
         assert!(one.intersection(&speck).unwrap().mesh().triangles.is_empty());
         let vast = block([-1e300; 3], [1e300; 3]);
         assert_eq!(vast.union(&one).unwrap().mesh().vertices.len(), 8);
-        assert!(block([0.0; 3], [1.0, 1.0, 1e-300]).mesh().triangles.is_empty());
+        assert_eq!(Solid::new(cuboid([0.0; 3], [1.0, 1.0, 1e-300])), Err(SolidError::BoundsNothing));
     }
 
     #[test]

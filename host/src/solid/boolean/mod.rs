@@ -29,6 +29,7 @@ mod contact;
 mod core;
 mod faces;
 mod facets;
+mod filling;
 mod lattice;
 mod merge;
 mod nudging;
@@ -49,12 +50,15 @@ mod winding;
 
 pub use arrangement::Counts;
 pub(crate) use contact::{Contact, Face, Key};
+pub(super) use filling::filled;
 pub(super) use lattice::Lattice;
 pub(super) use operand::{Operand, overlaps_up_to};
+pub(super) use overlap::{Tile, overlap};
 pub(super) use quads::mates;
 pub use result::Outcome;
 pub(super) use simple::{Resolution, resolve};
 pub(super) use union_find::UnionFind;
+pub(super) use winding::passes;
 
 use super::SolidError;
 use arrangement::Arrangement;
@@ -140,5 +144,7 @@ fn work(operands: &Operands, expression: &Expression) -> Work {
     counts.facets = facets.len() as u64;
     (counts.parts, counts.rays) = (parts.count, parts.rays);
     let (outcome, must_settle) = result::assemble(operands, &arrangement, &facets, &is_whole, &parts, counts);
-    Work { outcome, must_settle, is_all_kept: parts.are_all_kept(), odd: parts.odd }
+    // Of those that lie on each other, one is kept.
+    let is_all_kept = parts.are_all_kept() && facets.iter().all(|facet| facet.others.is_empty());
+    Work { outcome, must_settle, is_all_kept, odd: parts.odd }
 }

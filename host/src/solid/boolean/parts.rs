@@ -31,7 +31,7 @@ pub struct Parts {
     pub count: u64,
     /// Rays that were sent.
     pub rays: u64,
-    /// Where an operand winds more than once or less than not at all around what is beside it, and how often.
+    /// Where an operand winds less than not at all around what is beside it, or else more than once, and how often.
     pub odd: Option<(i32, DVec3)>,
 }
 
@@ -92,13 +92,14 @@ impl Parts {
             .map(|sample| {
                 let mut rays = 0;
                 let windings = windings(operands, arrangement, facets, sample, &mut rays);
-                let odd = windings.as_flattened().iter().copied().find(|winding| !(0..=1).contains(winding));
+                let odd = windings.as_flattened().iter().copied().filter(|winding| !(0..=1).contains(winding)).min();
                 (fate(&windings, &inside), odd.unwrap_or(0), rays)
             })
             .collect();
         let rays = judged.iter().map(|(.., rays)| rays).sum();
         let count = samples.len() as u64;
-        let odd = samples.iter().zip(&judged).find(|(_, (_, odd, _))| *odd != 0);
+        let all_odd = samples.iter().zip(&judged).filter(|(_, (_, odd, _))| *odd != 0);
+        let odd = all_odd.min_by_key(|(_, (_, odd, _))| *odd > 0);
         let odd = odd.map(|(sample, (_, odd, _))| (*odd, sample.place(operands, arrangement, facets)));
         let fates = samples.iter().zip(&judged).map(|(sample, (fate, ..))| (sample.root, *fate)).collect();
         Parts { nodes, vertices, fates, count, rays, odd }

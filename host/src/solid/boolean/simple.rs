@@ -30,7 +30,7 @@ pub struct Resolution {
     pub outcome: Outcome,
     /// Whether it is the same surface, but for how it is divided.
     pub is_same: bool,
-    /// Where the given one winds otherwise than once or not at all, and how often.
+    /// Where the given one winds less than not at all, or else more than once, and how often.
     pub odd: Option<(i32, DVec3)>,
 }
 

@@ -27,7 +27,7 @@ pub fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64)
 }
 
 /// 1 if the ray along x leaves through the front of a triangle, -1 if through its back, 0 if not at all.
-fn passes(point: &Point, corners: [DVec3; 3]) -> i32 {
+pub fn passes(point: &Point, corners: [DVec3; 3]) -> i32 {
     let [a, b, c] = corners;
     let facing = flat_turn(0, a, b, c);
     if facing == 0.0 {

@@ -42,6 +42,7 @@ pub const CLASSES: &[Class] = &[
     Class { name: "nested shells", cases: 60, make: pairs::nested },
     Class { name: "touching themselves", cases: 60, make: pairs::self_touching },
     Class { name: "crossing themselves", cases: 80, make: surfaces::self_crossing },
+    Class { name: "thin bodies inside out", cases: 1000, make: surfaces::slivers },
     Class { name: "empty results", cases: 60, make: pairs::empty },
     Class { name: "results as operands", cases: 80, make: trees::chain },
     Class { name: "boxes of one lattice, turned", cases: 4000, make: trees::lattice },
