@@ -58,7 +58,7 @@ pub enum SolidError {
     /// mend it.
     #[error(
         "rounded to numbers, the result crosses itself ({overlaps} pairs of triangles, the first near {near}), and \
-         moving its points by {most} units in the last place does not mend it; moving an operand by a millionth of its \
+         moving its points by up to {most} units in the last place does not mend it; moving an operand by a millionth of its \
          size may help"
     )]
     Unsettled {
@@ -66,7 +66,7 @@ pub enum SolidError {
         overlaps: usize,
         /// A corner of the first.
         near: DVec3,
-        /// How far points were moved, in units in the last place of the largest coordinate there.
+        /// How far points might be moved, in units in the last place of the largest coordinate.
         most: f64,
     },
     /// The surface crosses itself so often that it is not put right, nor told how.

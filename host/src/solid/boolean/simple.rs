@@ -10,19 +10,40 @@ use super::sides::Sides;
 use super::snapping::{Scope, snapped};
 use super::union_find::UnionFind;
 use super::{Expression, Work, work};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, bits};
 use crate::octree::Sorted;
 use crate::solid::SolidError;
 use crate::solid::import::is_closed;
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 
-/// How far points are moved, in units in the last place of the largest coordinate there, and what is drawn together within
-/// that distance: all that is near triangles that overlap, or only these, which serves better where sheets cross at small
-/// angles. One after the other, until one succeeds.
-const ATTEMPTS: [(f64, Scope); 4] =
-    [(4.0, Scope::Near), (4.0, Scope::Overlapping), (32.0, Scope::Near), (32.0, Scope::Overlapping)];
-/// How often points are drawn together and nudged in an attempt.
-const TURNS: usize = 3;
+/// A way to make a surface simple.
+struct Attempt {
+    /// How far points are moved, in units in the last place of the largest coordinate there.
+    most: f64,
+    /// What is drawn together within that distance.
+    scope: Scope,
+    /// Whether it begins with the attempt that left the fewest pairs of triangles that overlap, and not from the first.
+    goes_on: bool,
+}
+
+/// Attempts, one after the other until one succeeds. To draw together all that is near triangles that overlap serves where
+/// sheets nearly coincide; only these, where they cross at small angles; and only what the best attempt left, where that is
+/// little.
+const ATTEMPTS: [Attempt; 6] = [
+    Attempt { most: 4.0, scope: Scope::Near, goes_on: false },
+    Attempt { most: 4.0, scope: Scope::Overlapping, goes_on: false },
+    Attempt { most: 16.0, scope: Scope::Overlapping, goes_on: true },
+    Attempt { most: 32.0, scope: Scope::Near, goes_on: false },
+    Attempt { most: 32.0, scope: Scope::Overlapping, goes_on: false },
+    Attempt { most: 32.0, scope: Scope::Near, goes_on: true },
+];
+/// How far points of a settled surface may be from the rounded one, in units in the last place of the largest coordinate.
+const MOST: f64 = 64.0;
+/// How often points are drawn together and nudged in an attempt at most.
+const TURNS: usize = 6;
+/// An attempt is given up if a turn leaves more than this part of the pairs of triangles that overlapped before it.
+const LEFT: f64 = 0.85;
 
 /// What a closed surface bounds.
 pub struct Resolution {
@@ -52,9 +73,9 @@ pub fn resolve(mesh: &Mesh) -> Result<Resolution, SolidError> {
 /// moved meets others. Whatever comes out is looked at exactly: no two triangles overlap, and the surface winds once around
 /// what is inside and not at all around what is outside.
 ///
-/// No coordinate is farther from what it was rounded to than six times the distance of the attempt that succeeded: a turn
-/// draws a point as far as that once, and nudges it as far once. Each attempt takes about as long as a few operations on the
-/// triangles that overlap, besides looking twice at all triangles in each turn.
+/// No point is farther from the rounded surface than [`MOST`] units in the last place of the largest coordinate: each that
+/// is no corner of it is measured. Each attempt takes about as long as a few operations on the triangles that overlap,
+/// besides looking twice at all triangles in each turn.
 ///
 /// # Errors
 /// [`SolidError::Unsettled`] if none of the attempts succeeds.
@@ -65,43 +86,62 @@ pub fn settled(mut outcome: Outcome) -> Result<Outcome, SolidError> {
         return Ok(right_side_out(&outcome).unwrap_or(outcome));
     }
     let (volume, bound) = (outcome.mesh.signed_volume(), change_of_volume(&outcome.mesh));
-    for ((most, scope), number) in ATTEMPTS.into_iter().zip(1..) {
+    let mut best = Trial { outcome: outcome.clone(), pairs: first.clone() };
+    for (attempt, number) in ATTEMPTS.iter().zip(1..) {
         let is_right = |settled: &Outcome| {
             let change = (settled.mesh.signed_volume() - volume).abs();
-            change <= (2.0 * most + 8.0) * bound && is_closed(&settled.mesh) && overlapping(&settled.mesh).is_empty()
+            change <= (2.0 * attempt.most + 8.0) * bound
+                && is_closed(&settled.mesh)
+                && overlapping(&settled.mesh).is_empty()
+                && is_near(&settled.mesh, &outcome.mesh)
         };
-        let settled = attempt(outcome.clone(), first.clone(), most, scope);
-        // What was turned inside out goes now.
-        let settled = settled.map(|settled| right_side_out(&settled).unwrap_or(settled));
-        if let Some(mut settled) = settled.filter(is_right) {
-            settled.counts.settled = number;
-            return Ok(settled);
+        let from =
+            if attempt.goes_on { best.clone() } else { Trial { outcome: outcome.clone(), pairs: first.clone() } };
+        let trial = from.made_simple(attempt);
+        if trial.pairs.is_empty() {
+            // What was turned inside out goes now.
+            let mut settled = right_side_out(&trial.outcome).unwrap_or(trial.outcome);
+            if is_right(&settled) {
+                settled.counts.settled = number;
+                return Ok(settled);
+            }
+        } else if trial.pairs.len() < best.pairs.len() {
+            best = trial;
         }
     }
     let [near, ..] = outcome.mesh.corners(first[0][0] as usize);
-    let most = ATTEMPTS.iter().map(|(most, _)| *most).fold(0.0, f64::max);
-    Err(SolidError::Unsettled { overlaps: first.len(), near, most })
+    Err(SolidError::Unsettled { overlaps: first.len(), near, most: MOST })
 }
 
-/// The outcome without triangles that overlap, if that succeeds.
-fn attempt(mut trial: Outcome, mut pairs: Vec<[u32; 2]>, most: f64, scope: Scope) -> Option<Outcome> {
-    let limit = 2 * pairs.len() + 20;
-    for _ in 0..TURNS {
-        trial = snapped(trial, &pairs, most, scope);
-        pairs = overlapping(&trial.mesh);
-        if !pairs.is_empty() {
-            nudge(&mut trial.mesh, &pairs, most);
-            trial.clean();
-            pairs = overlapping(&trial.mesh);
+/// A surface and the pairs of triangles of it that overlap.
+#[derive(Clone)]
+struct Trial {
+    outcome: Outcome,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Trial {
+    /// What an attempt makes of it: without pairs if it succeeds, and otherwise with the fewest that it came to.
+    fn made_simple(mut self, attempt: &Attempt) -> Trial {
+        let mut best = self.clone();
+        for _ in 0..TURNS {
+            let before = self.pairs.len();
+            self.outcome = snapped(self.outcome, &self.pairs, attempt.most, attempt.scope);
+            self.pairs = overlapping(&self.outcome.mesh);
+            if !self.pairs.is_empty() {
+                nudge(&mut self.outcome.mesh, &self.pairs, attempt.most);
+                self.outcome.clean();
+                self.pairs = overlapping(&self.outcome.mesh);
+            }
+            if self.pairs.len() < best.pairs.len() {
+                best = self.clone();
+            }
+            if self.pairs.len() as f64 > LEFT * before as f64 || self.pairs.is_empty() {
+                break;
+            }
         }
-        if pairs.is_empty() {
-            return Some(trial);
-        }
-        if pairs.len() > limit {
-            return None;
-        }
+        best
     }
-    None
 }
 
 /// The border of what a surface winds around more than not at all; nothing if that is all of it.
@@ -126,6 +166,20 @@ fn change_of_volume(mesh: &Mesh) -> f64 {
     };
     let largest = mesh.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
     f64::EPSILON * largest * (0..mesh.triangles.len()).map(square).sum::<f64>()
+}
+
+/// Whether all points of a settled surface are as near the rounded one as they must be.
+fn is_near(settled: &Mesh, rounded: &Mesh) -> bool {
+    let corners: FxHashSet<[u64; 3]> = rounded.vertices.iter().map(|vertex| bits(*vertex)).collect();
+    let moved: Vec<DVec3> =
+        settled.vertices.iter().copied().filter(|vertex| !corners.contains(&bits(*vertex))).collect();
+    let sorted = Sorted::new(&rounded.vertices, &rounded.triangles);
+    let largest = rounded.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+    let is_near = |point: DVec3| {
+        let nearest = sorted.nearest(point, |triangle| rounded.corners(triangle as usize));
+        nearest.is_some_and(|nearest| nearest.distance <= MOST * f64::EPSILON * largest)
+    };
+    moved.into_iter().all(is_near)
 }
 
 /// What a mesh bounds, with its surface divided where it crosses itself.
