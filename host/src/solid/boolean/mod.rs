@@ -6,8 +6,9 @@
 //! points where edges pierce faces are kept as what defines them and not as rounded numbers. Touched faces are divided
 //! along all that crosses them. The surfaces fall into parts that nothing crosses; a ray from each part tells which
 //! operands are in front of it and behind it, and a part is kept if the result is on one side only. Where divided faces
-//! lie beside each other in one plane, points that bound nothing are left out again. Only then are the points rounded. Where that makes the
-//! surface cross itself, it is made simple again (`simple`) or the operation is refused.
+//! lie beside each other in one plane, points that bound nothing are left out again. Only then are the points rounded.
+//! Where that makes the surface cross itself, it is made simple again (`simple`) or the operation is refused. Of the
+//! rounded points, those that bound nothing but for a few roundings are left out too (`collapse`).
 //!
 //! All operands of an expression are worked on at once: no intermediate result is made or rounded. Where there are many,
 //! what lies deep inside others is found by cells first, and left out.
@@ -25,10 +26,12 @@
 
 mod arrangement;
 mod burial;
+mod collapse;
 mod contact;
 mod core;
 mod faces;
 mod facets;
+mod fan;
 mod filling;
 mod lattice;
 mod merge;
@@ -62,8 +65,10 @@ pub(super) use winding::passes;
 
 use super::SolidError;
 use arrangement::Arrangement;
+use collapse::{all_made, collapse};
 use operand::Operands;
 use parts::Parts;
+use rounding::Made;
 
 /// A set made of operands.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,13 +119,23 @@ pub(super) fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Res
 /// Evaluates an expression over meshes with coordinates that predicates can be exact with.
 fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Outcome, SolidError> {
     let operands = Operands::new(solids, true);
-    let Work { outcome, must_settle, .. } = work(&operands, expression);
-    if must_settle { simple::settled(outcome) } else { Ok(outcome) }
+    let Work { outcome, made, must_settle, .. } = work(&operands, expression);
+    let (mut outcome, made) = if must_settle {
+        let outcome = simple::settled(outcome)?;
+        let made = all_made(&operands, &outcome);
+        (outcome, made)
+    } else {
+        (outcome, made)
+    };
+    collapse(&operands, &mut outcome, &made);
+    Ok(outcome)
 }
 
 /// What is known when an expression was evaluated once.
 struct Work {
     outcome: Outcome,
+    /// What of it was made.
+    made: Made,
     /// Whether rounding made the result cross itself, as far as could be seen.
     must_settle: bool,
     /// Whether all parts of the surfaces are borders of the result.
@@ -143,8 +158,8 @@ fn work(operands: &Operands, expression: &Expression) -> Work {
     counts.divided = arrangement.touched().count() as u64;
     counts.facets = facets.len() as u64;
     (counts.parts, counts.rays) = (parts.count, parts.rays);
-    let (outcome, must_settle) = result::assemble(operands, &arrangement, &facets, &is_whole, &parts, counts);
+    let (outcome, made, must_settle) = result::assemble(operands, &arrangement, &facets, &is_whole, &parts, counts);
     // Of those that lie on each other, one is kept.
     let is_all_kept = parts.are_all_kept() && facets.iter().all(|facet| facet.others.is_empty());
-    Work { outcome, must_settle, is_all_kept, odd: parts.odd }
+    Work { outcome, made, must_settle, is_all_kept, odd: parts.odd }
 }

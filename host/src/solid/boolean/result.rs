@@ -6,7 +6,7 @@ use super::facets::Facet;
 use super::merge::pieces;
 use super::operand::Operands;
 use super::parts::{Fate, Parts};
-use super::rounding::{self, Kept};
+use super::rounding::{self, Kept, Made};
 use crate::mesh::Mesh;
 use crate::numeric::triangle;
 use glam::DVec3;
@@ -24,7 +24,8 @@ pub struct Outcome {
     pub counts: Counts,
 }
 
-/// Collects what is kept; points are rounded here. Tells also whether that may have made the surface cross itself.
+/// Collects what is kept; points are rounded here. Tells also what was made, and whether rounding may
+/// have made the surface cross itself.
 pub fn assemble(
     operands: &Operands,
     arrangement: &Arrangement,
@@ -32,7 +33,7 @@ pub fn assemble(
     is_whole: &[bool],
     parts: &Parts,
     counts: Counts,
-) -> (Outcome, bool) {
+) -> (Outcome, Made, bool) {
     let tables = Tables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
@@ -61,6 +62,7 @@ pub fn assemble(
     let first_facet = outcome.mesh.triangles.len();
     let mut of_point: FxHashMap<u32, u32> = FxHashMap::default();
     let mut is_moved = vec![false; outcome.mesh.vertices.len()];
+    let (first_vertex, mut is_made) = (is_moved.len() as u32, Vec::new());
     for piece in pieces(operands, arrangement, facets, parts) {
         let corners = piece.corners.map(|point| {
             let number = match arrangement.vertices[point as usize] {
@@ -71,6 +73,7 @@ pub fn assemble(
                 *number = outcome.mesh.vertices.len() as u32;
                 outcome.mesh.vertices.push(arrangement.points[point as usize].near());
                 is_moved.push(!arrangement.points[point as usize].is_exact());
+                is_made.push(arrangement.vertices[point as usize].is_none());
             }
             *number
         });
@@ -82,11 +85,13 @@ pub fn assemble(
         let source = triangle_at(piece.face, (place[0] + place[1] + place[2]) / 3.0);
         let at = [0, 1, 2].map(|k| triangle_at(piece.at[k], place[k]) as usize);
         outcome.push(corners, piece.fate, [operand, source]);
+        let at = if piece.fate == Fate::Turned { [at[0], at[2], at[1]] } else { at };
         let mesh = operands.meshes()[operand as usize];
         tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
-    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &Kept { is_kept, of_vertex });
-    (outcome, crosses)
+    let kept = Kept { is_kept, of_vertex };
+    let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &kept);
+    (outcome, Made { first: first_facet, first_vertex, is_made, kept: Some(kept) }, crosses)
 }
 
 /// Which of the triangles of a face, given by its lower one, a point lies in.

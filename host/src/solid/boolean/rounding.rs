@@ -14,8 +14,28 @@ pub struct Kept {
     pub of_vertex: Vec<u32>,
 }
 
+/// What of a result was made by the operation.
+pub struct Made {
+    /// The first triangle of it.
+    pub first: usize,
+    /// The first vertex that may have been.
+    pub first_vertex: u32,
+    /// For each vertex from that on whether it was.
+    pub is_made: Vec<bool>,
+    /// What stayed whole before the first triangle.
+    pub kept: Option<Kept>,
+}
+
+impl Made {
+    /// The number of a vertex that was made, among those from the first on; `None` for another.
+    pub fn number(&self, vertex: u32) -> Option<usize> {
+        let number = vertex.checked_sub(self.first_vertex)? as usize;
+        self.is_made[number].then_some(number)
+    }
+}
+
 /// What is as thin as this may have been turned inside out, in units in the last place of the largest coordinate there.
-const THIN: f64 = 8.0;
+pub const THIN: f64 = 8.0;
 
 /// Whether triangles of a result that were made anew have no area or hardly any, overlap each other or triangles that stayed
 /// whole, or lie on a neighbour.
