@@ -48,7 +48,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let start = Instant::now();
     let evaluated = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
-    let (result, outcome) = evaluated.map_err(|error| Failure::new(Exit::Failed, error))?;
+    let (result, outcome) = evaluated.map_err(|error| {
+        if *json {
+            say::report(serde_json::json!({ "problem": error.to_string() }));
+        }
+        Failure::new(Exit::Failed, error)
+    })?;
     let seconds = start.elapsed().as_secs_f64();
     let grouped = Grouped { mesh: result.into_mesh(), names, looks };
     mesh::write_grouped(&grouped, &destination)?;

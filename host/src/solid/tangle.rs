@@ -71,9 +71,13 @@ mod tests {
 
     #[test]
     fn soups_are_refused_by_count() {
-        for (count, what) in
-            [(4, "nothing"), (200, "nothing"), (1000, "three triangles"), (20_000, "pairs of triangles")]
-        {
+        for (count, what) in [
+            (4, "nothing"),
+            (200, "nothing"),
+            (700, "three triangles"),
+            (1000, "pairs of triangles"),
+            (20_000, "pairs of triangles"),
+        ] {
             let refused = Solid::resolved(soup(count)).map(|_| ()).unwrap_err().to_string();
             assert!(refused.contains(what), "{count}: {refused}");
         }

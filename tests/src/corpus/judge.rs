@@ -32,8 +32,11 @@ fn solid(mesh: &Mesh) -> Result<Solid, Score> {
     Solid::new(mesh.clone()).map_err(|error| Score::Refused(error.to_string()))
 }
 
-/// The result, if it is a solid and says that it is.
-fn result(operands: &[&Solid], expression: &Expression) -> Result<Mesh, Score> {
+/// The mesh of what an expression over solids gives, if it is a solid and says that it is.
+///
+/// # Errors
+/// [`Score::Refused`] with the reason, [`Score::Wrong`] if an exact judge finds a fault.
+pub fn evaluated(operands: &[&Solid], expression: &Expression) -> Result<Mesh, Score> {
     let evaluated = Solid::evaluate(operands, expression);
     let (solid, Outcome { sources, .. }) = evaluated.map_err(|error| Score::Refused(error.to_string()))?;
     let mesh = solid.into_mesh();
@@ -82,7 +85,7 @@ fn pair(solids: &[Mesh; 2], common: Option<f64>) -> Result<(), Score> {
     ];
     let mut found = [0.0; 4];
     for (volume, expression) in found.iter_mut().zip(&all) {
-        *volume = self::volume(&result(&[&one, &two], expression)?);
+        *volume = self::volume(&evaluated(&[&one, &two], expression)?);
     }
     let bound = bound(&[one.mesh(), two.mesh()]);
     let [a, b] = [volume(one.mesh()), volume(two.mesh())];
@@ -107,9 +110,9 @@ fn chain(meshes: &[Mesh]) -> Result<(), Score> {
             1 => Expression::Union(vec![one, two]),
             _ => Expression::SymmetricDifference(vec![one, two]),
         };
-        step = solid(&result(&[&step, next], &combined(Expression::Operand(0), Expression::Operand(1)))?)?;
+        step = solid(&evaluated(&[&step, next], &combined(Expression::Operand(0), Expression::Operand(1)))?)?;
         whole = combined(whole, Expression::Operand(index));
-        let at_once = volume(&result(&operands[..=index], &whole)?);
+        let at_once = volume(&evaluated(&operands[..=index], &whole)?);
         close("step by step", volume(step.mesh()), at_once, bound * index as f64)?;
     }
     Ok(())
@@ -118,7 +121,7 @@ fn chain(meshes: &[Mesh]) -> Result<(), Score> {
 fn tree(meshes: &[Mesh], expression: &Expression, expected: Option<f64>) -> Result<(), Score> {
     let solids = meshes.iter().map(solid).collect::<Result<Vec<Solid>, Score>>()?;
     let operands: Vec<&Solid> = solids.iter().collect();
-    let mesh = result(&operands, expression)?;
+    let mesh = evaluated(&operands, expression)?;
     points::compare(meshes, expression, &mesh).map_err(Score::Wrong)?;
     let found = volume(&mesh);
     let bound = bound(&meshes.iter().collect::<Vec<_>>());
@@ -127,14 +130,14 @@ fn tree(meshes: &[Mesh], expression: &Expression, expected: Option<f64>) -> Resu
     }
     // It and the rest are all there is.
     let all = Expression::Union((0..meshes.len()).map(Expression::Operand).collect());
-    let rest = volume(&result(&operands, &Expression::difference(all.clone(), expression.clone()))?);
-    close("the expression and the rest", found + rest, volume(&result(&operands, &all)?), bound)
+    let rest = volume(&evaluated(&operands, &Expression::difference(all.clone(), expression.clone()))?);
+    close("the expression and the rest", found + rest, volume(&evaluated(&operands, &all)?), bound)
 }
 
 fn single(meshes: &[Mesh; 3]) -> Result<(), Score> {
     let both = || vec![Expression::Operand(0), Expression::Operand(1)];
     let [one, two, third] = [solid(&meshes[0])?, solid(&meshes[1])?, solid(&meshes[2])?];
-    let mut rounded = result(&[&one, &two], &Expression::Union(both()))?;
+    let mut rounded = evaluated(&[&one, &two], &Expression::Union(both()))?;
     let exact = volume(&rounded);
     rounded.vertices.iter_mut().for_each(|vertex| *vertex = vertex.as_vec3().as_dvec3());
     let (read, _) = Solid::resolved(rounded.clone()).map_err(|error| Score::Refused(error.to_string()))?;
@@ -142,7 +145,7 @@ fn single(meshes: &[Mesh; 3]) -> Result<(), Score> {
     let coarse = f64::from(f32::EPSILON) / f64::EPSILON;
     close("in single precision", volume(read.mesh()), exact, coarse * bound(&[&rounded]))?;
     let [union, common] = [Expression::Union(both()), Expression::Intersection(both())]
-        .map(|expression| Ok(volume(&result(&[&read, &third], &expression)?)));
+        .map(|expression| Ok(volume(&evaluated(&[&read, &third], &expression)?)));
     let bound = bound(&[read.mesh(), third.mesh()]);
     close("union and intersection", union? + common?, volume(read.mesh()) + volume(third.mesh()), bound)
 }

@@ -5,7 +5,7 @@ mod judge;
 mod points;
 
 pub use classes::{CLASSES, Class};
-pub use judge::score;
+pub use judge::{evaluated, score};
 
 use host::mesh::Mesh;
 use host::solid::Expression;

@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn a_patch_is_not_folded_back_onto_the_triangle_beside_it() {
         // A loop around a unit square, with an ear on its first corner that runs along the side of the square.
-        let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-0.1, 0.5]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-0.5, 0.5]].map(|[x, y]| DVec3::new(x, y, 0.0));
         let boundary = BoundaryLoop(vec![0, 1, 2, 3, 4]);
         let is_ear = |corners: &&[u32; 3]| [3, 4, 0].iter().all(|corner| corners.contains(corner));
         let free = least_area(&boundary.0, &places, &Beside::new());
