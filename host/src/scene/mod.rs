@@ -235,7 +235,7 @@ impl Scene {
     /// [`SceneError`] if a mesh cannot be made.
     pub fn chord_error(&self) -> Result<f64, SceneError> {
         let mut largest = 0.0f64;
-        for object in self.objects.iter().filter(|o| o.shape.is_exact_and_curved()) {
+        for object in self.objects.iter().filter(|o| o.shape.is_approximated()) {
             largest = largest.max(object.chord_error(self.settings.tolerance, self.settings.angle)?);
         }
         Ok(largest)

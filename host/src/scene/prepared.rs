@@ -322,19 +322,36 @@ impl Object {
         Tolerance::new(self.own_chord(scene_tolerance).unwrap_or(f64::MAX), angle)
     }
 
-    /// Largest distance between the exact surface and the triangles, scene units; an upper bound for skewed objects.
+    /// Largest distance between the exact surface and the triangles as they are written, scene units; an upper bound for skewed
+    /// objects. Of a composite, its own triangles are measured, and the operands whose surfaces are limits.
     pub(super) fn chord_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
         let stretch = largest_stretch(&self.transform);
+        let mut limits = 0.0;
         if let Shape::Composite(composite) = &self.shape {
             let own = self.own_chord(scene_tolerance);
-            let curved = composite.operands.iter().filter(|operand| operand.shape.is_exact_and_curved());
-            let errors = curved.map(|operand| operand.chord_error(own, angle));
-            let largest = errors.reduce(|a, b| Ok(a?.max(b?))).unwrap_or(Ok(0.0))?;
-            return Ok(largest * stretch);
+            for operand in &composite.operands {
+                limits = f64::max(limits, operand.limit_error(own, angle)?);
+            }
         }
         let tolerance = self.own_tolerance(scene_tolerance, angle);
         let error = self.shape.chord_error(tolerance).map_err(|source| self.failed(source))?;
-        Ok(error * stretch)
+        Ok(error.max(limits) * stretch)
+    }
+
+    /// Largest distance between limit surfaces within an operand and the triangles that it is made of; scene units.
+    fn limit_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
+        match &self.shape {
+            Shape::Rounded(_) | Shape::Subdivision(_) => self.chord_error(scene_tolerance, angle),
+            Shape::Composite(composite) => {
+                let own = self.own_chord(scene_tolerance);
+                let mut largest = 0.0;
+                for operand in &composite.operands {
+                    largest = f64::max(largest, operand.limit_error(own, angle)?);
+                }
+                Ok(largest * largest_stretch(&self.transform))
+            }
+            _ => Ok(0.0),
+        }
     }
 
     pub(super) fn failed(&self, source: ShapeError) -> SceneError {

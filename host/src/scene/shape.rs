@@ -11,7 +11,7 @@ use crate::intersection::Precision;
 use crate::memory;
 use crate::mesh::{self, Mesh, MeshError, NoBunny, Polylines, edges::EdgeTable};
 use crate::octree::{self, Octree};
-use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError};
+use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError, retain};
 use crate::subdivision::SubdivisionError;
 use crate::surface::{self, Surface, TessellationError, Tolerance, chord_error, ground, tessellate};
 use glam::DVec3;
@@ -198,6 +198,15 @@ impl Shape {
         }
     }
 
+    /// Whether triangles stand for a curved surface that is known, exactly or as a limit.
+    pub(super) fn is_approximated(&self) -> bool {
+        match self {
+            Shape::Composite(composite) => composite.operands.iter().any(|o| o.shape.is_approximated()),
+            Shape::Rounded(_) => true,
+            _ => self.is_exact_and_curved(),
+        }
+    }
+
     /// Length of the diagonal in own coordinates, for curved shapes of known size.
     pub fn extent(&self) -> Option<f64> {
         match self {
@@ -270,39 +279,76 @@ impl Shape {
     }
 
     /// Largest measured distance between the triangles for a tolerance and the exact surfaces or the limit surface, in own
-    /// coordinates; 0 where those are not known.
+    /// coordinates; of a composite that of the triangles whose exact surfaces are known; 0 where none are.
     ///
     /// # Errors
     /// As [`Shape::made`].
     pub(super) fn chord_error(&self, tolerance: Tolerance) -> Result<f64, ShapeError> {
-        let made = self.made(tolerance)?;
-        if let Shape::Subdivision(cage) = self {
-            return Ok(cage.polyhedron()?.distance(&made.mesh, tolerance.chord)?);
-        }
-        let known: Option<Vec<Arc<dyn Surface>>> = made.surfaces.into_iter().collect();
-        match known {
-            Some(surfaces) if !surfaces.is_empty() => Ok(chord_error(&made.mesh, &surfaces, MEASURED_STEPS)?.maximum),
-            _ => Ok(0.0),
+        let Made { mesh, surfaces, .. } = self.made(tolerance)?;
+        match self {
+            Shape::Subdivision(cage) => Ok(cage.polyhedron()?.distance(&mesh, tolerance.chord)?),
+            Shape::Rounded(rounded) => rounded.distance(&mesh, tolerance),
+            _ => distance_to_known(mesh, &surfaces),
         }
     }
 }
 
+/// The largest distance of triangles whose exact surfaces are known from these.
+fn distance_to_known(mut mesh: Mesh, surfaces: &[Option<Arc<dyn Surface>>]) -> Result<f64, ShapeError> {
+    let known: Vec<Arc<dyn Surface>> = surfaces.iter().flatten().cloned().collect();
+    if known.is_empty() || mesh.surfaces.len() != mesh.triangles.len() {
+        return Ok(0.0);
+    }
+    // The number of each surface among those that are known.
+    let numbers: Vec<Option<u32>> = surfaces
+        .iter()
+        .scan(0, |next, surface| {
+            let number = surface.as_ref().map(|_| *next);
+            *next += u32::from(number.is_some());
+            Some(number)
+        })
+        .collect();
+    let number = |surface: &u32| numbers.get(*surface as usize).copied().flatten();
+    let is_known: Vec<bool> = mesh.surfaces.iter().map(|surface| number(surface).is_some()).collect();
+    retain(&mut mesh, &is_known);
+    mesh.surfaces = mesh.surfaces.iter().filter_map(number).collect();
+    Ok(chord_error(&mesh, &known, MEASURED_STEPS)?.maximum)
+}
+
 impl Rounded {
     fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
-        let Rounded { object, edges, radius } = self;
+        let (solid, operands) = self.solid(tolerance)?;
+        let rounded = solid.rounded(&self.choice(), self.radius, tolerance.chord).map_err(|e| self.failed(e))?;
+        let (mesh, surfaces) = rounded.into_parts();
+        let operand_of = if operands.is_empty() { Vec::new() } else { operands_beside(&mesh, operands) };
+        Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
+    }
+
+    /// How far triangles that were made are from the rounded surface.
+    fn distance(&self, mesh: &Mesh, tolerance: Tolerance) -> Result<f64, ShapeError> {
+        let (solid, _) = self.solid(tolerance)?;
+        let distance = solid.distance_of_rounded(mesh, &self.choice(), self.radius, tolerance.chord);
+        distance.map_err(|e| self.failed(e))
+    }
+
+    /// The solid with sharp edges, and the operand of each surface.
+    fn solid(&self, tolerance: Tolerance) -> Result<(ExactSolid, HashMap<u32, u32>), ShapeError> {
+        let object = &self.object;
         let chord = tolerance.chord / largest_stretch(&object.transform);
         let Made { mesh, surfaces, operand_of, .. } =
             object.placed(object.shape.made(Tolerance { chord, ..tolerance })?);
         let operands: HashMap<u32, u32> = mesh.surfaces.iter().copied().zip(operand_of).collect();
         let solid = ExactSolid::new(mesh, surfaces)
             .map_err(|source| ShapeError::Solid { object: object.name.clone(), source })?;
-        let choice = if edges.is_empty() { EdgeChoice::All } else { EdgeChoice::Nearest(edges.clone()) };
-        let rounded = solid
-            .rounded(&choice, *radius, tolerance.chord)
-            .map_err(|source| ShapeError::Rounding { object: object.name.clone(), source })?;
-        let (mesh, surfaces) = rounded.into_parts();
-        let operand_of = if operands.is_empty() { Vec::new() } else { operands_beside(&mesh, operands) };
-        Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
+        Ok((solid, operands))
+    }
+
+    fn choice(&self) -> EdgeChoice {
+        if self.edges.is_empty() { EdgeChoice::All } else { EdgeChoice::Nearest(self.edges.clone()) }
+    }
+
+    fn failed(&self, source: RoundingError) -> ShapeError {
+        ShapeError::Rounding { object: self.object.name.clone(), source }
     }
 }
 

@@ -299,6 +299,19 @@ fn rounded_objects_stay_where_they_are_and_lose_their_corners() {
         (bounds.center() - DVec3::X * 5.0).length() < 1e-12 && (bounds.size() - DVec3::splat(2.0)).length() < 1e-12
     );
     assert!(mesh.is_closed() && mesh.signed_volume() < 7.95 && mesh.signed_volume() > 7.5);
+    // What is measured is on what was made: of what was rounded, alone and in a composite, and of the part of a sphere
+    // that is left.
+    let error = |text: &str| run(text).scene.chord_error().unwrap();
+    for text in
+        ["cube(2).round_edges(0.3, #{ tolerance: 0.02 });", "cube(2).round_edges(0.3, #{ tolerance: 0.02 }) - cube(1);"]
+    {
+        let error = error(text);
+        assert!(error > 1e-3 && error < 0.02, "{text} {error}");
+    }
+    let whole = error("tolerance(0.05); sphere(1);");
+    let part = error("tolerance(0.05); sphere(1) * box(9, 9, 9).translate(4.5, 0, 0);");
+    assert!(part > 0.01 && (part / whole - 1.0).abs() < 0.02, "{part} {whole}");
+    assert_eq!(error("cube(2) - cube(1).translate(1, 1, 1);"), 0.0);
     let wide = run("cube(2).round_edges(0.6);");
     let error = wide.scene.objects[0].shape.made(Tolerance::new(0.01, 90.0)).err().unwrap().to_string();
     assert!(

@@ -18,6 +18,7 @@ pub use boolean::{Counts, Expression, Outcome};
 pub use error::{OpenLoop, SolidError};
 pub use exact::{ExactSolid, moved};
 pub use glue::GlueError;
+pub(crate) use import::retain;
 pub use mass::Mass;
 pub use primitive::{Primitive, PrimitiveError};
 pub use repair::{Repair, boundary};

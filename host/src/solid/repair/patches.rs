@@ -140,7 +140,7 @@ fn least_area(points: &[u32], places: &[DVec3], beside: &Beside) -> Vec<[u32; 3]
     // More than all areas that do not fold.
     let fold = (0..count).map(|k| at(k).distance(at((k + 1) % count))).sum::<f64>().powi(2);
     let folded = |normal: DVec3, from: usize, to: usize, size: f64| {
-        let edge = if to == from + 1 { from } else { return 0.0 };
+        let edge = if to == (from + 1) % count { from } else { return 0.0 };
         if normal.dot(normal_beside[edge]) < FOLDED * size { fold } else { 0.0 }
     };
     // The least sum for the part of the loop from one point to another, and the third corner of the triangle there.
@@ -155,8 +155,12 @@ fn least_area(points: &[u32], places: &[DVec3], beside: &Beside) -> Vec<[u32; 3]
             for between in from + 1..to {
                 let normal = (at(between) - p).cross(q - p);
                 let size = normal.length();
-                let back = folded(normal, from, between, size) + folded(normal, between, to, size);
-                let sum = least[from * count + between] + least[between * count + to] + 0.5 * size + chord + back;
+                let back = [(from, between), (between, to), (to, from)].map(|(p, q)| folded(normal, p, q, size));
+                let sum = least[from * count + between]
+                    + least[between * count + to]
+                    + 0.5 * size
+                    + chord
+                    + back.iter().sum::<f64>();
                 if sum < best.0 {
                     best = (sum, between);
                 }
@@ -246,8 +250,9 @@ mod tests {
 
     #[test]
     fn a_patch_is_not_folded_back_onto_the_triangle_beside_it() {
-        // A loop around a unit square, with an ear on its first corner that runs along the side of the square.
-        let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-0.5, 0.5]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        // A loop around a unit square, but that a point above one side is between its ends.
+        let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let places = [&places[..], &[DVec3::new(-0.1, 0.5, 0.5)]].concat();
         let boundary = BoundaryLoop(vec![0, 1, 2, 3, 4]);
         let is_ear = |corners: &&[u32; 3]| [3, 4, 0].iter().all(|corner| corners.contains(corner));
         let free = least_area(&boundary.0, &places, &Beside::new());

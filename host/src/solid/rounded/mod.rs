@@ -32,7 +32,7 @@ use std::collections::HashMap;
 use super::{ExactSolid, SolidError};
 use crate::mesh::Mesh;
 use crate::polygon::PolygonError;
-use crate::subdivision::SubdivisionError;
+use crate::subdivision::{Polyhedron, SubdivisionError};
 
 /// The most that an edge may turn, degrees: at 180 a face would lie on the other.
 const SHARPEST: f64 = 179.0;
@@ -123,6 +123,32 @@ impl ExactSolid {
     /// # Errors
     /// [`RoundingError`] if an edge is not between flat faces, or the rounding has no place.
     pub fn rounded(&self, choice: &EdgeChoice, radius: f64, tolerance: f64) -> Result<ExactSolid, RoundingError> {
+        let (polyhedron, faces, chosen) = self.net(choice, radius)?;
+        let mut mesh = without_folds(polyhedron.tessellated(tolerance)?);
+        let surfaces = surfaces::assign(&mut mesh, self, &faces, &chosen);
+        Ok(ExactSolid::new(mesh, surfaces)?)
+    }
+
+    /// How far triangles that stand for the solid with some edges rounded are from that: the Hausdorff distance, model
+    /// units, as [`Polyhedron::distance`] measures it.
+    ///
+    /// - `mesh`: the triangles, as [`ExactSolid::rounded`] made them for the choice, the radius and the tolerance.
+    ///
+    /// # Errors
+    /// As of [`ExactSolid::rounded`].
+    pub fn distance_of_rounded(
+        &self,
+        mesh: &Mesh,
+        choice: &EdgeChoice,
+        radius: f64,
+        tolerance: f64,
+    ) -> Result<f64, RoundingError> {
+        let (polyhedron, ..) = self.net(choice, radius)?;
+        Ok(polyhedron.distance(mesh, tolerance)?)
+    }
+
+    /// The polyhedron whose limit is the solid with some edges rounded, the faces, and the chosen edges.
+    fn net(&self, choice: &EdgeChoice, radius: f64) -> Result<(Polyhedron, Faces, Vec<usize>), RoundingError> {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(RoundingError::Radius { radius });
         }
@@ -156,10 +182,7 @@ impl ExactSolid {
             }
             setbacks[edge] = Some(radius * (0.5 * turn).tan());
         }
-        let polyhedron = Net::polyhedron(&faces, points, &setbacks, radius)?;
-        let mut mesh = without_folds(polyhedron.tessellated(tolerance)?);
-        let surfaces = surfaces::assign(&mut mesh, self, &faces, &chosen);
-        Ok(ExactSolid::new(mesh, surfaces)?)
+        Ok((Net::polyhedron(&faces, points, &setbacks, radius)?, faces, chosen))
     }
 }
 
