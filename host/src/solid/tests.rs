@@ -297,7 +297,7 @@ fn what_is_buried_is_not_missed() {
 
 #[test]
 fn results_serve_as_operands() {
-    let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(31);
+    let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(32);
     for round in 0..14 {
         // Cubes that nearly coincide, turned by little or by much.
         let power = [-12.0, -15.0, -9.0, -14.0, -6.0, -1.0, -15.5][round % 7];

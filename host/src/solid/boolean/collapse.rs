@@ -46,14 +46,16 @@ pub fn collapse(operands: &Operands, outcome: &mut Outcome, made: &Made) {
             break;
         }
         let (chosen, mut next) = work.independent(proposed);
-        let is_fine = work.are_fine(&chosen);
-        for (collapse, is_fine) in chosen.into_iter().zip(is_fine) {
+        let verdicts = work.verdicts(&chosen);
+        for (collapse, verdict) in chosen.into_iter().zip(verdicts) {
             next.push(collapse.vertex);
-            if is_fine {
-                next.extend(collapse.stay.iter().flat_map(|(_, corners)| corners));
-                work.apply(&collapse);
-            } else {
-                work.refused.insert([collapse.vertex, collapse.onto]);
+            match verdict {
+                Verdict::Fine => {
+                    next.extend(collapse.stay.iter().flat_map(|(_, corners)| corners));
+                    work.apply(&collapse);
+                }
+                Verdict::Waits => {}
+                Verdict::Refused => work.refused.entry(collapse.vertex).or_default().push(collapse.onto),
             }
         }
         next.sort_unstable();
@@ -77,7 +79,8 @@ struct Collapsing<'a> {
     triangles: Vec<u32>,
     /// Other triangles than in that list, by vertex.
     changed: FxHashMap<u32, Vec<u32>>,
-    refused: FxHashSet<[u32; 2]>,
+    /// Neighbours by vertex onto which it cannot be moved as long as all stays as it is.
+    refused: FxHashMap<u32, Vec<u32>>,
 }
 
 impl<'a> Collapsing<'a> {
@@ -95,7 +98,7 @@ impl<'a> Collapsing<'a> {
             *place += 1;
         }
         let is_gone = vec![false; new.len()];
-        let (changed, refused) = (FxHashMap::default(), FxHashSet::default());
+        let (changed, refused) = (FxHashMap::default(), FxHashMap::default());
         Collapsing { operands, outcome, made, is_gone, firsts, triangles, changed, refused }
     }
 
@@ -119,7 +122,8 @@ impl<'a> Collapsing<'a> {
         let propose = |&vertex: &u32| {
             let around = self.around(vertex);
             let fan = judge.may_collapse(vertex, around).then(|| judge.fan(vertex, around))??;
-            judge.collapse(fan, |onto| self.refused.contains(&[vertex, onto]))
+            let refused = self.refused.get(&vertex).map_or(&[][..], Vec::as_slice);
+            judge.collapse(fan, |onto| refused.contains(&onto))
         };
         vertices.par_iter().with_min_len(256).filter_map(propose).collect()
     }
@@ -145,7 +149,7 @@ impl<'a> Collapsing<'a> {
     }
 
     /// Whether each collapse leaves the surface simple, others of them done or not.
-    fn are_fine(&self, chosen: &[Collapse]) -> Vec<bool> {
+    fn verdicts(&self, chosen: &[Collapse]) -> Vec<Verdict> {
         let mesh = &self.outcome.mesh;
         let first = self.made.first;
         let mut new: Vec<New> = Vec::new();
@@ -163,7 +167,7 @@ impl<'a> Collapsing<'a> {
         let corners: Vec<DVec3> = new.iter().flat_map(New::bounds).collect();
         let boxes: Vec<[u32; 3]> = (0..new.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
         let sorted = Sorted::new(&corners, &boxes);
-        let mut is_fine = vec![true; chosen.len()];
+        let mut verdicts = vec![Verdict::Fine; chosen.len()];
         let own = sorted.pairs_within(|a, b| {
             let (one, two) = (&new[a as usize], &new[b as usize]);
             one.meets(two.tile.tile()) || two.meets(one.tile.tile())
@@ -171,20 +175,20 @@ impl<'a> Collapsing<'a> {
         // The later one waits.
         for [a, b] in own {
             let [a, b] = [a, b].map(|k| new[k as usize].collapse as usize);
-            is_fine[a.max(b)] = false;
+            verdicts[a.max(b)] = if a == b { Verdict::Refused } else { Verdict::Waits };
         }
         let alive: Vec<u32> = (0..self.is_gone.len() as u32).filter(|k| !self.is_gone[*k as usize]).collect();
         let made: Vec<[u32; 3]> = alive.iter().map(|k| mesh.triangles[first + *k as usize]).collect();
         let others = Sorted::new(&mesh.vertices, &made);
         let mut refuse = |pairs: Vec<[u32; 2]>| {
-            pairs.into_iter().for_each(|[a, _]| is_fine[new[a as usize].collapse as usize] = false);
+            pairs.into_iter().for_each(|[a, _]| verdicts[new[a as usize].collapse as usize] = Verdict::Refused);
         };
         refuse(sorted.pairs_if(&others.all(), |a, b| {
             let one = &new[a as usize];
             let is_own = of_triangle.get(&(first as u32 + alive[b as usize])) == Some(&one.collapse);
             !is_own && one.meets(&self.tile(made[b as usize]))
         }));
-        let Some(kept) = &self.made.kept else { return is_fine };
+        let Some(kept) = &self.made.kept else { return verdicts };
         for operand in 0..self.operands.meshes().len() as u32 {
             let mesh = self.operands.meshes()[operand as usize];
             let [first_vertex, first] = [self.operands.first_vertex(operand), self.operands.first_triangle(operand)];
@@ -195,7 +199,7 @@ impl<'a> Collapsing<'a> {
                 new[a as usize].meets(&Tile { names: mesh.triangles[b as usize].map(name), corners })
             }));
         }
-        is_fine
+        verdicts
     }
 
     fn apply(&mut self, collapse: &Collapse) {
@@ -227,6 +231,7 @@ impl<'a> Collapsing<'a> {
                 around.extend(collapse.stay.iter().map(|(triangle, _)| *triangle));
             }
             self.changed.insert(vertex, around);
+            self.refused.remove(&vertex);
         }
         self.changed.insert(collapse.vertex, Vec::new());
     }
@@ -260,6 +265,17 @@ fn without_unused(vertices: &mut Vec<DVec3>, triangles: &mut [[u32; 3]]) {
     triangles.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
     let mut used = is_used.iter();
     vertices.retain(|_| *used.next().unwrap_or(&true));
+}
+
+/// What becomes of a collapse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verdict {
+    /// It is done.
+    Fine,
+    /// It may be done when others are.
+    Waits,
+    /// It cannot be done as all is.
+    Refused,
 }
 
 /// A triangle as it is after a collapse.

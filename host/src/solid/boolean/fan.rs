@@ -108,19 +108,18 @@ impl Judge<'_> {
             let normal = (b - a).cross(c - a);
             size = size_of([a, b, c].into_iter(), size);
             sources[count] = source;
-            planes[count] = (a, normal, normal.length_squared());
+            // The normal of a long and thin face is known badly.
+            let spread = (b - a).length() * (c - a).length();
+            planes[count] = (a, normal, normal.length() * 2.0 * UNITS + spread * 16.0);
             count += 1;
         }
-        // Twice as far as needed, for the roundings.
-        let reach = 2.0 * UNITS * f64::EPSILON * size;
         triangles.iter().any(|&triangle| {
             let corners = self.mesh().triangles[triangle as usize];
             let k = corners.iter().position(|corner| *corner == vertex).unwrap_or(0);
             let onto = self.at(corners[(k + 1) % 3]);
-            planes[..count].iter().all(|(a, normal, square)| {
-                let height = (onto - *a).dot(*normal);
-                height * height <= reach * reach * square
-            })
+            let is_near =
+                |(a, normal, most): &(DVec3, DVec3, f64)| (onto - *a).dot(*normal).abs() <= f64::EPSILON * size * most;
+            planes[..count].iter().all(is_near)
         })
     }
 
@@ -185,9 +184,15 @@ impl Judge<'_> {
             .collect();
         let around = fan.leaves().map(|leaf| self.at(leaf.second)).chain([self.at(fan.vertex)]);
         let reach = UNITS * f64::EPSILON * size_of(around.chain(planes.iter().copied().flatten()), 0.0);
+        // What lies exactly in a face that is square to an axis stays there.
+        let own = self.at(fan.vertex);
+        let is_level = |[a, b, c]: &[DVec3; 3]| (0..3).any(|k| [a[k], b[k], c[k]] == [own[k]; 3]);
+        let of_plane = |plane: &[DVec3; 3]| if is_level(plane) { 0.0 } else { reach };
+        let reaches: Vec<f64> = planes.iter().map(of_plane).collect();
         let is_near = |onto: &u32| {
             let is_in = |disk: &Vec<Leaf>| disk.iter().any(|leaf| leaf.second == *onto);
-            fan.disks[1..].iter().all(is_in) && planes.iter().all(|plane| is_on_plane(*plane, self.at(*onto), reach))
+            fan.disks[1..].iter().all(is_in)
+                && planes.iter().zip(&reaches).all(|(plane, reach)| is_on_plane(*plane, self.at(*onto), *reach))
         };
         let near: Vec<u32> = fan.disks[0].iter().map(|leaf| leaf.second).filter(is_near).collect();
         if near.is_empty() {
@@ -224,8 +229,20 @@ impl Judge<'_> {
         (!has_normals || mesh.corner_normals[one][a].distance(mesh.corner_normals[two][b]) < ALIKE)
             && (!has_parameters || {
                 let [p, q] = [mesh.corner_parameters[one][a], mesh.corner_parameters[two][b]];
-                p.distance(q) <= ALIKE * (1.0 + p.length())
+                p.distance(q) <= ALIKE * (1.0 + p.length()) + self.doubt(one) + self.doubt(two)
             })
+    }
+
+    /// What roundings of corners may make of the parameters in a triangle: much where it is part of a long and thin one.
+    fn doubt(&self, triangle: usize) -> f64 {
+        let [operand, source] = self.outcome.sources[triangle];
+        let corners = self.source(triangle as u32);
+        let [a, b, c] = corners;
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let [p, q, r] = self.operands.meshes()[operand as usize].corner_parameters[source as usize];
+        let span = p.distance(q).max(q.distance(r)).max(r.distance(p));
+        let height = (b - a).cross(c - a).length() / longest;
+        UNITS * f64::EPSILON * size_of(corners.into_iter(), 0.0) * span / height
     }
 
     /// Whether the borders in a disk stay where they are if the vertex is moved onto neighbour `k`.
@@ -265,7 +282,7 @@ impl Judge<'_> {
                 let Leaf { triangle, second, is_border } = leaf(step);
                 borders += usize::from(is_border);
                 let corners = [onto, second, leaf(step + 1).second];
-                worst = worst.min(self.shape(fan, triangle, corners)?);
+                worst = worst.min(self.shape(fan, triangle, corners, is_short)?);
                 // What can be reached from one of those that go without crossing a border is like that one.
                 like.push(match [borders == 0, borders == all] {
                     [true, true] => Some(ends[usize::from(2 * step > count)]),
@@ -279,15 +296,22 @@ impl Judge<'_> {
         Some((worst, Collapse { vertex: fan.vertex, onto, gone, stay, like }))
     }
 
-    /// How well shaped a triangle is with other corners; `None` if it faces another way then, or becomes thin.
-    fn shape(&self, fan: &Fan, triangle: u32, corners: [u32; 3]) -> Option<f64> {
+    /// How well shaped a triangle is with other corners; `None` if it has no area then, faces another way, or becomes thin.
+    ///
+    /// - `is_short`: whether the vertex is moved by roundings only, for which what is thin may stay so.
+    fn shape(&self, fan: &Fan, triangle: u32, corners: [u32; 3], is_short: bool) -> Option<f64> {
+        let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| self.at(vertex)) }.with_plane();
+        let new = tile(corners);
+        if new.is_thin(THIN) {
+            // Which way such a one faces is a matter of roundings.
+            let was_thin = || tile(self.mesh().triangles[triangle as usize]).is_thin(THIN);
+            return (is_short && !new.is_flat() && was_thin()).then_some(0.0);
+        }
         let normal = self.normal(fan, triangle)?;
         let [a, b, c] = corners.map(|corner| self.at(corner));
         let area = (b - a).cross(c - a);
         let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-        let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| self.at(vertex)) }.with_plane();
-        let is_fine = area.dot(normal) > 0.5 * area.length() * normal.length() && !tile(corners).is_thin(THIN);
-        is_fine.then_some(area.length() / longest)
+        (area.dot(normal) > 0.5 * area.length() * normal.length()).then_some(area.length() / longest)
     }
 
     /// The normal of the face that a triangle is part of, as the triangle is turned, as far as that is known.
