@@ -11,6 +11,8 @@ use glam::DVec3;
 
 /// Part of the size of a mesh within which a point counts as one on a surface, when it is asked what is around it.
 const NEAR: f64 = 1e-9;
+/// Triangles at an edge lie on each other if their angles differ by less, radians.
+const SAME_ANGLE: f64 = 1e-9;
 
 /// The bodies of a closed surface: triangles that hang together by edges. Where more than two share an edge, those belong
 /// together that have the inside of one body between them.
@@ -185,9 +187,6 @@ fn join_around(mesh: &Mesh, around: &[(u64, u32, u32)], joined: &mut UnionFind) 
         left = unmatched;
     }
 }
-
-/// Triangles at an edge lie on each other if their angles differ by less, radians.
-const SAME_ANGLE: f64 = 1e-9;
 
 /// A triangle at an edge.
 #[derive(Clone, Copy)]

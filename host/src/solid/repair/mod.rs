@@ -100,6 +100,8 @@ impl Solid {
     }
 }
 
+/// Makes a solid of a mesh that is on a lattice and is none.
+///
 /// - `is_two_sided`: whether of triangles with the same corners one is enough, wherever they are.
 fn repaired_on_lattice(mesh: Mesh, is_two_sided: bool) -> Result<(Solid, Repair), SolidError> {
     let mut repair = Repair::default();
@@ -138,11 +140,11 @@ pub fn boundary(mesh: &Mesh) -> Vec<BoundaryLoop> {
 fn turn_bodies(mesh: &mut Mesh) -> usize {
     let mut bodies = Bodies::of(mesh);
     let is_inside_out = (0..bodies.count()).map(|body| bodies.volume(body)).sum::<f64>() < 0.0;
-    let mut is_turned = vec![is_inside_out; bodies.count()];
     if is_inside_out {
         (0..mesh.triangles.len()).for_each(|triangle| turn(mesh, triangle));
         bodies = Bodies::of(mesh);
     }
+    let mut is_turned = vec![is_inside_out; bodies.count()];
     let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
     for body in bodies.inside_out(mesh, &sorted) {
         is_turned[body] ^= true;
