@@ -192,11 +192,12 @@ impl<'a> Collapsing<'a> {
         for operand in 0..self.operands.meshes().len() as u32 {
             let mesh = self.operands.meshes()[operand as usize];
             let [first_vertex, first] = [self.operands.first_vertex(operand), self.operands.first_triangle(operand)];
-            let near = self.operands.sorted(operand).part(|triangle| kept.is_kept[(first + triangle) as usize]);
-            refuse(sorted.pairs_if(&near, |a, b| {
+            let all = self.operands.sorted(operand).all();
+            refuse(sorted.pairs_if(&all, |a, b| {
                 let name = |vertex: u32| kept.of_vertex[(first_vertex + vertex) as usize];
                 let corners = mesh.corners(b as usize);
-                new[a as usize].meets(&Tile { names: mesh.triangles[b as usize].map(name), corners })
+                kept.is_kept[(first + b) as usize]
+                    && new[a as usize].meets(&Tile { names: mesh.triangles[b as usize].map(name), corners })
             }));
         }
         verdicts
