@@ -121,7 +121,7 @@ fn row(strokes: &[Stroke], pixels: f32, size: u32, drawer: &Drawer) {
     );
 }
 
-/// The same for the peer.
+/// A row of the table for the peer, which draws the strokes as Wu does.
 fn wu_row(strokes: &[Stroke], pixels: f32, size: u32) {
     let mut rgba = vec![0; 4 * (size * size) as usize];
     let time = best(|| {

@@ -118,7 +118,7 @@ struct Kind {
     constant: Literal,
     /// Message `i` at the start of the chain.
     start: fn(i: u64) -> Value,
-    /// The same at the end of a chain of so many functions.
+    /// Message `i` at the end of a chain of so many functions.
     end: fn(i: u64, length: u32) -> Value,
 }
 

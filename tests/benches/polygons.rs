@@ -48,9 +48,9 @@ fn main() {
 
 struct Polygon {
     contours: Vec<Vec<DVec2>>,
-    /// The same for `i_triangle`.
+    /// The contours as `i_triangle` takes them.
     pairs: Vec<Vec<[f64; 2]>>,
-    /// The same for `earcut`.
+    /// The points of all contours as `earcut` takes them.
     flat: Vec<[f64; 2]>,
     holes: Vec<u32>,
     area: f64,

@@ -38,7 +38,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mesh = &grouped.mesh;
     let verdict = Solid::new(mesh.clone());
     let loops = solid::boundary(mesh);
-    let repaired = destination.is_some().then(|| Solid::repaired(mesh.clone()));
+    let repaired = destination.is_some().then(|| match &verdict {
+        Ok(solid) => Ok((solid.clone(), Repair::default())),
+        Err(problem) => Solid::repaired_of(mesh.clone(), problem),
+    });
     if arguments.json {
         say::report(as_json(mesh, &loops, &verdict, repaired.as_ref()));
     } else {

@@ -1,4 +1,4 @@
-//! Closing the holes of a mesh.
+//! Closing the holes of a mesh by fans, for tests of what surfaces enclose.
 
 use super::{BoundaryLoop, Mesh};
 use glam::DVec3;

@@ -13,6 +13,7 @@ mod error;
 mod file;
 mod gltf;
 mod groups;
+#[cfg(test)]
 mod holes;
 mod json_path;
 mod measure;

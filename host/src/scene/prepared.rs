@@ -326,19 +326,16 @@ impl Object {
     /// objects. Of a composite, its own triangles are measured, and the operands whose surfaces are limits.
     pub(super) fn chord_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
         let stretch = largest_stretch(&self.transform);
-        let mut limits = 0.0;
-        if let Shape::Composite(composite) = &self.shape {
-            let own = self.own_chord(scene_tolerance);
-            for operand in &composite.operands {
-                limits = f64::max(limits, operand.limit_error(own, angle)?);
-            }
-        }
+        let limits = match self.shape {
+            Shape::Composite(_) => self.limit_error(scene_tolerance, angle)?,
+            _ => 0.0,
+        };
         let tolerance = self.own_tolerance(scene_tolerance, angle);
         let error = self.shape.chord_error(tolerance).map_err(|source| self.failed(source))?;
-        Ok(error.max(limits) * stretch)
+        Ok((error * stretch).max(limits))
     }
 
-    /// Largest distance between limit surfaces within an operand and the triangles that it is made of; scene units.
+    /// Largest distance between limit surfaces, also those of operands, and the triangles that are made for them; scene units.
     fn limit_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
         match &self.shape {
             Shape::Rounded(_) | Shape::Subdivision(_) => self.chord_error(scene_tolerance, angle),

@@ -109,7 +109,7 @@ impl Machine {
         self.update_picture_of(if is_looked_at { MAX_KEPT } else { ALWAYS_DRAWN });
     }
 
-    /// The same with all strokes, for somebody who looks.
+    /// Draws the picture with all its strokes, for somebody who looks.
     pub(super) fn draw_picture(&mut self) {
         self.update_picture_of(MAX_KEPT);
     }

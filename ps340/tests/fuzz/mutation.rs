@@ -196,7 +196,7 @@ fn swap_statements(chance: &mut Chance, input: &mut Vec<u8>) {
     *input = pieces.concat();
 }
 
-/// The same with the checks of long packets made right, so that a change reaches their records.
+/// Input with the checks of its long packets made right, so that a change reaches their records.
 fn with_good_checks(input: &[u8]) -> Vec<u8> {
     let mut out = Vec::with_capacity(input.len());
     let mut rest = input;

@@ -18,6 +18,7 @@ use super::operand::Operands;
 use super::overlap::{PlaneTile, Tile, overlap};
 use super::result::Outcome;
 use super::rounding::{Made, THIN};
+use crate::mesh::bits;
 use crate::numeric::implicit::side;
 use crate::octree::Sorted;
 use crate::solid::import::retain;
@@ -30,9 +31,9 @@ const ROUNDS: usize = 64;
 
 /// What was made of a result of which no more is known than where its vertices are: all but those of operands.
 pub fn all_made(operands: &Operands, outcome: &Outcome) -> Made {
-    let bits = |at: &DVec3| at.to_array().map(|x| (x + 0.0).to_bits());
-    let given: FxHashSet<[u64; 3]> = operands.meshes().iter().flat_map(|mesh| &mesh.vertices).map(bits).collect();
-    let is_made = outcome.mesh.vertices.iter().map(|at| !given.contains(&bits(at))).collect();
+    let given: FxHashSet<[u64; 3]> =
+        operands.meshes().iter().flat_map(|mesh| &mesh.vertices).map(|at| bits(*at)).collect();
+    let is_made = outcome.mesh.vertices.iter().map(|at| !given.contains(&bits(*at))).collect();
     Made { first: 0, first_vertex: 0, is_made, kept: None }
 }
 
@@ -175,7 +176,8 @@ impl<'a> Collapsing<'a> {
         // The later one waits.
         for [a, b] in own {
             let [a, b] = [a, b].map(|k| new[k as usize].collapse as usize);
-            verdicts[a.max(b)] = if a == b { Verdict::Refused } else { Verdict::Waits };
+            let verdict = &mut verdicts[a.max(b)];
+            *verdict = if a == b { Verdict::Refused } else { Verdict::Waits.max(*verdict) };
         }
         let alive: Vec<u32> = (0..self.is_gone.len() as u32).filter(|k| !self.is_gone[*k as usize]).collect();
         let made: Vec<[u32; 3]> = alive.iter().map(|k| mesh.triangles[first + *k as usize]).collect();
@@ -269,7 +271,7 @@ fn without_unused(vertices: &mut Vec<DVec3>, triangles: &mut [[u32; 3]]) {
 }
 
 /// What becomes of a collapse.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
     /// It is done.
     Fine,

@@ -89,14 +89,25 @@ impl Solid {
     pub fn repaired(mesh: Mesh) -> Result<(Solid, Repair), SolidError> {
         match Solid::new(mesh.clone()) {
             Ok(solid) => Ok((solid, Repair::default())),
-            // Nothing helps these.
-            Err(error @ (SolidError::Mesh(_) | SolidError::Tangled { .. })) => Err(error),
-            // Each triangle may be there twice, to be seen from both sides.
-            Err(SolidError::BoundsNothing) => {
-                on_lattice(mesh, |mesh| repaired_on_lattice(mesh, true), |repair, _| repair)
-            }
-            Err(_) => on_lattice(mesh, |mesh| repaired_on_lattice(mesh, false), |repair, _| repair),
+            Err(problem) => Solid::repaired_of(mesh, &problem),
         }
+    }
+
+    /// Makes a solid of a mesh that is none, as [`Solid::repaired`] does.
+    ///
+    /// - `problem`: what [`Solid::new`] says of the mesh.
+    ///
+    /// # Errors
+    /// As of [`Solid::repaired`].
+    pub fn repaired_of(mesh: Mesh, problem: &SolidError) -> Result<(Solid, Repair), SolidError> {
+        let is_two_sided = match problem {
+            // Nothing helps these.
+            SolidError::Mesh(_) | SolidError::Tangled { .. } => return Err(problem.clone()),
+            // Each triangle may be there twice, to be seen from both sides.
+            SolidError::BoundsNothing => true,
+            _ => false,
+        };
+        on_lattice(mesh, |mesh| repaired_on_lattice(mesh, is_two_sided), |repair, _| repair)
     }
 }
 

@@ -72,8 +72,7 @@ impl LoopPlane {
     }
 
     fn axis(&self) -> usize {
-        let normal = self.normal.abs();
-        if normal.max_element() == normal.x { 0 } else { if normal.y >= normal.z { 1 } else { 2 } }
+        self.normal.abs().max_position()
     }
 }
 
