@@ -29,6 +29,7 @@ impl Plane {
     }
 
     /// On which side a point lies, as [`side`] tells; `None` where roundings leave a doubt.
+    #[inline]
     pub fn rounded_side(&self, point: DVec3) -> Option<f64> {
         let offset = point - self.corners[0];
         if let Some(axis) = self.level {
@@ -46,6 +47,7 @@ impl Plane {
 
     /// Which way the points turn, seen along an axis with the other two in cyclic order: 1.0 counter-clockwise, -1.0
     /// clockwise, 0.0 where roundings leave a doubt.
+    #[inline]
     pub fn facing(&self, axis: usize) -> f64 {
         let is_clear = self.normal[axis].abs() > self.sizes[axis] * (4.0 * f64::EPSILON) + 1e-300;
         if is_clear { self.normal[axis].signum() } else { 0.0 }

@@ -121,19 +121,20 @@ impl Sorted {
             let [a, b, c] = [vertices[a as usize], vertices[b as usize], vertices[c as usize]];
             Bounds { min: a.min(b).min(c), max: a.max(b).max(c) }
         };
-        let all = Bounds::of(vertices.iter().copied());
+        let bounds: Vec<Bounds> = triangles.par_iter().with_min_len(4096).map(bounds).collect();
+        let all = bounds.iter().copied().fold(Bounds::EMPTY, Bounds::union);
         let cube = Cube::around(all.min, all.max);
-        let keys: Vec<u64> = triangles
+        let keys: Vec<u64> = bounds
             .par_iter()
             .enumerate()
             .with_min_len(4096)
-            .map(|(index, triangle)| {
-                let voxel = cube.voxel(bounds(triangle).center()).unwrap_or([(1 << MAX_DEPTH) - 1; 3]);
+            .map(|(index, bounds)| {
+                let voxel = cube.voxel(bounds.center()).unwrap_or([(1 << MAX_DEPTH) - 1; 3]);
                 (LocationalCode::containing(voxel, DIGITS).bits() >> (64 - 3 * DIGITS)) << 32 | index as u64
             })
             .collect();
         let order: Vec<u32> = radix_sorted(keys).into_iter().map(|key| key as u32).collect();
-        let boxes = order.par_iter().with_min_len(4096).map(|&t| bounds(&triangles[t as usize])).collect();
+        let boxes = order.par_iter().with_min_len(4096).map(|&triangle| bounds[triangle as usize]).collect();
         Sorted::filed(order, boxes)
     }
 
@@ -160,6 +161,11 @@ impl Sorted {
             levels.push(groups.par_chunks(FAN).with_min_len(1024).map(around).collect());
         }
         Sorted { order, levels }
+    }
+
+    /// How many triangles there are.
+    pub fn count(&self) -> usize {
+        self.order.len()
     }
 
     /// The box around all triangles; empty without any.
@@ -235,16 +241,26 @@ impl Sorted {
 
     /// Calls for every triangle whose box touches another.
     pub fn touching(&self, near: Bounds, mut visit: impl FnMut(u32)) {
+        self.touching_boxes(near, |triangle, _| visit(triangle));
+    }
+
+    /// Calls for every triangle whose box touches another, with that box.
+    pub fn touching_boxes(&self, near: Bounds, mut visit: impl FnMut(u32, Bounds)) {
         if let Some(top) = self.top() {
             self.descend_touching(top, near, &mut visit);
         }
     }
 
-    fn descend_touching(&self, place: Place, near: Bounds, visit: &mut impl FnMut(u32)) {
-        if place.level == 0 {
-            visit(self.order[place.index as usize]);
-        } else {
-            self.touching_under(place, near).for_each(|place| self.descend_touching(place, near, visit));
+    /// - `place`: above the boxes of triangles.
+    fn descend_touching(&self, place: Place, near: Bounds, visit: &mut impl FnMut(u32, Bounds)) {
+        let group = self.under(place);
+        for lane in group.touching(near, ALL) {
+            let below = place.under(lane);
+            if below.level == 0 {
+                visit(self.order[below.index as usize], group.at(lane));
+            } else {
+                self.descend_touching(below, near, visit);
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde_json::Value;
 
+use super::super::file::strip;
 use super::super::groups::{Grouped, Groups, Look};
 use super::super::{Fault, Mesh, Place, Problem};
 use super::accessor::Buffers;
@@ -234,7 +235,7 @@ impl<'a> Scene<'a> {
         }
         let triangles: Vec<[u32; 3]> = match mode {
             4 => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-            5 => indices.windows(3).enumerate().map(|(k, t)| [t[0], t[1 + k % 2], t[2 - k % 2]]).collect(),
+            5 => strip(&indices).collect(),
             _ => indices.windows(2).skip(1).map(|pair| [pair[0], pair[1], indices[0]]).collect(),
         };
         let mut mesh = Mesh { vertices, triangles, ..Mesh::default() };

@@ -1,10 +1,10 @@
 //! Stanford polygon files: a header that describes tables, then the tables as text or binary.
 //!
-//! Read are the elements `vertex` (x y z; nx ny nz; s t, u v or texture_u texture_v) and `face` (vertex_indices or
-//! vertex_index); all others are skipped. The property `surface` of a face is the number of its group; comments
-//! `surface NUMBER NAME` name the groups, in order from 0.
+//! Read are the elements `vertex` (x y z; nx ny nz; s t, u v or texture_u texture_v), `face` (vertex_indices or
+//! vertex_index) and `tristrips` (the same; -1 ends a strip); all others are skipped. The property `surface` of a face is
+//! the number of its group; comments `surface NUMBER NAME` name the groups, in order from 0.
 //!
-//! Not modelled: triangle strips, colours, materials.
+//! Not modelled: colours, materials.
 //!
 //! # Source
 //! Greg Turk, The PLY Polygon File Format, 1994.
@@ -16,9 +16,9 @@ use glam::{DVec2, DVec3};
 
 use self::header::{Element, Header, Property};
 use self::table::{Binary, Table, Text};
-use super::file::{MAX_COUNT, fan};
+use super::file::{MAX_COUNT, fan, strip};
 use super::groups::{Grouped, has_groups, name_of};
-use super::{Fault, Mesh, Problem};
+use super::{Fault, Mesh, Place, Problem};
 
 /// The encoding of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +59,7 @@ fn tables<T: Table>(header: &Header, mut table: T) -> Result<Grouped, Fault> {
         match element.name.as_str() {
             "vertex" => content.read_vertices(element, &mut table)?,
             "face" => content.read_faces(element, &mut table)?,
+            "tristrips" => content.read_strips(element, &mut table)?,
             _ => skip(element, &mut table)?,
         }
     }
@@ -130,7 +131,6 @@ impl Content {
     }
 
     fn read_faces<T: Table>(&mut self, element: &Element, table: &mut T) -> Result<(), Fault> {
-        let is_indices = |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
         let mut polygon: Vec<u32> = Vec::new();
         for _ in 0..element.count {
             let (first, mut surface) = (self.triangles.len(), None);
@@ -139,7 +139,7 @@ impl Content {
                     surface = Some(index(table, property, u32::MAX as usize, "surfaces")?);
                     continue;
                 }
-                let (true, Some(length)) = (is_indices(property), property.length) else {
+                let Some(length) = length_of_indices(property) else {
                     table.skip(property)?;
                     continue;
                 };
@@ -157,6 +157,31 @@ impl Content {
             if let Some(surface) = surface {
                 self.surfaces.resize(first, 0);
                 self.surfaces.resize(self.triangles.len(), surface);
+            }
+        }
+        Ok(())
+    }
+
+    fn read_strips<T: Table>(&mut self, element: &Element, table: &mut T) -> Result<(), Fault> {
+        let mut corners: Vec<u32> = Vec::new();
+        for _ in 0..element.count {
+            for property in &element.properties {
+                let Some(length) = length_of_indices(property) else {
+                    table.skip(property)?;
+                    continue;
+                };
+                corners.clear();
+                for _ in 0..table.count(length)? {
+                    let place = table.place();
+                    let number = table.number(property.scalar)?;
+                    if number == -1.0 {
+                        self.triangles.extend(strip(&corners));
+                        corners.clear();
+                    } else {
+                        corners.push(as_index(number, place, self.positions.len(), "vertices")?);
+                    }
+                }
+                self.triangles.extend(strip(&corners));
             }
         }
         Ok(())
@@ -180,14 +205,22 @@ impl Content {
     }
 }
 
+/// The type of the length of a list of vertices; `None` for another property.
+fn length_of_indices(property: &Property) -> Option<Scalar> {
+    property.length.filter(|_| matches!(property.name.as_str(), "vertex_indices" | "vertex_index"))
+}
+
 /// A whole number from 0; `count` entries of `what` are known for the message.
 fn index<T: Table>(table: &mut T, property: &Property, count: usize, what: &'static str) -> Result<u32, Fault> {
     let place = table.place();
-    let index = table.number(property.scalar)?;
-    if !(0.0..=f64::from(u32::MAX)).contains(&index) || index.fract() != 0.0 {
-        return Err(place.fault(Problem::Index { index: index as i64, count, table: what }));
+    as_index(table.number(property.scalar)?, place, count, what)
+}
+
+fn as_index(number: f64, place: Place, count: usize, what: &'static str) -> Result<u32, Fault> {
+    if !(0.0..=f64::from(u32::MAX)).contains(&number) || number.fract() != 0.0 {
+        return Err(place.fault(Problem::Index { index: number as i64, count, table: what }));
     }
-    Ok(index as u32)
+    Ok(number as u32)
 }
 
 /// A table per vertex as a table per corner; empty unless all `vertices` have an entry.
@@ -254,6 +287,20 @@ mod tests {
         }
         assert_eq!(parse(&little).unwrap().mesh, tetrahedron());
         assert_eq!(parse(&big).unwrap().mesh, tetrahedron());
+    }
+
+    #[test]
+    fn strips_are_read() {
+        // Two strips in one list, the second with a corner twice, which turns what follows.
+        let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+            element tristrips 2\nproperty list int int vertex_indices\nend_header\n\
+            0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 -1 1 3 2 2\n3 2 3 4\n";
+        let triangles = [[0, 1, 2], [1, 3, 2], [1, 3, 2], [2, 3, 4]];
+        assert_eq!(parse(text.as_bytes()).unwrap().mesh.triangles, triangles);
+        let fault = |to: &str| parse(text.replace("3 2 3 4", to).as_bytes()).unwrap_err().to_string();
+        assert_eq!(fault("3 2 3 -2"), "line 16: index -2 is outside the 5 vertices");
+        assert_eq!(fault("3 2 3 5"), "line 17: index 5 is outside the 5 vertices");
+        assert_eq!(fault("4 2 3 4"), "line 17: ends where a number is expected");
     }
 
     #[test]

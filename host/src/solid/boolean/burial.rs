@@ -92,8 +92,8 @@ fn buried_of(operands: &Operands, cores: &[Option<Core>], mut standing: Standing
     for other in operands.near(operand) {
         standing.set(other, None);
         let Some(core) = cores[other as usize].as_ref().filter(|core| !core.bounds().is_empty()) else { continue };
-        sorted.touching(core.bounds(), |triangle| {
-            if core.holds(Bounds::of(mesh.corners(triangle as usize))) {
+        sorted.touching_boxes(core.bounds(), |triangle, bounds| {
+            if core.holds(bounds) {
                 held.push((triangle, other));
             }
         });

@@ -4,7 +4,7 @@
 //! one on the line that divides a flat side of which the corners are rounded, or one a rounding beside another. All faces
 //! that meet in it pass through the neighbour too, but for a few units in the last place; and no triangle that is changed
 //! has more in common with others than before, nor is there anything between the old surface and the new one. That is
-//! looked at exactly. Points of operands stay.
+//! looked at exactly. Corners of triangles that stayed whole stay.
 //!
 //! # Source
 //! Hoppe 1996 for the collapse of edges.
@@ -15,29 +15,37 @@
 
 use super::fan::{Collapse, Judge};
 use super::operand::Operands;
-use super::overlap::{PlaneTile, Tile, overlap};
+use super::overlap::{PlaneTile, Tile, nearly_overlap};
 use super::result::Outcome;
-use super::rounding::{Made, THIN};
-use crate::mesh::bits;
+use super::rounding::Made;
+use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::side;
 use crate::octree::Sorted;
 use crate::solid::import::retain;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::OnceLock;
 
 /// Rounds at most.
 const ROUNDS: usize = 64;
+/// Triangles that are changed in a round, up to which a look at all is faster than sorting them.
+const FEW: usize = 32;
 
-/// What was made of a result of which no more is known than where its vertices are: all but those of operands.
+/// What was made of a result of which no more is known than of which triangles its triangles are part.
 pub fn all_made(operands: &Operands, outcome: &Outcome) -> Made {
-    let given: FxHashSet<[u64; 3]> =
-        operands.meshes().iter().flat_map(|mesh| &mesh.vertices).map(|at| bits(*at)).collect();
-    let is_made = outcome.mesh.vertices.iter().map(|at| !given.contains(&bits(*at))).collect();
-    Made { first: 0, first_vertex: 0, is_made, kept: None }
+    let mesh = &outcome.mesh;
+    let mut is_free = vec![true; mesh.vertices.len()];
+    for (triangle, [operand, source]) in outcome.sources.iter().enumerate() {
+        let given = operands.meshes()[*operand as usize].corners(*source as usize);
+        if mesh.corners(triangle).iter().all(|corner| given.contains(corner)) {
+            mesh.triangles[triangle].into_iter().for_each(|vertex| is_free[vertex as usize] = false);
+        }
+    }
+    Made { first: 0, first_vertex: 0, is_free, kept: None }
 }
 
-/// Leaves out points that were made by the operation and that no face needs.
+/// Leaves out points of triangles that were made by the operation which no face needs.
 pub fn collapse(operands: &Operands, outcome: &mut Outcome, made: &Made) {
     let mut work = Collapsing::new(operands, outcome, made);
     let mut open: Vec<u32> = work.candidates();
@@ -67,16 +75,31 @@ pub fn collapse(operands: &Operands, outcome: &mut Outcome, made: &Made) {
     work.finish();
 }
 
+/// What became of a triangle that was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// It is as it was.
+    Still,
+    /// It has another corner.
+    Changed,
+    /// It was left out.
+    Gone,
+}
+
 /// A result while edges are collapsed.
 struct Collapsing<'a> {
     operands: &'a Operands<'a>,
     outcome: &'a mut Outcome,
     made: &'a Made,
-    /// By triangle from the first that was made on.
-    is_gone: Vec<bool>,
-    /// By vertex from the first that may be made on: the first of its triangles in the list.
+    /// Triangles from the first that was made on; those that were changed before are not where it says.
+    sorted: OnceLock<Sorted>,
+    /// What became of each of them.
+    states: Vec<State>,
+    /// Those that were changed, in turn.
+    in_turn: Vec<u32>,
+    /// By vertex from the first that may go on: the first of its triangles in the list.
     firsts: Vec<u32>,
-    /// Triangles by vertex that was made.
+    /// Triangles by vertex that may go.
     triangles: Vec<u32>,
     /// Other triangles than in that list, by vertex.
     changed: FxHashMap<u32, Vec<u32>>,
@@ -87,7 +110,7 @@ struct Collapsing<'a> {
 impl<'a> Collapsing<'a> {
     fn new(operands: &'a Operands<'a>, outcome: &'a mut Outcome, made: &'a Made) -> Collapsing<'a> {
         let new = &outcome.mesh.triangles[made.first..];
-        let mut firsts = vec![0_u32; made.is_made.len() + 2];
+        let mut firsts = vec![0_u32; made.is_free.len() + 2];
         let numbered = |(vertex, corner): (&u32, u32)| Some((made.number(*vertex)?, corner));
         let corners = || new.as_flattened().iter().zip(0..).filter_map(numbered);
         corners().for_each(|(number, _)| firsts[number + 2] += 1);
@@ -98,9 +121,20 @@ impl<'a> Collapsing<'a> {
             triangles[*place as usize] = made.first as u32 + corner / 3;
             *place += 1;
         }
-        let is_gone = vec![false; new.len()];
+        let states = vec![State::Still; new.len()];
         let (changed, refused) = (FxHashMap::default(), FxHashMap::default());
-        Collapsing { operands, outcome, made, is_gone, firsts, triangles, changed, refused }
+        Collapsing {
+            operands,
+            outcome,
+            made,
+            sorted: OnceLock::new(),
+            states,
+            in_turn: Vec::new(),
+            firsts,
+            triangles,
+            changed,
+            refused,
+        }
     }
 
     fn candidates(&self) -> Vec<u32> {
@@ -108,7 +142,7 @@ impl<'a> Collapsing<'a> {
         vertices.filter(|vertex| self.made.number(*vertex).is_some()).collect()
     }
 
-    /// The triangles at a vertex that was made.
+    /// The triangles at a vertex that may go.
     fn around(&self, vertex: u32) -> &[u32] {
         let listed = || {
             let Some(number) = self.made.number(vertex) else { return &[][..] };
@@ -164,10 +198,7 @@ impl<'a> Collapsing<'a> {
                 new.push(New { tile, from, vertex: collapse.vertex, collapse: number });
             }
         }
-        // Boxes around what each triangle sweeps over.
-        let corners: Vec<DVec3> = new.iter().flat_map(New::bounds).collect();
-        let boxes: Vec<[u32; 3]> = (0..new.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
-        let sorted = Sorted::new(&corners, &boxes);
+        let sorted = sorted_boxes(new.iter().map(New::bounds));
         let mut verdicts = vec![Verdict::Fine; chosen.len()];
         let own = sorted.pairs_within(|a, b| {
             let (one, two) = (&new[a as usize], &new[b as usize]);
@@ -179,17 +210,19 @@ impl<'a> Collapsing<'a> {
             let verdict = &mut verdicts[a.max(b)];
             *verdict = if a == b { Verdict::Refused } else { Verdict::Waits.max(*verdict) };
         }
-        let alive: Vec<u32> = (0..self.is_gone.len() as u32).filter(|k| !self.is_gone[*k as usize]).collect();
-        let made: Vec<[u32; 3]> = alive.iter().map(|k| mesh.triangles[first + *k as usize]).collect();
-        let others = Sorted::new(&mesh.vertices, &made);
         let mut refuse = |pairs: Vec<[u32; 2]>| {
             pairs.into_iter().for_each(|[a, _]| verdicts[new[a as usize].collapse as usize] = Verdict::Refused);
         };
-        refuse(sorted.pairs_if(&others.all(), |a, b| {
+        let is_met = |a: u32, triangle: u32| {
             let one = &new[a as usize];
-            let is_own = of_triangle.get(&(first as u32 + alive[b as usize])) == Some(&one.collapse);
-            !is_own && one.meets(&self.tile(made[b as usize]))
-        }));
+            of_triangle.get(&triangle) != Some(&one.collapse)
+                && one.meets(&self.tile(mesh.triangles[triangle as usize]))
+        };
+        refuse(self.near_still(&sorted, is_met));
+        let is_left = |triangle: &u32| self.states[*triangle as usize - first] == State::Changed;
+        let changed: Vec<u32> = self.in_turn.iter().copied().filter(is_left).collect();
+        let of_changed = sorted_boxes(changed.iter().map(|triangle| mesh.corners(*triangle as usize)));
+        refuse(sorted.pairs_if(&of_changed.all(), |a, b| is_met(a, changed[b as usize])));
         let Some(kept) = &self.made.kept else { return verdicts };
         for operand in 0..self.operands.meshes().len() as u32 {
             let mesh = self.operands.meshes()[operand as usize];
@@ -203,6 +236,28 @@ impl<'a> Collapsing<'a> {
             }));
         }
         verdicts
+    }
+
+    /// Pairs of some boxes and triangles that were made and are still as they were, near each other, that `keep` accepts.
+    fn near_still(&self, boxes: &Sorted, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
+        let first = self.made.first as u32;
+        let mesh = &self.outcome.mesh;
+        let is_still = |number: u32| self.states[number as usize] == State::Still;
+        if boxes.count() > FEW {
+            let all = || sorted_boxes((self.made.first..mesh.triangles.len()).map(|triangle| mesh.corners(triangle)));
+            let sorted = self.sorted.get_or_init(all);
+            return boxes.pairs_if(&sorted.all(), |a, b| is_still(b) && keep(a, first + b));
+        }
+        let mut pairs = Vec::new();
+        for number in (0..self.states.len() as u32).filter(|number| is_still(*number)) {
+            let triangle = first + number;
+            boxes.touching(Bounds::of(mesh.corners(triangle as usize)), |a| {
+                if keep(a, triangle) {
+                    pairs.push([a, number]);
+                }
+            });
+        }
+        pairs
     }
 
     fn apply(&mut self, collapse: &Collapse) {
@@ -221,9 +276,12 @@ impl<'a> Collapsing<'a> {
                 }
             }
             mesh.triangles[slot][k] = corners[0];
+            if let state @ State::Still = &mut self.states[slot - self.made.first] {
+                *state = State::Changed;
+                self.in_turn.push(triangle);
+            }
         }
-        let first = self.made.first as u32;
-        collapse.gone.iter().for_each(|gone| self.is_gone[(gone - first) as usize] = true);
+        collapse.gone.iter().for_each(|gone| self.states[*gone as usize - self.made.first] = State::Gone);
         let is_left = |triangle: &u32| !collapse.gone.contains(triangle);
         let mut ring: Vec<u32> = collapse.stay.iter().flat_map(|(_, corners)| *corners).collect();
         ring.sort_unstable();
@@ -241,16 +299,24 @@ impl<'a> Collapsing<'a> {
 
     /// Leaves out what is gone.
     fn finish(self) {
-        if !self.is_gone.contains(&true) {
+        if !self.states.contains(&State::Gone) {
             return;
         }
         let whole = std::iter::repeat_n(true, self.made.first);
-        let keep: Vec<bool> = whole.chain(self.is_gone.iter().map(|gone| !gone)).collect();
+        let keep: Vec<bool> = whole.chain(self.states.iter().map(|state| *state != State::Gone)).collect();
         retain(&mut self.outcome.mesh, &keep);
         let mut kept = keep.iter();
         self.outcome.sources.retain(|_| *kept.next().unwrap_or(&true));
         without_unused(&mut self.outcome.mesh.vertices, &mut self.outcome.mesh.triangles);
     }
+}
+
+/// Triangles sorted, by their corners, or boxes by two.
+fn sorted_boxes<const N: usize>(corners: impl Iterator<Item = [DVec3; N]>) -> Sorted {
+    let vertices: Vec<DVec3> = corners.flatten().collect();
+    let names = |first: u32| [first, first + 1, first + N as u32 - 1];
+    let triangles: Vec<[u32; 3]> = (0..vertices.len() as u32).step_by(N).map(names).collect();
+    Sorted::new(&vertices, &triangles)
 }
 
 /// Leaves out vertices that no triangle has; the others stay in order.
@@ -300,8 +366,7 @@ impl New {
     /// Whether it has more in common with another triangle than corners and edges, lies on it, or has swept over a corner of
     /// it.
     fn meets(&self, other: &Tile) -> bool {
-        self.tile.is_lain_on(other, THIN)
-            || overlap(&self.tile, other, || other.with_plane())
+        nearly_overlap(&self.tile, other, || other.with_plane())
             || (0..3).any(|k| self.sweeps_over(other.names[k], other.corners[k]))
     }
 

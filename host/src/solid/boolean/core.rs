@@ -179,6 +179,7 @@ impl Core {
     }
 
     /// Whether a box lies in the operand as a whole; `false` where that is not known.
+    #[inline]
     pub fn holds(&self, bounds: Bounds) -> bool {
         self.range(bounds).is_some_and(|range| self.inside.has_all(range))
     }

@@ -3,7 +3,6 @@
 use super::operand::Operands;
 use super::overlap::Tile;
 use super::result::Outcome;
-use super::rounding::THIN;
 use crate::mesh::Mesh;
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
@@ -13,11 +12,13 @@ use robust::{Coord3D, orient3d};
 const UNITS: f64 = 4.0;
 /// How far normals and parameters may be from each other and count as the same.
 const ALIKE: f64 = 1e-9;
+/// Faces at a smaller angle than this count as one plane, in which a border stays where it is.
+const LEAST_SINE: f64 = 1e-4;
 /// Triangles around a vertex that is looked at, at most.
 const MOST: usize = 256;
 
-/// Faces that meet in a vertex, up to which a quick look is taken.
-const QUICK: usize = 8;
+/// Triangles at a vertex, up to which a quick look is taken.
+const QUICK: usize = 16;
 
 /// A triangle at a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -91,36 +92,45 @@ impl Judge<'_> {
 
     /// Whether a neighbour of a vertex may lie in all faces that meet there, as far as a quick look tells.
     pub fn may_collapse(&self, vertex: u32, triangles: &[u32]) -> bool {
-        let mut sources = [[u32::MAX; 2]; QUICK];
-        let mut planes = [(DVec3::ZERO, DVec3::ZERO, 0.0); QUICK];
-        let mut count = 0;
-        let mut size = self.at(vertex).abs().max_element();
-        for &triangle in triangles {
-            size = size_of(self.mesh().corners(triangle as usize).into_iter(), size);
-            let source = self.outcome.sources[triangle as usize];
-            if sources[..count].contains(&source) {
-                continue;
-            }
-            if count == QUICK {
-                return true;
-            }
-            let [a, b, c] = self.source(triangle);
-            let normal = (b - a).cross(c - a);
-            size = size_of([a, b, c].into_iter(), size);
-            sources[count] = source;
-            // The normal of a long and thin face is known badly.
-            let spread = (b - a).length() * (c - a).length();
-            planes[count] = (a, normal, normal.length() * 2.0 * UNITS + spread * 16.0);
-            count += 1;
+        let mut near = [DVec3::ZERO; QUICK];
+        if triangles.len() > QUICK {
+            return true;
         }
-        triangles.iter().any(|&triangle| {
+        let mut size = self.at(vertex).abs().max_element();
+        for (slot, &triangle) in near.iter_mut().zip(triangles) {
             let corners = self.mesh().triangles[triangle as usize];
             let k = corners.iter().position(|corner| *corner == vertex).unwrap_or(0);
-            let onto = self.at(corners[(k + 1) % 3]);
-            let is_near =
-                |(a, normal, most): &(DVec3, DVec3, f64)| (onto - *a).dot(*normal).abs() <= f64::EPSILON * size * most;
-            planes[..count].iter().all(is_near)
-        })
+            *slot = self.at(corners[(k + 1) % 3]);
+            size = size.max(slot.abs().max_element());
+        }
+        let mut count = triangles.len();
+        let mut last = [u32::MAX; 2];
+        for &triangle in triangles {
+            let source = self.outcome.sources[triangle as usize];
+            if source == last {
+                continue;
+            }
+            last = source;
+            let [a, b, c] = self.source(triangle);
+            let [d, e] = [b - a, c - a];
+            let normal = d.cross(e);
+            let size = size_of([a, b, c].into_iter(), size) * f64::EPSILON;
+            // The normal of a long and thin face is known badly; roots of sums of squares are left out.
+            let most = size
+                * size
+                * (8.0 * UNITS * UNITS * normal.length_squared() + 512.0 * d.length_squared() * e.length_squared());
+            let mut left = 0;
+            for k in 0..count {
+                let height = (near[k] - a).dot(normal);
+                near[left] = near[k];
+                left += usize::from(height * height <= most);
+            }
+            count = left;
+            if count == 0 {
+                return false;
+            }
+        }
+        true
     }
 
     /// Orders the triangles around a vertex; `None` if they are no disks.
@@ -252,13 +262,26 @@ impl Judge<'_> {
         match borders[..] {
             [] => true,
             [one, two] if one == k || two == k => {
-                let start = self.at(disk[if one == k { two } else { one }].second);
+                let other = if one == k { two } else { one };
+                let start = self.at(disk[other].second);
                 let d = to - start;
                 let t = (from - start).dot(d) / d.length_squared();
-                (0.0..=1.0).contains(&t) && (start + d * t).distance(from) <= reach
+                let beside = [disk[(other + disk.len() - 1) % disk.len()], disk[other]].map(|leaf| leaf.triangle);
+                (0.0..=1.0).contains(&t) && (start + d * t).distance(from) * self.sine(beside) <= reach
             }
             _ => false,
         }
+    }
+
+    /// The sine of the angle between the faces that two triangles are part of, by which the line in which they meet is known
+    /// worse than they are; 1 if it is so small that they count as one plane.
+    fn sine(&self, triangles: [u32; 2]) -> f64 {
+        let [one, two] = triangles.map(|triangle| {
+            let [a, b, c] = self.source(triangle);
+            (b - a).cross(c - a).normalize_or_zero()
+        });
+        let sine = one.cross(two).length();
+        if sine < LEAST_SINE { 1.0 } else { sine }
     }
 
     /// The vertex moved onto a neighbour, and how well shaped the worst triangle then is; `None` if one is turned over or
@@ -302,9 +325,9 @@ impl Judge<'_> {
     fn shape(&self, fan: &Fan, triangle: u32, corners: [u32; 3], is_short: bool) -> Option<f64> {
         let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| self.at(vertex)) }.with_plane();
         let new = tile(corners);
-        if new.is_thin(THIN) {
+        if new.is_thin() {
             // Which way such a one faces is a matter of roundings.
-            let was_thin = || tile(self.mesh().triangles[triangle as usize]).is_thin(THIN);
+            let was_thin = || tile(self.mesh().triangles[triangle as usize]).is_thin();
             return (is_short && !new.is_flat() && was_thin()).then_some(0.0);
         }
         let normal = self.normal(fan, triangle)?;

@@ -125,6 +125,7 @@ impl<'a> Operands<'a> {
     }
 
     /// The triangles of the face that a triangle belongs to, the lower first.
+    #[inline]
     pub fn halves(&self, triangle: u32) -> impl Iterator<Item = u32> + use<> {
         let operand = self.of_triangle(triangle);
         let first = self.first_triangle(operand);

@@ -8,6 +8,11 @@ use super::contact::{Contact, Face, Feature, flat_turn};
 use crate::numeric::implicit::projection;
 use crate::numeric::plane::Plane;
 use glam::DVec3;
+use std::borrow::Borrow;
+
+/// What is near something else may be on the other side of it but for roundings: so many units in the last place of the
+/// largest coordinate there.
+const THIN: f64 = 8.0;
 
 /// A triangle of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +35,14 @@ impl Tile {
     pub fn with_plane(self) -> PlaneTile {
         PlaneTile { tile: self, plane: Plane::through(self.corners) }
     }
+
+    /// Which corners of another triangle are none of this one, a bit for each.
+    #[inline]
+    fn others_in(&self, other: &Tile) -> u8 {
+        let [a, b, c] = self.names;
+        let is_other = |k: usize| other.names[k] != a && other.names[k] != b && other.names[k] != c;
+        (0..3).fold(0, |all, k| all | u8::from(is_other(k)) << k)
+    }
 }
 
 impl PlaneTile {
@@ -43,45 +56,41 @@ impl PlaneTile {
         (0..3).all(|axis| self.plane.facing(axis) == 0.0) && projection(self.tile.corners).is_none()
     }
 
-    /// What is near here, if `units` units in the last place of the largest coordinate are.
-    fn near(&self, units: f64) -> f64 {
+    /// What is near here.
+    fn near(&self) -> f64 {
         let [a, b, c] = self.tile.corners.map(DVec3::abs);
-        units * f64::EPSILON * a.max(b).max(c).max_element()
+        THIN * f64::EPSILON * a.max(b).max(c).max_element()
     }
 
     /// Whether a corner is near the side opposite to it, but for roundings.
-    ///
-    /// - `units`: what is near, in units in the last place of the largest coordinate.
-    pub fn is_thin(&self, units: f64) -> bool {
+    pub fn is_thin(&self) -> bool {
         let [a, b, c] = self.tile.corners;
         let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-        let near = self.near(units);
+        let near = self.near();
         self.plane.normal.length_squared() <= near * near * longest
     }
 
     /// Whether another triangle with a common edge is folded back onto this one: its third corner is near the plane, on the
     /// side of the edge where this one is.
-    ///
-    /// - `units`: what is near, in units in the last place of the largest coordinate.
-    pub fn is_lain_on(&self, other: &Tile, units: f64) -> bool {
-        let Tile { names, corners } = &self.tile;
-        let mut free = (0..3).filter(|&k| !names.contains(&other.names[k]));
-        let (Some(third), None) = (free.next(), free.next()) else { return false };
-        let Some(apex) = (0..3).find(|&k| !other.names.contains(&names[k])) else { return false };
-        let [from, to] = [corners[(apex + 1) % 3], corners[(apex + 2) % 3]];
-        let (normal, p) = (self.plane.normal, other.corners[third] - from);
-        let height = p.dot(normal);
-        let near = self.near(units);
-        height * height <= near * near * normal.length_squared() && (to - from).cross(p).dot(normal) > 0.0
+    #[inline]
+    fn is_lain_on(&self, other: &Tile) -> bool {
+        let corners = &self.tile.corners;
+        let third = self.tile.others_in(other).trailing_zeros() as usize;
+        let height = self.plane.normal.dot(other.corners[third] - corners[0]);
+        let near = self.near();
+        height * height <= near * near * self.plane.normal.length_squared() && {
+            let apex = other.others_in(&self.tile).trailing_zeros() as usize;
+            let [from, to] = [corners[(apex + 1) % 3], corners[(apex + 2) % 3]];
+            (to - from).cross(other.corners[third] - from).dot(self.plane.normal) > 0.0
+        }
     }
 
     /// Whether all of another that is not common lies on one side of the plane.
-    fn is_beside(&self, other: &Tile) -> bool {
+    ///
+    /// - `own`: the corners of the other that are not common, a bit for each.
+    fn is_beside(&self, other: &Tile, own: u8) -> bool {
         let mut side = 0.0;
-        for k in 0..3 {
-            if self.tile.names.contains(&other.names[k]) {
-                continue;
-            }
+        for k in (0..3).filter(|k| own >> k & 1 == 1) {
             match self.plane.rounded_side(other.corners[k]) {
                 Some(next) if next != 0.0 && side * next >= 0.0 => side = next,
                 _ => return false,
@@ -121,16 +130,30 @@ impl PlaneTile {
 /// Whether two triangles with an area have more in common than corners, and the edge between two of these.
 ///
 /// - `plane_two`: gives the second with its plane, where it is needed.
-pub fn overlap(one: &PlaneTile, two: &Tile, plane_two: impl FnOnce() -> PlaneTile) -> bool {
-    let common = two.names.iter().filter(|name| one.tile.names.contains(name)).count();
-    if common == 3 {
+pub fn overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_two: impl FnOnce() -> P) -> bool {
+    overlap_of(one, two, one.tile.others_in(two), plane_two)
+}
+
+/// Whether two triangles with an area overlap, or the second is folded back onto the first, but for roundings.
+///
+/// - `plane_two`: gives the second with its plane, where it is needed.
+pub fn nearly_overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_two: impl FnOnce() -> P) -> bool {
+    let own = one.tile.others_in(two);
+    own.count_ones() == 1 && one.is_lain_on(two) || overlap_of(one, two, own, plane_two)
+}
+
+/// - `own`: the corners of the second that are none of the first, a bit for each.
+fn overlap_of<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, own: u8, plane_two: impl FnOnce() -> P) -> bool {
+    if own == 0 {
         return true;
     }
-    if one.is_beside(two) {
+    if one.is_beside(two, own) {
         return false;
     }
-    let two = plane_two();
-    if common == 2 && one.is_hinged(&two) || two.is_beside(&one.tile) {
+    let plane_two = plane_two();
+    let two = plane_two.borrow();
+    let is_neighbour = own.count_ones() == 1;
+    if is_neighbour && one.is_hinged(two) || two.is_beside(&one.tile, two.tile.others_in(&one.tile)) {
         return false;
     }
     // Neighbours in one plane or nearly so, of which a division is full, are mostly parted where they are seen best.

@@ -9,7 +9,6 @@ use super::operand::Operands;
 use super::standing::Standing;
 use super::union_find::UnionFind;
 use super::winding::winding;
-use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::{Definition, Point};
 use rayon::prelude::*;
 
@@ -88,9 +87,10 @@ fn known_places(
     let mut near = Vec::new();
     let mut is_touched = vec![false; mesh.triangles.len()];
     touched.for_each(|triangle| is_touched[triangle as usize] = true);
-    burial.visible(operands, operand).touching(operands.sorted(other).bounds(), |triangle| {
+    burial.visible(operands, operand).touching_boxes(operands.sorted(other).bounds(), |triangle, bounds| {
         near.push(triangle);
-        is_touched[triangle as usize] |= burial.is_beside(Bounds::of(mesh.corners(triangle as usize)), other);
+        let is_touched = &mut is_touched[triangle as usize];
+        *is_touched = *is_touched || burial.is_beside(bounds, other);
     });
     let mut parts = UnionFind::new(mesh.vertices.len());
     for &triangle in near.iter().filter(|&&triangle| !is_touched[triangle as usize]) {

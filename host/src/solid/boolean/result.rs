@@ -62,7 +62,7 @@ pub fn assemble(
     let first_facet = outcome.mesh.triangles.len();
     let mut of_point: FxHashMap<u32, u32> = FxHashMap::default();
     let mut is_moved = vec![false; outcome.mesh.vertices.len()];
-    let (first_vertex, mut is_made) = (is_moved.len() as u32, Vec::new());
+    let first_vertex = is_moved.len() as u32;
     for piece in pieces(operands, arrangement, facets, parts) {
         let corners = piece.corners.map(|point| {
             let number = match arrangement.vertices[point as usize] {
@@ -73,7 +73,6 @@ pub fn assemble(
                 *number = outcome.mesh.vertices.len() as u32;
                 outcome.mesh.vertices.push(arrangement.points[point as usize].near());
                 is_moved.push(!arrangement.points[point as usize].is_exact());
-                is_made.push(arrangement.vertices[point as usize].is_none());
             }
             *number
         });
@@ -91,7 +90,8 @@ pub fn assemble(
     }
     let kept = Kept { is_kept, of_vertex };
     let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &kept);
-    (outcome, Made { first: first_facet, first_vertex, is_made, kept: Some(kept) }, crosses)
+    let is_free = vec![true; is_moved.len() - first_vertex as usize];
+    (outcome, Made { first: first_facet, first_vertex, is_free, kept: Some(kept) }, crosses)
 }
 
 /// Which of the triangles of a face, given by its lower one, a point lies in.

@@ -1,7 +1,7 @@
 //! Whether rounded points made a surface cross itself, or may have turned a part of it inside out.
 
 use super::operand::Operands;
-use super::overlap::{PlaneTile, Tile, overlap};
+use super::overlap::{PlaneTile, Tile, nearly_overlap};
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
 use rayon::prelude::*;
@@ -18,24 +18,21 @@ pub struct Kept {
 pub struct Made {
     /// The first triangle of it.
     pub first: usize,
-    /// The first vertex that may have been.
+    /// The first vertex of which no triangle stayed whole, if they are in order.
     pub first_vertex: u32,
-    /// For each vertex from that on whether it was.
-    pub is_made: Vec<bool>,
+    /// For each vertex from that on, whether no triangle that it is a corner of stayed whole: it may go.
+    pub is_free: Vec<bool>,
     /// What stayed whole before the first triangle.
     pub kept: Option<Kept>,
 }
 
 impl Made {
-    /// The number of a vertex that was made, among those from the first on; `None` for another.
+    /// The number of a vertex that may go, among those from the first on; `None` for another.
     pub fn number(&self, vertex: u32) -> Option<usize> {
         let number = vertex.checked_sub(self.first_vertex)? as usize;
-        self.is_made[number].then_some(number)
+        self.is_free[number].then_some(number)
     }
 }
-
-/// What is as thin as this may have been turned inside out, in units in the last place of the largest coordinate there.
-pub const THIN: f64 = 8.0;
 
 /// Whether triangles of a result that were made anew have no area or hardly any, overlap each other or triangles that stayed
 /// whole, or lie on a neighbour.
@@ -52,17 +49,13 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
     let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| result.vertices[vertex as usize]) };
     let tiles = moved.par_iter().with_min_len(1024).map(|&triangle| tile(triangle).with_plane());
     let tiles: Vec<PlaneTile> = tiles.collect();
-    if tiles.par_iter().with_min_len(1024).any(|tile| tile.is_thin(THIN) || tile.is_flat()) {
+    if tiles.par_iter().with_min_len(1024).any(|tile| tile.is_thin() || tile.is_flat()) {
         return true;
     }
     let of_moved = |triangle: u32| &tiles[triangle as usize];
-    let is_overlap =
-        |a: u32, two: Tile| of_moved(a).is_lain_on(&two, THIN) || overlap(of_moved(a), &two, || two.with_plane());
+    let is_overlap = |a: u32, two: Tile| nearly_overlap(of_moved(a), &two, || two.with_plane());
     let sorted = Sorted::new(&result.vertices, &moved);
-    let is_own = |a: u32, b: u32| {
-        let (one, two) = (of_moved(a), of_moved(b));
-        one.is_lain_on(two.tile(), THIN) || overlap(one, two.tile(), || *two)
-    };
+    let is_own = |a: u32, b: u32| nearly_overlap(of_moved(a), of_moved(b).tile(), || of_moved(b));
     if !sorted.pairs_within(is_own).is_empty() {
         return true;
     }
@@ -77,7 +70,11 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
             names: mesh.triangles[triangle as usize].map(|vertex| kept.of_vertex[(first_vertex + vertex) as usize]),
             corners: mesh.corners(triangle as usize),
         };
-        let near = operands.sorted(operand).part(|triangle| kept.is_kept[(first + triangle) as usize]);
-        !sorted.pairs_if(&near, |a, b| is_overlap(a, of_kept(b))).is_empty()
+        let is_kept = |triangle: u32| kept.is_kept[(first + triangle) as usize];
+        let sorted_operand = operands.sorted(operand);
+        // To find all that were kept pays only where more than a few are asked for.
+        let is_large = mesh.triangles.len() > 16 * moved.len();
+        let near = if is_large { sorted_operand.all() } else { sorted_operand.part(is_kept) };
+        !sorted.pairs_if(&near, |a, b| is_kept(b) && is_overlap(a, of_kept(b))).is_empty()
     })
 }

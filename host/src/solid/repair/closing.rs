@@ -3,7 +3,7 @@
 use super::super::boolean::{Tile, UnionFind, overlap};
 use super::super::error::OpenLoop;
 use super::patches::{Beside, LoopPlane, Method, Patch};
-use super::sides;
+use crate::mesh::edges::EdgeTable;
 use crate::mesh::{BoundaryLoop, Mesh};
 use crate::octree::Sorted;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -211,11 +211,9 @@ fn meeting(mesh: &Mesh, holes: &[Hole]) -> Vec<(usize, Met)> {
         of_patch.resize(tried.triangles.len() - mesh.triangles.len(), number);
     }
     let mut components = UnionFind::new(tried.triangles.len());
-    let mut at_edge: HashMap<[u32; 2], u32> = HashMap::with_capacity(2 * tried.triangles.len());
-    for (t, corners) in (0..).zip(&tried.triangles) {
-        for [a, b] in sides(*corners) {
-            components.join(*at_edge.entry([a.min(b), a.max(b)]).or_insert(t), t);
-        }
+    let table = EdgeTable::of(&tried);
+    for uses in table.edges.iter().map(|edge| table.uses(edge)) {
+        uses.iter().for_each(|at| components.join(uses[0].triangle, at.triangle));
     }
     let first = mesh.triangles.len() as u32;
     let tile = |t: u32| Tile { names: tried.triangles[t as usize], corners: tried.corners(t as usize) };

@@ -1,10 +1,10 @@
 //! Solids from meshes that are none.
 //!
-//! What is a solid already is not touched. Of any other mesh, vertices at one place become one, at boundaries also those that
-//! are apart by rounding only; triangles that keep the
-//! surface from being closed are left out; triangles are turned to agree with their neighbours; boundary loops are closed
-//! where a patch is found that provably meets nothing; bodies that face inwards and lie in no other are turned; and what
-//! crosses itself is divided there, and what is not its border left out. Each step does nothing to what needs nothing.
+//! What is a solid already is not touched. Of any other mesh, vertices at one place become one, at boundaries also those
+//! that are apart by rounding only; triangles that keep the surface from being closed are left out; triangles are turned to
+//! agree with their neighbours; boundary loops are closed where a patch is found that provably meets nothing; bodies that
+//! face inwards and lie in no other are turned; and what crosses itself is divided there, and what is not its border left
+//! out. Each step does nothing to what needs nothing.
 
 mod closing;
 mod joining;
@@ -167,11 +167,6 @@ fn turn_bodies(mesh: &mut Mesh) -> usize {
 /// An error where two triangles with an edge in common cannot agree, as in a strip with one side only.
 fn refuse_one_sided(mesh: &Mesh) -> Result<(), SolidError> {
     if mesh.edge_report().misoriented > 0 { check_edges(mesh).map(|_| ()) } else { Ok(()) }
-}
-
-/// The sides of a triangle, from corner to corner.
-fn sides(t: [u32; 3]) -> [[u32; 2]; 3] {
-    [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
 }
 
 #[cfg(test)]

@@ -1,15 +1,19 @@
 //! Triangles that agree with their neighbours.
 
-use super::sides;
 use crate::mesh::Mesh;
-use std::collections::HashMap;
+use crate::mesh::edges::EdgeTable;
 
 /// Turns triangles so that they agree across edges of two; of each sheet the fewer. Returns how many were turned.
 pub(super) fn turn_alike(mesh: &mut Mesh) -> usize {
-    let mut around: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
-    for (index, &t) in mesh.triangles.iter().enumerate() {
-        for [a, b] in sides(t) {
-            around.entry([a.min(b), a.max(b)]).or_default().push(index);
+    // By triangle and side, the other triangle of an edge of two, and whether one of them must be turned.
+    let mut beside: Vec<[Option<(usize, bool)>; 3]> = vec![[None; 3]; mesh.triangles.len()];
+    let table = EdgeTable::of(mesh);
+    for edge in &table.edges {
+        if let [one, two] = table.uses(edge) {
+            let is_against = one.forward == two.forward;
+            for (from, to) in [(one, two), (two, one)] {
+                beside[from.triangle as usize][usize::from(from.side)] = Some((to.triangle as usize, is_against));
+            }
         }
     }
     let mut turned: Vec<Option<bool>> = vec![None; mesh.triangles.len()];
@@ -23,14 +27,10 @@ pub(super) fn turn_alike(mesh: &mut Mesh) -> usize {
         let mut next = 0;
         while let Some(&index) = sheet.get(next) {
             next += 1;
-            for [a, b] in sides(mesh.triangles[index]) {
-                if let [one, two] = around[&[a.min(b), a.max(b)]][..] {
-                    let other = if one == index { two } else { one };
-                    let is_against = sides(mesh.triangles[other]).contains(&[a, b]);
-                    if turned[other].is_none() {
-                        turned[other] = turned[index].map(|turned| turned ^ is_against);
-                        sheet.push(other);
-                    }
+            for (other, is_against) in beside[index].into_iter().flatten() {
+                if turned[other].is_none() {
+                    turned[other] = turned[index].map(|turned| turned ^ is_against);
+                    sheet.push(other);
                 }
             }
         }

@@ -2,27 +2,42 @@
 
 use super::super::boolean::UnionFind;
 use super::super::import::retain;
-use super::sides;
 use crate::mesh::Mesh;
-use std::collections::{BTreeMap, HashMap};
+use crate::mesh::edges::{EdgeTable, EdgeUse};
+use std::collections::BTreeMap;
 
-/// For each edge, the lower end first, the triangles that have it.
-type Edges = HashMap<[u32; 2], Vec<u32>>;
+/// The edges of a mesh, to be found by triangle.
+struct Edges {
+    table: EdgeTable,
+    /// By triangle and side, the place of the edge in the table.
+    of_triangle: Vec<[usize; 3]>,
+}
 
-fn edges(mesh: &Mesh) -> Edges {
-    let mut edges = Edges::new();
-    for (t, corners) in (0..).zip(&mesh.triangles) {
-        for [a, b] in sides(*corners) {
-            edges.entry([a.min(b), a.max(b)]).or_default().push(t);
+impl Edges {
+    fn of(mesh: &Mesh) -> Edges {
+        let table = EdgeTable::of(mesh);
+        let mut of_triangle = vec![[0; 3]; mesh.triangles.len()];
+        for (place, edge) in table.edges.iter().enumerate() {
+            for at in table.uses(edge) {
+                of_triangle[at.triangle as usize][usize::from(at.side)] = place;
+            }
         }
+        Edges { table, of_triangle }
     }
-    edges
+
+    fn all(&self) -> impl Iterator<Item = &[EdgeUse]> {
+        self.table.edges.iter().map(|edge| self.table.uses(edge))
+    }
+
+    /// The triangles along each side of one.
+    fn around(&self, triangle: u32) -> impl Iterator<Item = &[EdgeUse]> {
+        self.of_triangle[triangle as usize].into_iter().map(|place| self.table.uses(&self.table.edges[place]))
+    }
 }
 
 /// How often triangles run along an edge from its lower end, less how often they run back.
-fn net<'a>(mesh: &Mesh, edge: [u32; 2], triangles: impl Iterator<Item = &'a u32>) -> i32 {
-    let runs = |t: &u32| if sides(mesh.triangles[*t as usize]).contains(&edge) { 1 } else { -1 };
-    triangles.map(runs).sum()
+fn net<'a>(uses: impl IntoIterator<Item = &'a EdgeUse>) -> i32 {
+    uses.into_iter().map(|at| if at.forward { 1 } else { -1 }).sum()
 }
 
 /// Leaves out triangles that have the corners of an earlier one, whichever way they turn; returns how many were left out.
@@ -40,14 +55,10 @@ pub(super) fn leave_out_duplicates(mesh: &mut Mesh, everywhere: bool) -> usize {
     if alike.is_empty() {
         return 0;
     }
-    let edges = edges(mesh);
+    let edges = Edges::of(mesh);
     let mut keep = vec![true; mesh.triangles.len()];
     for triangles in alike.values() {
-        let is_open = |[a, b]: [u32; 2]| {
-            let edge = [a.min(b), a.max(b)];
-            net(mesh, edge, edges[&edge].iter()) != 0
-        };
-        if everywhere || sides(mesh.triangles[triangles[0] as usize]).into_iter().any(is_open) {
+        if everywhere || edges.around(triangles[0]).any(|uses| net(uses) != 0) {
             triangles[1..].iter().for_each(|&t| keep[t as usize] = false);
         }
     }
@@ -60,24 +71,22 @@ pub(super) fn leave_out_duplicates(mesh: &mut Mesh, everywhere: bool) -> usize {
 ///
 /// A wall within a body is one, and so is what sticks out of a body and is open.
 pub(super) fn leave_out_fins(mesh: &mut Mesh) -> usize {
-    let edges = edges(mesh);
-    let is_crowded = |(edge, all): &(&[u32; 2], &Vec<u32>)| all.len() > 2 && net(mesh, **edge, all.iter()) != 0;
-    let mut crowded: Vec<(&[u32; 2], &Vec<u32>)> = edges.iter().filter(is_crowded).collect();
+    let edges = Edges::of(mesh);
+    let crowded: Vec<&[EdgeUse]> = edges.all().filter(|uses| uses.len() > 2 && net(*uses) != 0).collect();
     if crowded.is_empty() {
         return 0;
     }
-    crowded.sort_unstable();
     let mut joined = UnionFind::new(mesh.triangles.len());
-    for all in edges.values() {
-        if let [one, two] = all[..] {
-            joined.join(one, two);
+    for uses in edges.all() {
+        if let [one, two] = uses {
+            joined.join(one.triangle, two.triangle);
         }
     }
     let mut sheets: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for t in 0..mesh.triangles.len() as u32 {
         sheets.entry(joined.find(t)).or_default().push(t);
     }
-    let mut beside: Vec<u32> = crowded.iter().flat_map(|(_, all)| all.iter()).map(|&t| joined.find(t)).collect();
+    let mut beside: Vec<u32> = crowded.iter().copied().flatten().map(|at| joined.find(at.triangle)).collect();
     beside.sort_unstable();
     beside.dedup();
     let area = |sheet: &u32| sheets[sheet].iter().map(|&t| mesh.area_vector(t as usize).length()).sum::<f64>();
@@ -88,13 +97,12 @@ pub(super) fn leave_out_fins(mesh: &mut Mesh) -> usize {
         // Its edges that others have too, and whether one of them is open now.
         let (mut is_needed, mut was_open) = (false, false);
         for &t in &sheets[&sheet] {
-            for [a, b] in sides(mesh.triangles[t as usize]) {
-                let edge = [a.min(b), a.max(b)];
-                let kept = || edges[&edge].iter().filter(|t| keep[**t as usize]);
-                let others = || kept().filter(|t| joined.root(**t) != sheet);
+            for uses in edges.around(t) {
+                let kept = || uses.iter().filter(|at| keep[at.triangle as usize]);
+                let others = || kept().filter(|at| joined.root(at.triangle) != sheet);
                 if others().next().is_some() {
-                    is_needed |= net(mesh, edge, others()) != 0;
-                    was_open |= net(mesh, edge, kept()) != 0;
+                    is_needed |= net(others()) != 0;
+                    was_open |= net(kept()) != 0;
                 }
             }
         }
