@@ -91,6 +91,8 @@ struct Collapsing<'a> {
     operands: &'a Operands<'a>,
     outcome: &'a mut Outcome,
     made: &'a Made,
+    /// The largest coordinate of the operands.
+    largest: f64,
     /// Triangles from the first that was made on; those that were changed before are not where it says.
     sorted: OnceLock<Sorted>,
     /// What became of each of them.
@@ -121,12 +123,16 @@ impl<'a> Collapsing<'a> {
             triangles[*place as usize] = made.first as u32 + corner / 3;
             *place += 1;
         }
+        let sizes = (0..operands.meshes().len() as u32).map(|operand| operands.sorted(operand).bounds());
+        let largest = sizes.map(|b| b.min.abs().max(b.max.abs()).max_element()).filter(|size| size.is_finite());
+        let largest = largest.fold(0.0, f64::max);
         let states = vec![State::Still; new.len()];
         let (changed, refused) = (FxHashMap::default(), FxHashMap::default());
         Collapsing {
             operands,
             outcome,
             made,
+            largest,
             sorted: OnceLock::new(),
             states,
             in_turn: Vec::new(),
@@ -153,7 +159,7 @@ impl<'a> Collapsing<'a> {
 
     /// What may be done with some vertices, as far as the places of their neighbours tell.
     fn proposed(&self, vertices: &[u32]) -> Vec<Collapse> {
-        let judge = Judge { operands: self.operands, outcome: self.outcome };
+        let judge = Judge { operands: self.operands, outcome: self.outcome, largest: self.largest };
         let propose = |&vertex: &u32| {
             let around = self.around(vertex);
             let fan = judge.may_collapse(vertex, around).then(|| judge.fan(vertex, around))??;

@@ -68,6 +68,8 @@ pub struct Judge<'a> {
     pub operands: &'a Operands<'a>,
     /// The result.
     pub outcome: &'a Outcome,
+    /// The largest coordinate of the operands, or more.
+    pub largest: f64,
 }
 
 impl Judge<'_> {
@@ -96,13 +98,12 @@ impl Judge<'_> {
         if triangles.len() > QUICK {
             return true;
         }
-        let mut size = self.at(vertex).abs().max_element();
         for (slot, &triangle) in near.iter_mut().zip(triangles) {
             let corners = self.mesh().triangles[triangle as usize];
             let k = corners.iter().position(|corner| *corner == vertex).unwrap_or(0);
             *slot = self.at(corners[(k + 1) % 3]);
-            size = size.max(slot.abs().max_element());
         }
+        let unit = self.largest * f64::EPSILON;
         let mut count = triangles.len();
         let mut last = [u32::MAX; 2];
         for &triangle in triangles {
@@ -114,10 +115,9 @@ impl Judge<'_> {
             let [a, b, c] = self.source(triangle);
             let [d, e] = [b - a, c - a];
             let normal = d.cross(e);
-            let size = size_of([a, b, c].into_iter(), size) * f64::EPSILON;
             // The normal of a long and thin face is known badly; roots of sums of squares are left out.
-            let most = size
-                * size
+            let most = unit
+                * unit
                 * (8.0 * UNITS * UNITS * normal.length_squared() + 512.0 * d.length_squared() * e.length_squared());
             let mut left = 0;
             for k in 0..count {

@@ -137,12 +137,14 @@ pub fn overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_two: imp
 /// Whether two triangles with an area overlap, or the second is folded back onto the first, but for roundings.
 ///
 /// - `plane_two`: gives the second with its plane, where it is needed.
+#[inline(always)]
 pub fn nearly_overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_two: impl FnOnce() -> P) -> bool {
     let own = one.tile.others_in(two);
     own.count_ones() == 1 && one.is_lain_on(two) || overlap_of(one, two, own, plane_two)
 }
 
 /// - `own`: the corners of the second that are none of the first, a bit for each.
+#[inline(always)]
 fn overlap_of<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, own: u8, plane_two: impl FnOnce() -> P) -> bool {
     if own == 0 {
         return true;
