@@ -383,11 +383,14 @@ impl New {
         if name == self.vertex || names.contains(&name) || [a, b, c, v].contains(&p) {
             return false;
         }
-        if side(a, b, c, v) == 0.0 {
+        let [low, high] = self.bounds();
+        if p.cmplt(low).any() || p.cmpgt(high).any() {
             return false;
         }
-        let sides = [side(a, b, c, p), side(a, c, v, p), side(a, v, b, p), side(b, v, c, p)];
-        sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
+        // Each face with its corners in an even order, so that a point within is on one side of all.
+        let within = side(a, b, c, v);
+        let faces = [[a, b, c], [a, c, v], [a, v, b], [b, v, c]];
+        within != 0.0 && faces.into_iter().all(|[a, b, c]| side(a, b, c, p) * within >= 0.0)
     }
 }
 
