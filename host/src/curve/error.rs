@@ -94,7 +94,7 @@ pub enum SplineError {
     /// A span that is too short beside the others.
     #[error("span {span} is {length} long; it must be zero or at least 1e-13 of the domain")]
     Short {
-        /// Which span of those above zero.
+        /// The number of the span among those that are not zero.
         span: usize,
         /// Its length.
         length: f64,

@@ -15,9 +15,9 @@ pub struct CaughtLight {
 /// Light that was followed together. The tables are as long as one another, `flux` for each lane.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CaughtBlock {
-    /// Which of the things it was aimed at.
+    /// The number of the thing that the light was aimed at.
     pub aim: u32,
-    /// Which block of those that were.
+    /// The number of the block among those aimed at that thing.
     pub number: u32,
     /// How many ways of light were followed.
     pub ways: u64,
@@ -29,9 +29,9 @@ pub struct CaughtBlock {
     pub towards: Vec<[f32; 3]>,
     /// Flux, W, lane by lane, one piece after the other.
     pub flux: Vec<f32>,
-    /// The side of which surface it arrived on.
+    /// For each piece, the number of the surface's side that it arrived on.
     pub sides: Vec<u32>,
-    /// Which wavelengths it carries; the highest bit tells that it took a broad turn.
+    /// For each piece, the number of its set of wavelengths; the highest bit tells that it took a broad turn.
     pub combs: Vec<u8>,
 }
 

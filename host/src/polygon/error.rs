@@ -30,17 +30,17 @@ pub enum PolygonError {
     /// Two edges cross, or a corner passes through an edge.
     #[error("{first} crosses {second}")]
     Crossing {
-        /// One of the two edges.
+        /// The first of the two edges.
         first: PolygonEdge,
-        /// The other edge.
+        /// The second of the two edges.
         second: PolygonEdge,
     },
     /// Two edges share more than a point.
     #[error("{first} overlaps {second}")]
     Overlap {
-        /// One of the two edges.
+        /// The first of the two edges.
         first: PolygonEdge,
-        /// The other edge.
+        /// The second of the two edges.
         second: PolygonEdge,
     },
     /// More corners than indices of 32 bits can tell apart.

@@ -13,7 +13,7 @@ use super::{PolygonError, Shape, Triangulation, triangulate};
 /// - Returns triangles that run counter-clockwise where that contour does.
 ///
 /// # Errors
-/// As [`triangulate`].
+/// Those of [`triangulate`].
 ///
 /// # Source
 /// The normal after Newell, in Sutherland, Sproull and Schumacker 1974.

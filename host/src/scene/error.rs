@@ -16,7 +16,7 @@ pub enum SceneError {
     /// A light has an impossible value.
     #[error("light {number}: {problem}")]
     Light {
-        /// Which light, counted from 1.
+        /// The number of the light, counted from 1.
         number: usize,
         /// What is wrong with it.
         problem: String,

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use libm::erf;
 use std::f64::consts::{PI, TAU};
 
-/// Which facets there are.
+/// How the slopes of microfacets are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facets {
     /// Slopes of a Gaussian surface.

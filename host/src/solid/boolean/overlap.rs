@@ -10,8 +10,8 @@ use crate::numeric::plane::Plane;
 use glam::DVec3;
 use std::borrow::Borrow;
 
-/// What is near something else may be on the other side of it but for roundings: so many units in the last place of the
-/// largest coordinate there.
+/// Units in the last place of the largest coordinate within which a corner may lie on the other side of an edge or a plane
+/// than before it was rounded.
 const THIN: f64 = 8.0;
 
 /// A triangle of a surface.
@@ -143,6 +143,8 @@ pub fn nearly_overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_t
     own.count_ones() == 1 && one.is_lain_on(two) || overlap_of(one, two, own, plane_two)
 }
 
+/// Whether two triangles with an area overlap.
+///
 /// - `own`: the corners of the second that are none of the first, a bit for each.
 #[inline(always)]
 fn overlap_of<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, own: u8, plane_two: impl FnOnce() -> P) -> bool {

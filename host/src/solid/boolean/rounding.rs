@@ -18,9 +18,9 @@ pub struct Kept {
 pub struct Made {
     /// The first triangle of it.
     pub first: usize,
-    /// The first vertex of which no triangle stayed whole, if they are in order.
+    /// Vertices before this one are corners of triangles that stayed whole.
     pub first_vertex: u32,
-    /// For each vertex from that on, whether no triangle that it is a corner of stayed whole: it may go.
+    /// For each vertex from that on, whether it may go, since none of its triangles stayed whole.
     pub is_free: Vec<bool>,
     /// What stayed whole before the first triangle.
     pub kept: Option<Kept>,

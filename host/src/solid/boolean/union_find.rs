@@ -7,7 +7,7 @@ pub struct UnionFind {
 }
 
 impl UnionFind {
-    /// As many sets of one.
+    /// A number of sets with one member each.
     pub fn new(count: usize) -> UnionFind {
         UnionFind { parent: (0..count as u32).collect() }
     }

@@ -62,9 +62,9 @@ pub enum PrimitiveError {
     /// A profile that crosses itself.
     #[error("the profile meets itself between points {first} and {} and between points {second} and {}", first + 1, second + 1)]
     Crossing {
-        /// One of the pieces, by the index of its first point.
+        /// The first of the pieces that meet, by the index of its first point.
         first: usize,
-        /// The other piece, by the index of its first point.
+        /// The second of the pieces that meet, by the index of its first point.
         second: usize,
     },
     /// A curve that bends tighter than what it carries is wide.

@@ -17,9 +17,9 @@ use std::f64::consts::FRAC_2_PI;
 
 /// Caught light that is looked at around a place, at the least, if there is so much.
 const FEW: usize = 256;
-/// As much where a few will do.
+/// Pieces of caught light that are looked at around a place where few will do.
 const COARSE: usize = 96;
-/// As much for each time that much is looked at where little chance is to be left.
+/// Times as many pieces of caught light are looked at around a place where little noise is to be left.
 const SMOOTH: usize = 8;
 /// Where there is much, it is as this times the power 2/3 of all: discs then become as small, and chance in them as
 /// little, as makes the error fall fastest.
@@ -73,7 +73,7 @@ pub(super) struct Place {
 /// How much light is looked at around a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// As it is seen.
+    /// For a place that is seen.
     Fine,
     /// A few ways will do, as for one of the many places that send light to what is seen.
     Coarse,
