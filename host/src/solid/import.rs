@@ -68,11 +68,11 @@ pub fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), So
     if is_turned && let Some(error) = inside_out(&solid) {
         return Err(error);
     }
-    let overlaps = overlaps(solid.mesh(), solid.sorted())?.len();
-    if overlaps == 0 && sheets == 1 {
+    let overlaps = overlaps(solid.mesh(), solid.sorted())?;
+    if overlaps.is_empty() && sheets == 1 {
         return Ok((solid, None));
     }
-    let Resolution { outcome, is_same, odd } = resolve(solid.mesh())?;
+    let Resolution { outcome, is_same, odd } = resolve(solid.mesh(), &overlaps)?;
     if let Some((..0, _)) = odd
         && let Some(error) = inside_out(&solid)
     {
@@ -81,7 +81,7 @@ pub fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), So
     if outcome.mesh.triangles.is_empty() && !is_empty {
         return Err(SolidError::BoundsNothing);
     }
-    let crossing = odd.map(|(winding, near)| SolidError::Crossing { winding, near, overlaps });
+    let crossing = odd.map(|(winding, near)| SolidError::Crossing { winding, near, overlaps: overlaps.len() });
     Ok((if is_same { solid } else { Solid::of(outcome.mesh) }, crossing))
 }
 

@@ -97,7 +97,7 @@ impl Solid {
 
     fn operand(&self) -> boolean::Operand<'_> {
         let mates = self.mates.get_or_init(|| Arc::new(boolean::mates(&self.mesh)));
-        boolean::Operand { mesh: &self.mesh, sorted: self.sorted(), mates }
+        boolean::Operand { mesh: &self.mesh, sorted: self.sorted(), mates, overlaps: &[] }
     }
 
     /// Evaluates an expression over some solids at once. The result may be empty.
@@ -105,8 +105,11 @@ impl Solid {
     /// # Errors
     /// [`SolidError::Unsettled`] if the result crosses itself when it is rounded, and that could not be mended.
     pub fn evaluate(operands: &[&Solid], expression: &Expression) -> Result<(Solid, Outcome), SolidError> {
-        let operands = operands.par_iter().map(|solid| solid.operand()).collect();
-        let mut outcome = boolean::evaluate(operands, expression)?;
+        // All on threads of the pool, so that this one does not wait for them at each step.
+        let mut outcome = rayon::scope(|_| {
+            let operands = operands.par_iter().map(|solid| solid.operand()).collect();
+            boolean::evaluate(operands, expression)
+        })?;
         let mesh = std::mem::take(&mut outcome.mesh);
         Ok((Solid::of(mesh), outcome))
     }

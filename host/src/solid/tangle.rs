@@ -1,7 +1,7 @@
 //! Surfaces that cross themselves so often that putting them right would take no one knows how long.
 
 use super::SolidError;
-use super::boolean::overlaps_up_to;
+use super::boolean::overlapping_up_to;
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
 
@@ -15,7 +15,7 @@ const MOST_PAIRS: usize = 500_000;
 /// # Errors
 /// [`SolidError::Tangled`] where there are too many, or three of them cross each other too often.
 pub(super) fn overlaps(mesh: &Mesh, sorted: &Sorted) -> Result<Vec<[u32; 2]>, SolidError> {
-    let pairs = overlaps_up_to(mesh, sorted, MOST_PAIRS);
+    let pairs = overlapping_up_to(mesh, sorted, MOST_PAIRS);
     let too_many = |what, count, most| if count > most { Err(SolidError::Tangled { what, most }) } else { Ok(()) };
     too_many("pairs of triangles cross", pairs.len(), MOST_PAIRS)?;
     too_many("places are where three triangles cross", triples(&pairs, MOST_TRIPLES), MOST_TRIPLES)?;

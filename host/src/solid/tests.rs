@@ -1,6 +1,6 @@
 //! Boolean operations against closed forms and set identities.
 
-use super::boolean::{self, Expression, Outcome, resolve};
+use super::boolean::{self, Expression, Outcome, overlapping_up_to, resolve};
 use super::{Solid, SolidError};
 use crate::mesh::{Mesh, bunny};
 use crate::numeric::exact::{Exact, cross, dot};
@@ -38,7 +38,7 @@ fn balanced(mesh: &Mesh) -> bool {
 fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
     let sorted: Vec<Sorted> = meshes.iter().map(|mesh| Sorted::new(&mesh.vertices, &mesh.triangles)).collect();
     let mates: Vec<Vec<u32>> = meshes.iter().map(|mesh| boolean::mates(mesh)).collect();
-    let operand = |k: usize| boolean::Operand { mesh: meshes[k], sorted: &sorted[k], mates: &mates[k] };
+    let operand = |k: usize| boolean::Operand { mesh: meshes[k], sorted: &sorted[k], mates: &mates[k], overlaps: &[] };
     boolean::evaluate((0..meshes.len()).map(operand).collect(), expression).unwrap()
 }
 
@@ -367,7 +367,8 @@ fn surfaces_that_cross_themselves_are_refused_or_made_simple() {
             Err(SolidError::Crossing { winding: found, .. }) => assert_eq!(found, winding, "{name}"),
             other => panic!("{name}: {other:?}"),
         }
-        let simple = resolve(&mesh).unwrap().outcome.mesh;
+        let overlaps = overlapping_up_to(&mesh, &Sorted::new(&mesh.vertices, &mesh.triangles), usize::MAX);
+        let simple = resolve(&mesh, &overlaps).unwrap().outcome.mesh;
         assert!((simple.signed_volume() - volume).abs() < 1e-15, "{name}: {} {volume}", simple.signed_volume());
         assert_eq!(Solid::new(simple.clone()).map(Solid::into_mesh), Ok(simple), "{name}");
     }

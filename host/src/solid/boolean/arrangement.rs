@@ -411,14 +411,28 @@ impl Arrangement {
 
     /// Adds a point to the carrier of a segment of the same plane, if it lies inside the segment.
     fn put_on(&mut self, axis: usize, point: u32, segment: &Segment) {
+        if self.turn(axis, segment, point) == 0.0 {
+            self.put_between(point, segment);
+        }
+    }
+
+    /// Which way a segment and a point turn, seen along an axis; see [`turn`].
+    fn turn(&self, axis: usize, segment: &Segment, point: u32) -> f64 {
+        let [from, to, same] = [segment.ends[0], segment.ends[1], point].map(|p| self.same.root(p));
+        if same == from || same == to {
+            return 0.0;
+        }
+        let [p, q, x] = [segment.ends[0], segment.ends[1], point].map(|p| &self.points[p as usize]);
+        turn(axis, p, q, x)
+    }
+
+    /// Adds a point on the line of a segment to its carrier, if it lies inside the segment.
+    fn put_between(&mut self, point: u32, segment: &Segment) {
         let [from, to, same] = [segment.ends[0], segment.ends[1], point].map(|p| self.same.root(p));
         if same == from || same == to {
             return;
         }
         let [p, q, x] = [segment.ends[0], segment.ends[1], point].map(|p| &self.points[p as usize]);
-        if turn(axis, p, q, x) != 0.0 {
-            return;
-        }
         match [along(p, x), along(x, q)] {
             [Ordering::Equal, _] => self.join([segment.ends[0], point]),
             [_, Ordering::Equal] => self.join([segment.ends[1], point]),
@@ -429,13 +443,21 @@ impl Arrangement {
 
     fn cross_segments(&mut self, face: u32, one: &Segment, two: &Segment) {
         let axis = self.faces[face as usize].axis;
-        for (point, segment) in [one, two].into_iter().zip([two, one]).flat_map(|(a, b)| a.ends.map(|end| (end, b))) {
-            self.put_on(axis, point, segment);
+        let turns_of = |segment: &Segment, ends: [u32; 2]| ends.map(|end| self.turn(axis, segment, end));
+        let turns = turns_of(one, two.ends);
+        // Most lie beside each other.
+        if turns[0] * turns[1] > 0.0 {
+            return;
         }
-        let [p, q] = one.ends.map(|p| &self.points[p as usize]);
-        let [a, b] = two.ends.map(|p| &self.points[p as usize]);
-        let parted = turn(axis, p, q, a) * turn(axis, p, q, b) < 0.0 && turn(axis, a, b, p) * turn(axis, a, b, q) < 0.0;
-        if parted {
+        let turns = [turns, turns_of(two, one.ends)];
+        for (turns, segment, ends) in [(turns[0], one, two.ends), (turns[1], two, one.ends)] {
+            for (turn, end) in turns.into_iter().zip(ends) {
+                if turn == 0.0 {
+                    self.put_between(end, segment);
+                }
+            }
+        }
+        if turns.iter().all(|[from, to]| from * to < 0.0) {
             self.crossing(face, [one.carrier, two.carrier]);
         }
     }

@@ -123,16 +123,13 @@ impl<'a> Collapsing<'a> {
             triangles[*place as usize] = made.first as u32 + corner / 3;
             *place += 1;
         }
-        let sizes = (0..operands.meshes().len() as u32).map(|operand| operands.sorted(operand).bounds());
-        let largest = sizes.map(|b| b.min.abs().max(b.max.abs()).max_element()).filter(|size| size.is_finite());
-        let largest = largest.fold(0.0, f64::max);
         let states = vec![State::Still; new.len()];
         let (changed, refused) = (FxHashMap::default(), FxHashMap::default());
         Collapsing {
             operands,
             outcome,
             made,
-            largest,
+            largest: operands.largest(),
             sorted: OnceLock::new(),
             states,
             in_turn: Vec::new(),
@@ -479,7 +476,12 @@ mod tests {
             let solids: Vec<Solid> =
                 meshes.iter().zip(&turns).map(|(mesh, by)| Solid::new(mesh.transformed(by)).unwrap()).collect();
             let mates: Vec<Vec<u32>> = solids.iter().map(|solid| mates(solid.mesh())).collect();
-            let operand = |k: usize| Operand { mesh: solids[k].mesh(), sorted: solids[k].sorted(), mates: &mates[k] };
+            let operand = |k: usize| Operand {
+                mesh: solids[k].mesh(),
+                sorted: solids[k].sorted(),
+                mates: &mates[k],
+                overlaps: &[],
+            };
             let operands = Operands::new((0..count).map(operand).collect(), true);
             for expression in expressions(count) {
                 let Work { outcome: old, made, must_settle, .. } = work(&operands, &expression);

@@ -130,7 +130,7 @@ impl Core {
     /// Lays a grid over an operand, finer for more triangles; `None` where numbers overflow.
     pub fn of(operands: &Operands, operand: u32) -> Option<Core> {
         let mesh = operands.meshes()[operand as usize];
-        let all = operands.sorted(operand).bounds();
+        let all = operands.bounds(operand);
         let cells = (mesh.triangles.len() as f64).sqrt().min((MOST - 1) as f64).floor();
         let density = cells / all.size().max_element();
         if !(density.is_finite() && density > 0.0 && (all.size() * density).is_finite()) {
@@ -243,7 +243,7 @@ mod tests {
 
     fn core_of(mesh: &Mesh) -> Option<Core> {
         let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
-        Core::of(&Operands::new(vec![Operand { mesh, sorted: &sorted, mates: &[] }], true), 0)
+        Core::of(&Operands::new(vec![Operand { mesh, sorted: &sorted, mates: &[], overlaps: &[] }], true), 0)
     }
 
     /// A ball of radius 1 with a hollow of radius 0.4, stretched and moved.

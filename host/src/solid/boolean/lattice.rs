@@ -10,6 +10,7 @@
 //!   than the lattice is gone.
 
 use super::operand::Operand;
+use super::overlaps::overlapping;
 use super::result::{Outcome, Tables};
 use super::simple::{Resolution, resolve};
 use super::{Expression, evaluate_on_lattice, mates};
@@ -103,7 +104,7 @@ impl Lattice {
         laid.sources = (0..mesh.triangles.len() as u32).map(|triangle| [0, triangle]).collect();
         if self.lay(&mut laid.mesh) {
             laid.clean();
-            let Resolution { mut outcome, is_same, .. } = resolve(&laid.mesh)?;
+            let Resolution { mut outcome, is_same, .. } = resolve(&laid.mesh, &overlapping(&laid.mesh))?;
             if !is_same {
                 outcome.sources.iter_mut().for_each(|source| *source = laid.sources[source[1] as usize]);
                 laid = outcome;
@@ -122,7 +123,8 @@ impl Lattice {
         let laid: Vec<(Mesh, Vec<u32>)> = laid.collect::<Result<_, _>>()?;
         let filed = laid.par_iter().map(|(mesh, _)| (Sorted::new(&mesh.vertices, &mesh.triangles), mates(mesh)));
         let filed: Vec<(Sorted, Vec<u32>)> = filed.collect();
-        let operands = laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, mates });
+        let operands =
+            laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, mates, overlaps: &[] });
         let mut outcome = evaluate_on_lattice(operands.collect(), expression).map_err(back)?;
         let source = |[operand, triangle]: [u32; 2]| [operand, laid[operand as usize].1[triangle as usize]];
         outcome.sources.iter_mut().for_each(|of| *of = source(*of));

@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::operand::overlaps;
+    use super::super::overlaps::overlapping;
     use super::*;
 
     #[test]
@@ -152,7 +152,6 @@ mod tests {
         let vertices = [lid.as_slice(), &base, &[under(0.37, 0.41, -f64::EPSILON)]].concat();
         let triangles = vec![[0, 1, 2], [3, 4, 6], [4, 5, 6], [5, 3, 6], [3, 5, 4]];
         let mut mesh = Mesh { vertices, triangles, ..Mesh::default() };
-        let overlapping = |mesh: &Mesh| overlaps(mesh, &Sorted::new(&mesh.vertices, &mesh.triangles));
         let (pairs, first) = (overlapping(&mesh), mesh.vertices.clone());
         assert_eq!(pairs.len(), 3);
         nudge(&mut mesh, &pairs, 4.0);

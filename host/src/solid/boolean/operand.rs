@@ -1,13 +1,12 @@
 //! The solids of an operation, with their vertices and triangles counted through.
 
 use super::contact::Face;
-use super::overlap::{Tile, overlap};
 use super::quads::ring;
 use crate::mesh::Mesh;
+use crate::numeric::bounds::Bounds;
 use crate::octree::Sorted;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// No triangle.
 pub const NONE: u32 = u32::MAX;
@@ -21,6 +20,8 @@ pub struct Operand<'a> {
     pub sorted: &'a Sorted,
     /// For each triangle the one with which it makes one face, or [`NONE`]; empty if all are on their own.
     pub mates: &'a [u32],
+    /// Pairs of its triangles that overlap, the lower first; none if its surface is simple.
+    pub overlaps: &'a [[u32; 2]],
 }
 
 impl Operand<'_> {
@@ -42,6 +43,7 @@ pub struct Operands<'a> {
     pub are_simple: bool,
     meshes: Vec<&'a Mesh>,
     operands: Vec<Operand<'a>>,
+    bounds: Vec<Bounds>,
     first_vertex: Vec<u32>,
     first_triangle: Vec<u32>,
 }
@@ -52,6 +54,7 @@ impl<'a> Operands<'a> {
     /// - `are_simple`: whether their surfaces are known to bound them simply.
     pub fn new(operands: Vec<Operand<'a>>, are_simple: bool) -> Operands<'a> {
         let meshes: Vec<&Mesh> = operands.iter().map(|operand| operand.mesh).collect();
+        let bounds = operands.iter().map(|operand| operand.sorted.bounds()).collect();
         let starts = |count: fn(&Mesh) -> usize| {
             let mut sum = 0;
             let mut starts = vec![0];
@@ -63,7 +66,7 @@ impl<'a> Operands<'a> {
         };
         let first_vertex = starts(|mesh| mesh.vertices.len());
         let first_triangle = starts(|mesh| mesh.triangles.len());
-        Operands { are_simple, meshes, operands, first_vertex, first_triangle }
+        Operands { are_simple, meshes, operands, bounds, first_vertex, first_triangle }
     }
 
     /// The meshes.
@@ -74,6 +77,18 @@ impl<'a> Operands<'a> {
     /// The triangles of an operand by place.
     pub fn sorted(&self, operand: u32) -> &Sorted {
         self.operands[operand as usize].sorted
+    }
+
+    /// The box of an operand.
+    #[inline]
+    pub fn bounds(&self, operand: u32) -> Bounds {
+        self.bounds[operand as usize]
+    }
+
+    /// The largest coordinate of all operands.
+    pub fn largest(&self) -> f64 {
+        let sizes = self.bounds.iter().map(|b| b.min.abs().max(b.max.abs()).max_element());
+        sizes.filter(|size| size.is_finite()).fold(0.0, f64::max)
     }
 
     /// Number of all vertices.
@@ -139,9 +154,9 @@ impl<'a> Operands<'a> {
 
     /// The other operands whose boxes touch that of an operand, in order.
     pub fn near(&self, operand: u32) -> impl Iterator<Item = u32> {
-        let bounds = self.sorted(operand).bounds();
+        let bounds = self.bounds(operand);
         let others = (0..self.meshes.len() as u32).filter(move |other| *other != operand);
-        others.filter(move |other| self.sorted(*other).bounds().touches(bounds))
+        others.filter(move |other| self.bounds(*other).touches(bounds))
     }
 
     /// Pairs of faces of different operands, by their lower triangles, of which the boxes of triangles touch.
@@ -172,29 +187,6 @@ impl<'a> Operands<'a> {
     /// Pairs of triangles of one operand, the lower first, that have more in common than corners and the edges between.
     pub fn overlaps(&self, operand: u32) -> Vec<[u32; 2]> {
         let first = self.first_triangle(operand);
-        let pairs = overlaps(self.meshes[operand as usize], self.sorted(operand));
-        pairs.into_iter().map(|pair| pair.map(|t| t + first)).collect()
+        self.operands[operand as usize].overlaps.iter().map(|pair| pair.map(|t| t + first)).collect()
     }
-}
-
-/// Pairs of triangles of a mesh, the lower first, that have more in common than corners and the edges between.
-///
-/// - `sorted`: the triangles by place.
-pub fn overlaps(mesh: &Mesh, sorted: &Sorted) -> Vec<[u32; 2]> {
-    overlaps_up_to(mesh, sorted, usize::MAX)
-}
-
-/// Pairs of triangles of a mesh as [`overlaps`] gives them; if there are more than `most`, a few more of them than that.
-pub fn overlaps_up_to(mesh: &Mesh, sorted: &Sorted, most: usize) -> Vec<[u32; 2]> {
-    let tile =
-        |triangle: u32| Tile { names: mesh.triangles[triangle as usize], corners: mesh.corners(triangle as usize) };
-    let count = AtomicUsize::new(0);
-    let is_enough = || count.load(Ordering::Relaxed) > most;
-    sorted.pairs_within_until(is_enough, |a, b| {
-        let overlap = overlap(&tile(a).with_plane(), &tile(b), || tile(b).with_plane());
-        if overlap {
-            count.fetch_add(1, Ordering::Relaxed);
-        }
-        overlap
-    })
 }

@@ -163,7 +163,7 @@ fn overlap_of<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, own: u8, plane_
     // Neighbours in one plane or nearly so, of which a division is full, are mostly parted where they are seen best.
     let normal = one.plane.normal.abs();
     let axis = if normal.max_element() == normal.x { 0 } else { if normal.y >= normal.z { 1 } else { 2 } };
-    if one.parts(&two.tile, axis) || two.parts(&one.tile, axis) {
+    if (axis..axis + 3).any(|axis| one.parts(&two.tile, axis % 3) || two.parts(&one.tile, axis % 3)) {
         return false;
     }
     overlap_exactly(one.tile.corners, two.tile.corners)

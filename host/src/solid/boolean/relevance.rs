@@ -87,7 +87,7 @@ fn known_places(
     let mut near = Vec::new();
     let mut is_touched = vec![false; mesh.triangles.len()];
     touched.for_each(|triangle| is_touched[triangle as usize] = true);
-    burial.visible(operands, operand).touching_boxes(operands.sorted(other).bounds(), |triangle, bounds| {
+    burial.visible(operands, operand).touching_boxes(operands.bounds(other), |triangle, bounds| {
         near.push(triangle);
         let is_touched = &mut is_touched[triangle as usize];
         *is_touched = *is_touched || burial.is_beside(bounds, other);

@@ -4,13 +4,16 @@
 //! the points that it winds around more than not at all.
 
 use super::nudging::nudge;
-use super::operand::{Operand, Operands, overlaps};
+use super::operand::{Operand, Operands};
+use super::overlaps::{Overlaps, overlapping};
 use super::result::Outcome;
 use super::sides::Sides;
 use super::snapping::{Scope, snapped};
 use super::union_find::UnionFind;
 use super::{Expression, Work, work};
 use crate::mesh::{Mesh, bits};
+use crate::numeric::bounds::Bounds;
+use crate::numeric::triangle;
 use crate::octree::Sorted;
 use crate::solid::SolidError;
 use crate::solid::import::is_closed;
@@ -57,11 +60,13 @@ pub struct Resolution {
 
 /// Makes a closed surface simple.
 ///
+/// - `overlaps`: pairs of its triangles that overlap, the lower first.
+///
 /// # Errors
 /// [`SolidError::Unsettled`].
-pub fn resolve(mesh: &Mesh) -> Result<Resolution, SolidError> {
+pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidError> {
     let mesh = separated(mesh);
-    let Work { mut outcome, is_all_kept, odd, .. } = divided(&mesh);
+    let Work { mut outcome, is_all_kept, odd, .. } = divided(&mesh, overlaps);
     outcome.clean();
     Ok(Resolution { outcome: settled(outcome)?, is_same: is_all_kept, odd })
 }
@@ -75,7 +80,7 @@ pub fn resolve(mesh: &Mesh) -> Result<Resolution, SolidError> {
 ///
 /// No point is farther from the rounded surface than [`MOST`] units in the last place of the largest coordinate: each that
 /// is no corner of it is measured. Each attempt takes about as long as a few operations on the triangles that overlap,
-/// besides looking twice at all triangles in each turn.
+/// besides looking once at all triangles, and in each turn at those that were changed.
 ///
 /// # Errors
 /// [`SolidError::Unsettled`] if none of the attempts succeeds.
@@ -92,16 +97,16 @@ pub fn settled(mut outcome: Outcome) -> Result<Outcome, SolidError> {
             let change = (settled.mesh.signed_volume() - volume).abs();
             change <= (2.0 * attempt.most + 8.0) * bound
                 && is_closed(&settled.mesh)
-                && overlapping(&settled.mesh).is_empty()
                 && is_near(&settled.mesh, &outcome.mesh)
         };
         let from =
             if attempt.goes_on { best.clone() } else { Trial { outcome: outcome.clone(), pairs: first.clone() } };
         let trial = from.made_simple(attempt);
         if trial.pairs.is_empty() {
-            // What was turned inside out goes now.
-            let mut settled = right_side_out(&trial.outcome).unwrap_or(trial.outcome);
+            // What was turned inside out goes now; where nothing overlaps, all that stays is whole.
+            let settled = right_side_out(&trial.outcome).unwrap_or(trial.outcome);
             if is_right(&settled) {
+                let mut settled = settled;
                 settled.counts.settled = number;
                 return Ok(settled);
             }
@@ -126,12 +131,14 @@ impl Trial {
         let mut best = self.clone();
         for _ in 0..TURNS {
             let before = self.pairs.len();
+            let known = Overlaps::new(&self.outcome.mesh, &self.pairs);
             self.outcome = snapped(self.outcome, &self.pairs, attempt.most, attempt.scope);
-            self.pairs = overlapping(&self.outcome.mesh);
+            self.pairs = known.overlapping(&self.outcome.mesh);
             if !self.pairs.is_empty() {
+                let known = Overlaps::new(&self.outcome.mesh, &self.pairs);
                 nudge(&mut self.outcome.mesh, &self.pairs, attempt.most);
                 self.outcome.clean();
-                self.pairs = overlapping(&self.outcome.mesh);
+                self.pairs = known.overlapping(&self.outcome.mesh);
             }
             if self.pairs.len() < best.pairs.len() {
                 best = self.clone();
@@ -144,10 +151,11 @@ impl Trial {
     }
 }
 
-/// The border of what a surface winds around more than not at all; nothing if that is all of it.
+/// The border of what a surface of which no triangles overlap winds around more than not at all; nothing if that is all of
+/// it.
 fn right_side_out(outcome: &Outcome) -> Option<Outcome> {
     let mesh = separated(&outcome.mesh);
-    let Work { outcome: mut next, is_all_kept, .. } = divided(&mesh);
+    let Work { outcome: mut next, is_all_kept, .. } = divided(&mesh, &[]);
     if is_all_kept {
         return None;
     }
@@ -175,21 +183,25 @@ fn is_near(settled: &Mesh, rounded: &Mesh) -> bool {
         settled.vertices.iter().copied().filter(|vertex| !corners.contains(&bits(*vertex))).collect();
     let sorted = Sorted::new(&rounded.vertices, &rounded.triangles);
     let largest = rounded.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+    let reach = MOST * f64::EPSILON * largest;
     let is_near = |point: DVec3| {
-        let nearest = sorted.nearest(point, |triangle| rounded.corners(triangle as usize));
-        nearest.is_some_and(|nearest| nearest.distance <= MOST * f64::EPSILON * largest)
+        let mut is_near = false;
+        sorted.touching(Bounds { min: point - reach, max: point + reach }, |triangle| {
+            is_near = is_near || {
+                let nearest = triangle::nearest(point, rounded.corners(triangle as usize));
+                nearest.distance(point) <= reach
+            };
+        });
+        is_near
     };
     moved.into_iter().all(is_near)
 }
 
-/// What a mesh bounds, with its surface divided where it crosses itself.
-fn divided(mesh: &Mesh) -> Work {
+/// What a mesh bounds, with its surface divided where it crosses itself: where triangles overlap.
+fn divided(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Work {
     let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
-    work(&Operands::new(vec![Operand { mesh, sorted: &sorted, mates: &[] }], false), &Expression::Operand(0))
-}
-
-fn overlapping(mesh: &Mesh) -> Vec<[u32; 2]> {
-    overlaps(mesh, &Sorted::new(&mesh.vertices, &mesh.triangles))
+    let operand = Operand { mesh, sorted: &sorted, mates: &[], overlaps };
+    work(&Operands::new(vec![operand], false), &Expression::Operand(0))
 }
 
 /// The mesh with vertices of their own for all that is not joined by edges of two triangles.

@@ -11,9 +11,8 @@ use glam::DVec3;
 /// Counts the triangles beside a ray along x. The ray is thought to be moved a little along y and much less along z, so
 /// that it meets neither vertex nor edge.
 pub fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64) -> i32 {
-    let bounds = operands.sorted(operand).bounds();
     let near = point.bounds();
-    if !bounds.touches(near) {
+    if !operands.bounds(operand).touches(near) {
         return 0;
     }
     *rays += 1;
