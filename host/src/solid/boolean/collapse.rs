@@ -234,7 +234,7 @@ impl<'a> Collapsing<'a> {
             refuse(sorted.pairs_if(&all, |a, b| {
                 let name = |vertex: u32| kept.of_vertex[(first_vertex + vertex) as usize];
                 let corners = mesh.corners(b as usize);
-                kept.is_kept[(first + b) as usize]
+                kept.is_kept(first + b)
                     && new[a as usize].meets(&Tile { names: mesh.triangles[b as usize].map(name), corners })
             }));
         }

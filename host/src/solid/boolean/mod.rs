@@ -148,10 +148,10 @@ struct Work {
 
 /// Evaluates an expression once.
 fn work(operands: &Operands, expression: &Expression) -> Work {
-    let arrangement = Arrangement::new(operands, expression);
+    let mut arrangement = Arrangement::new(operands, expression);
     let facets = facets::divide(&arrangement);
     // Triangles that stay whole, if they stay.
-    let mut is_whole = arrangement.is_relevant.clone();
+    let mut is_whole = std::mem::take(&mut arrangement.is_relevant);
     for triangle in arrangement.touched().flat_map(|face| operands.halves(arrangement.triangles[face as usize])) {
         is_whole[triangle as usize] = false;
     }

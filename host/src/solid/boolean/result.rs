@@ -36,10 +36,9 @@ pub fn assemble(
 ) -> (Outcome, Made, bool) {
     let tables = Tables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
-    let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
     let fates = parts.of_triangles(operands, is_whole);
-    let is_kept: Vec<bool> = fates.iter().map(|fate| *fate != Fate::Dropped).collect();
-    outcome.reserve(is_kept.iter().filter(|kept| **kept).count() + facets.len());
+    outcome.reserve(fates.iter().filter(|fate| **fate != Fate::Dropped).count() + facets.len());
+    let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let operand = operand as u32;
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
@@ -88,7 +87,7 @@ pub fn assemble(
         let mesh = operands.meshes()[operand as usize];
         tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
-    let kept = Kept { is_kept, of_vertex };
+    let kept = Kept { fates, of_vertex };
     let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &kept);
     let is_free = vec![true; is_moved.len() - first_vertex as usize];
     (outcome, Made { first: first_facet, first_vertex, is_free, kept: Some(kept) }, crosses)

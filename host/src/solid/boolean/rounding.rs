@@ -2,16 +2,25 @@
 
 use super::operand::Operands;
 use super::overlap::{PlaneTile, Tile, nearly_overlap};
+use super::parts::Fate;
 use crate::mesh::Mesh;
 use crate::octree::Sorted;
 use rayon::prelude::*;
 
 /// What stayed whole.
 pub struct Kept {
-    /// For each triangle of the operands, counted through, whether it is in the result.
-    pub is_kept: Vec<bool>,
+    /// What became of each triangle of the operands, counted through; those that did not stay whole are dropped.
+    pub fates: Vec<Fate>,
     /// By vertex of the operands, counted through, its number in the result.
     pub of_vertex: Vec<u32>,
+}
+
+impl Kept {
+    /// Whether a triangle of the operands, counted through, is in the result as it is.
+    #[inline]
+    pub fn is_kept(&self, triangle: u32) -> bool {
+        self.fates[triangle as usize] != Fate::Dropped
+    }
 }
 
 /// What of a result was made by the operation.
@@ -70,10 +79,10 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
             names: mesh.triangles[triangle as usize].map(|vertex| kept.of_vertex[(first_vertex + vertex) as usize]),
             corners: mesh.corners(triangle as usize),
         };
-        let is_kept = |triangle: u32| kept.is_kept[(first + triangle) as usize];
+        let is_kept = |triangle: u32| kept.is_kept(first + triangle);
         let sorted_operand = operands.sorted(operand);
         // To find all that were kept pays only where more than a few are asked for.
-        let is_large = mesh.triangles.len() > 16 * moved.len();
+        let is_large = mesh.triangles.len() > 64 * moved.len();
         let near = if is_large { sorted_operand.all() } else { sorted_operand.part(is_kept) };
         !sorted.pairs_if(&near, |a, b| is_kept(b) && is_overlap(a, of_kept(b))).is_empty()
     })
