@@ -97,12 +97,12 @@ pub fn assemble(
 fn half_at(operands: &Operands, triangle: u32, place: DVec3) -> u32 {
     let mut halves = operands.halves(triangle);
     let (Some(low), Some(high)) = (halves.next(), halves.next()) else { return triangle };
-    let gap = |half: u32| {
-        let (_, [a, b, c]) = operands.corners(half);
-        let weights = triangle::weights([a, b, c], place);
-        (a * weights[0] + b * weights[1] + c * weights[2]).distance_squared(place)
-    };
-    if gap(high) < gap(low) { high } else { low }
+    let ((names, corners), (beyond, _)) = (operands.corners(low), operands.corners(high));
+    let apex = names.iter().position(|name| !beyond.contains(name)).unwrap_or(0);
+    let [from, to, apex] = [1, 2, 3].map(|k| corners[(apex + k) % 3]);
+    // On which side of the common edge.
+    let turn = |p: DVec3| (to - from).cross(p - from);
+    if turn(place).dot(turn(apex)) < 0.0 { high } else { low }
 }
 
 impl Outcome {
