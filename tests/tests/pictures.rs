@@ -1,5 +1,6 @@
 //! Commands that make, explain, compare and combine pictures, as a user gives them.
 
+use host::picture::Picture;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -43,6 +44,30 @@ fn a_pixel_is_explained_as_it_is_rendered() {
     assert!(notes.iter().any(|note| note["what"].as_str().unwrap().starts_with("meets sphere, metal material")));
     let ended = peris(&["render", "a.rhai", "--pixel", "48,0"], folder);
     assert!(ended.code == Some(2) && ended.errors.contains("outside the picture"), "{}", ended.errors);
+}
+
+#[test]
+fn a_scene_without_light_comes_out_neither_black_nor_blown() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let own = "sphere(1); directional_light(#{ direction: [0, -1, 0] });";
+    for (script, is_lit) in [
+        ("sphere(1);", true),
+        ("box(2, 1, 1).translate(1e4, 0, 0);", true),
+        ("sphere(1e-4).metal(\"copper\");", true),
+        ("ground(50); cylinder(1, 2).translate(0, 1, 0);", true),
+        ("box(8, 3, 8); sphere(1); camera(#{ from: [1, 0, 3.5], at: [0, 0, 0] });", true),
+        (own, false),
+    ] {
+        fs::write(folder.join("a.rhai"), format!("image(48, 36); {script}")).unwrap();
+        let ended = peris(&["render", "a.rhai", "-o", "a.exr", "--samples", "8"], folder);
+        assert_eq!((ended.code, ended.errors.contains("no light of its own")), (Some(0), is_lit), "{}", ended.errors);
+        let picture = Picture::read(&folder.join("a.exr")).unwrap();
+        let brightest = picture.pixels().iter().map(|pixel| pixel.radiance.into_iter().fold(0.0, f32::max));
+        let part = |is: fn(f32) -> bool| brightest.clone().filter(|v| is(*v)).count() as f64 / (48.0 * 36.0);
+        let (clipped, black) = (part(|v| v > 1.0), part(|v| v < 1.0 / 255.0));
+        assert!(!is_lit || clipped < 0.01 && black < 0.01, "{script}: {clipped} {black}");
+    }
 }
 
 #[test]

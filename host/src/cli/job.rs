@@ -168,7 +168,7 @@ impl Job<'_> {
         interrupts::say_kept(format!("what was finished is in {}", folder.path().display()));
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
-        super::warn_of_darkness(&self.scene);
+        super::warn_of_emptiness(&self.scene);
         let patience = self.common.waits.patience();
         let (mut emulator, line) = match self.to {
             Some(line) => (None, line.clone()),

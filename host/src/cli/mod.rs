@@ -32,7 +32,6 @@ use source::load_lit;
 pub use source::{Definitions, SCRIPT_HELP, load};
 use waits::Waits;
 
-use crate::illumination::Bands;
 use crate::memory;
 use crate::scene::Scene;
 use clap::{Arg, ArgMatches, Command};
@@ -144,12 +143,10 @@ fn warn(text: &str) {
     say::tell(&format!("warning: {text}"));
 }
 
-/// Says on standard error what makes a picture empty or black.
-fn warn_of_darkness(scene: &Scene) {
+/// Says on standard error that a picture will be empty.
+fn warn_of_emptiness(scene: &Scene) {
     if scene.objects.is_empty() {
         warn("the scene has no objects; only its background will be seen");
-    } else if scene.lights.is_empty() && scene.ambient == Bands::ZERO {
-        warn("the scene has neither lights nor ambient light; its objects will be black");
     }
 }
 

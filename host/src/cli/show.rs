@@ -108,7 +108,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Solves for the light of all surfaces.
 fn solve(scene: &Scene, arguments: &Arguments) -> Result<Tiling, Failure> {
-    super::warn_of_darkness(scene);
+    super::warn_of_emptiness(scene);
     let light = tiling(scene, arguments.threads, &progress::watch())?;
     progress::clear();
     Ok(light)

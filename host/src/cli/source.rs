@@ -35,16 +35,22 @@ pub(super) fn is_mesh(name: &Path) -> bool {
     mesh::Format::of(name).is_some() || Octree::is_file(name)
 }
 
-/// The scene that the command line names, to be looked at: one that has only triangles is lit and framed.
+/// The scene that the command line names, to be looked at: one that has only triangles is put into a studio, and one that
+/// has no light is lit, of which a line tells.
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`], if the script is wrong or the mesh cannot be read.
 pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
     let evaluated = load(name, definitions)?;
-    Ok(match is_mesh(Path::new(name)) {
-        true => Evaluated { scene: evaluated.scene.in_studio()?, ..evaluated },
-        false => evaluated,
-    })
+    if is_mesh(Path::new(name)) {
+        return Ok(Evaluated { scene: evaluated.scene.in_studio()?, ..evaluated });
+    }
+    let count = evaluated.scene.lights.len();
+    let scene = evaluated.scene.lit()?;
+    if scene.lights.len() > count {
+        say::tell("the scene has no light of its own: it is lit as in a studio");
+    }
+    Ok(Evaluated { scene, ..evaluated })
 }
 
 /// Runs the script that the command line names, or takes the mesh that it names as the only object of a scene; what the

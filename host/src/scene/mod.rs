@@ -4,6 +4,7 @@
 
 mod cage;
 mod composite;
+mod default_light;
 mod error;
 mod exact;
 mod meeting;
@@ -60,7 +61,7 @@ pub struct Scene {
     pub ambient: Bands,
     /// Radiance where a ray meets nothing, W/(m² sr).
     pub background: Bands,
-    /// From where it is seen; without one, the whole scene is framed from the front, a little from above.
+    /// From where it is seen; without one, what is no ground is framed from the front, a little from above.
     pub camera: Option<Camera>,
     /// How it is rendered.
     pub settings: Settings,

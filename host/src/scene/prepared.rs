@@ -128,8 +128,15 @@ impl Prepared {
             let (made, chord) = (shared.made(scene, index)?, shared.chord(index));
             prepared.add(object, &made, chord, motions.get(&index).copied())?;
         }
-        prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.bounds));
+        prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.subject()));
         Ok(prepared)
+    }
+
+    /// A box around what is looked at: all objects that are no grounds, or everything if there are only these.
+    pub fn subject(&self) -> Bounds {
+        let ground = Shape::Ground { size: 1.0 }.word();
+        let all = self.objects.iter().filter(|object| object.shape != ground && !object.bounds.is_empty());
+        all.map(|object| object.bounds).reduce(Bounds::union).unwrap_or(self.bounds)
     }
 
     fn add(&mut self, object: &Object, made: &Made, chord: f64, motion: Option<Motion>) -> Result<(), SceneError> {

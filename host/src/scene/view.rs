@@ -10,6 +10,9 @@ const FRAMING_DIRECTION: DVec3 = DVec3::new(0.35, 0.45, 1.0);
 /// Field of view of the automatic camera, degrees.
 const FRAMING_FIELD_OF_VIEW: f64 = 30.0;
 
+/// The part of the shorter side of the picture that what is framed takes at most.
+const FRAMED: f64 = 0.9;
+
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
@@ -112,15 +115,22 @@ impl Camera {
         (self.field_of_view.to_radians() / 2.0).tan()
     }
 
-    /// A camera that frames `bounds` from the front, a little from the right and from above.
+    /// A camera that frames `bounds` from the front, a little from the right and from above: all of their corners lie within
+    /// nine tenths of the shorter side of the picture.
     pub fn framing(bounds: &Bounds) -> Camera {
-        let radius = (bounds.diagonal() / 2.0).max(f64::MIN_POSITIVE.sqrt());
-        let distance = radius / (FRAMING_FIELD_OF_VIEW.to_radians() / 2.0).sin();
-        let at = bounds.center();
+        let (at, back, up) = (bounds.center(), FRAMING_DIRECTION.normalize(), DVec3::Y);
+        let right = up.cross(back).normalize();
+        let half = (FRAMING_FIELD_OF_VIEW.to_radians() / 2.0).tan() * FRAMED;
+        let distance = bounds.corners().map(|corner| {
+            let corner = corner - at;
+            let aside = right.dot(corner).abs().max(back.cross(right).dot(corner).abs());
+            back.dot(corner) + aside / half
+        });
+        let distance = distance.into_iter().fold(f64::MIN_POSITIVE.sqrt(), f64::max);
         Camera {
-            from: at + FRAMING_DIRECTION.normalize() * distance,
+            from: at + back * distance,
             at,
-            up: DVec3::Y,
+            up,
             field_of_view: FRAMING_FIELD_OF_VIEW,
             near: 0.0,
             far: None,

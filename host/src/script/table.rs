@@ -155,7 +155,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     Function {
         name: "camera",
-        summary: "Sets from where the scene is seen; without it, the whole scene is framed.",
+        summary: "Sets from where the scene is seen; without it, all that is no ground is framed.",
         parameters: &[
             parameter("from", Kind::Vector, Required, "the eye"),
             parameter("at", Kind::Vector, Is("[0, 0, 0]"), "what is in the middle of the picture"),

@@ -129,7 +129,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let state = arguments.resume.as_ref().map(Destination::of).transpose()?;
     arguments.light.as_ref().map(Destination::of).transpose()?;
     let mut scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
-    super::warn_of_darkness(&scene);
+    super::warn_of_emptiness(&scene);
     arguments.set(&mut scene.settings);
     let start = Instant::now();
     progress::stage("while building the geometry");
