@@ -47,8 +47,8 @@ pub struct Content {
     pub inner: Vec<u32>,
     /// Lines across it.
     pub segments: Vec<Segment>,
-    /// Points at its corners.
-    pub corners: Vec<u32>,
+    /// Points at its corners, as many as it has sides.
+    pub corners: [u32; 4],
     is_touched: bool,
     /// The operand whose faces touch it, or [`SEVERAL`].
     partner: Option<u32>,
@@ -541,8 +541,10 @@ impl Arrangement {
         for face in 0..self.faces.len() {
             if self.contents[face].is_touched {
                 let shape = self.faces[face];
-                let corners: Vec<u32> = shape.vertices().iter().map(|&vertex| self.id(Key::Vertex(vertex))).collect();
-                self.contents[face].corners = corners.into_iter().map(|corner| self.point(corner)).collect();
+                for (k, &vertex) in shape.vertices().iter().enumerate() {
+                    let corner = self.id(Key::Vertex(vertex));
+                    self.contents[face].corners[k] = self.point(corner);
+                }
             }
         }
     }

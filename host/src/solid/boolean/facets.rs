@@ -59,8 +59,8 @@ pub fn divide(arrangement: &Arrangement) -> Vec<Facet> {
 /// The border of a face, point by point from its first corner on.
 fn border(arrangement: &Arrangement, face: u32) -> Vec<u32> {
     let mut border = Vec::new();
-    for (k, &corner) in (0..).zip(&arrangement.contents[face as usize].corners) {
-        border.push(corner);
+    for k in arrangement.faces[face as usize].numbers() {
+        border.push(arrangement.contents[face as usize].corners[k as usize]);
         border.extend(arrangement.on_edge(face, k));
     }
     border
@@ -127,16 +127,16 @@ impl<'a> Sheet<'a> {
 fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
     let (content, shape) = (&arrangement.contents[face as usize], &arrangement.faces[face as usize]);
     let is_turned = shape.turn < 0.0;
-    let mut corners = content.corners.clone();
+    let mut corners = content.corners;
     if is_turned {
-        corners[1..].reverse();
+        corners[1..shape.sides].reverse();
     }
-    let places: Vec<&Point> = corners.iter().map(|&p| &arrangement.points[p as usize]).collect();
+    let places = corners.map(|p| &arrangement.points[p as usize]);
     let mut sheet = Sheet {
         arrangement,
-        triangulation: Triangulation::new(shape.axis, &places),
+        triangulation: Triangulation::new(shape.axis, &places[..shape.sides]),
         inside: FxHashMap::with_capacity_and_hasher(ROOM, Default::default()),
-        outside: corners,
+        outside: corners[..shape.sides].to_vec(),
     };
     sheet.inside.extend(sheet.outside.iter().copied().zip(0..));
     for k in shape.numbers() {
