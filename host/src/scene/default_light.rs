@@ -39,8 +39,8 @@ const BOUNCE_STAND: Stand = Stand { place: DVec3::new(2.0, -2.2, 1.0), side: 2.4
 
 impl Scene {
     /// The scene, with lights if it is dark: if it has no light, no ambient light and no material that emits. A background
-    /// that it has is its sky; what is seen from within its bounds, as a room,
-    /// is lit from the eye.
+    /// that it has is its sky; what is seen from within its bounds, as a room, is lit from the eye. A scene without
+    /// triangles stays as it is.
     ///
     /// # Errors
     /// [`SceneError`] if its triangles cannot be made.
@@ -50,6 +50,9 @@ impl Scene {
         if !has_light && !self.objects.is_empty() && !self.objects.iter().any(is_emissive) {
             let prepared = Prepared::new(&self)?;
             let (camera, bounds) = (prepared.camera, prepared.subject());
+            if bounds.is_empty() {
+                return Ok(self);
+            }
             if bounds.touches(Bounds::of([camera.from])) {
                 let intensity =
                     HEADLIGHT * camera.from.distance_squared(camera.at).max(bounds.diagonal().powi(2) / 100.0);
@@ -77,7 +80,7 @@ fn default_lights(camera: &Camera, bounds: &Bounds, background: Bands) -> Result
     Ok(vec![lamp(&KEY_STAND, Bands::splat(KEY)), lamp(&BOUNCE_STAND, BOUNCE), sky])
 }
 
-/// A square lamp around a place, which shines on another, not above or below it.
+/// A square lamp around a place, which faces another.
 ///
 /// - `irradiance`: about what a surface there that faces it gets, W/m².
 pub(super) fn soft_box(place: DVec3, on: DVec3, side: f64, irradiance: Bands) -> Light {
@@ -134,12 +137,16 @@ mod tests {
     fn what_has_light_of_its_own_stays_as_it_is() {
         let bare = scene(1.0, DVec3::ZERO);
         let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) };
+        let mut lines = bare.clone();
+        lines.objects[0].shape =
+            Shape::Curve(Box::new([bare.objects[0].clone(), scene(1.0, DVec3::X * 9.0).objects[0].clone()]));
         let mut glowing = bare.clone();
         glowing.objects[0].material.get_or_insert_default().emission = Color::grey(1.0);
         for own in [
             Scene { lights: vec![sun], ..bare.clone() },
             Scene { ambient: Bands::splat(0.1), ..bare.clone() },
             glowing,
+            lines,
             Scene::default(),
         ] {
             assert_eq!(own.clone().lit().expect("nothing to be made"), own);

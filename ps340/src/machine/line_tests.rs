@@ -174,3 +174,24 @@ fn an_instance_of_a_line_is_called_by_its_name_and_its_line() {
     room.send(ONE, "SEND 'still here' TO <1>A;");
     room.assert_heard(ONE, &["still here"], &[]);
 }
+
+#[test]
+fn many_errors_of_a_line_with_its_own_do_not_silence_those_of_others() {
+    let mut room = Room::new();
+    room.send(SHARED, "CONNECT ERROR<1>:<1>HOST_MESSAGE;");
+    let wrong = "SEND 0 TO <1>NOBODY;".repeat(2 * REPORTS_PER_FRAME as usize);
+    room.send(ONE, wrong);
+    assert_eq!(room.heard(ONE).1.len(), 2 * REPORTS_PER_FRAME as usize);
+    room.send(SHARED, "SEND 0 TO <1>NOBODY;");
+    let (messages, reports) = room.heard(SHARED);
+    assert!(
+        messages.len() == 1 && messages[0].contains("Name not found: NOBODY") && reports.is_empty(),
+        "{messages:?}"
+    );
+    // Those that reach ERROR are limited all the same.
+    room.send(SHARED, "SEND 0 TO <1>NOBODY;".repeat(2 * REPORTS_PER_FRAME as usize));
+    assert_eq!(room.heard(SHARED).0.len(), REPORTS_PER_FRAME as usize - 1);
+    room.frame();
+    room.send(SHARED, "SEND 0 TO <1>NOBODY;");
+    assert_eq!(room.heard(SHARED).0.len(), 1);
+}

@@ -107,8 +107,11 @@ pub struct Machine {
     frame_buffer: FrameBuffer,
     frame: u64,
     work_left: u64,
-    /// Messages of the machine since the latest frame.
+    /// Messages of the machine since the latest frame: all, those given to ERROR, WARNING or INFORMATION, and those that
+    /// were too many for these.
     reported: u64,
+    emitted: u64,
+    unheard: u64,
     network_idle: bool,
     update: Update,
     /// Version of the structure that `update` shows; none before the first.
@@ -148,6 +151,8 @@ impl Machine {
             frame: 0,
             work_left: WORK_PER_STEP,
             reported: 0,
+            emitted: 0,
+            unheard: 0,
             network_idle: true,
             update: Update::default(),
             updated: None,

@@ -11,8 +11,9 @@ use protocol::{
 };
 use std::collections::VecDeque;
 
-/// Messages of the machine that reach ERROR, WARNING, INFORMATION and the terminal between two frames; the rest are logged and
-/// counted only, so that a message that causes messages ends.
+/// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames, those that one line alone is told
+/// not counted; the rest are logged and counted only, so that a message that causes messages ends. The terminal shows as
+/// many of all.
 pub const REPORTS_PER_FRAME: u64 = 1000;
 /// Messages of the machine between two frames that are written to the log of the process one by one.
 const LOGGED_PER_FRAME: u64 = 20;
@@ -143,16 +144,19 @@ impl Machine {
             if written.is_some_and(|written| written.is_ok()) {
                 self.outputs.push(line, bytes);
             }
-        } else if self.reported <= REPORTS_PER_FRAME {
+        } else if self.emitted < REPORTS_PER_FRAME {
+            self.emitted += 1;
             self.emit(vec![(instance, 1, Value::string(&text))]);
+        } else {
+            self.unheard += 1;
         }
     }
 
     /// Says how many messages were too many for the log and for ERROR and WARNING since the latest frame.
     pub(super) fn account_for_reports(&mut self) {
-        let reported = std::mem::take(&mut self.reported);
+        let [reported, unheard] = [&mut self.reported, &mut self.unheard].map(std::mem::take);
+        self.emitted = 0;
         if reported > LOGGED_PER_FRAME {
-            let unheard = reported.saturating_sub(REPORTS_PER_FRAME);
             let rest = reported - LOGGED_PER_FRAME;
             tracing::warn!("{rest} more messages in one frame; {unheard} of them did not reach ERROR and WARNING");
         }
