@@ -16,7 +16,7 @@ impl Library {
     /// What ships alone, or in front of it a database in a file.
     ///
     /// # Errors
-    /// As [`Store::open`].
+    /// [`DatabaseError`] if the file cannot be opened or is no database; see [`Store::open`].
     pub fn of(file: Option<&Path>) -> Result<Library, DatabaseError> {
         let mut library = Library::default();
         file.map_or(Ok(()), |file| library.open(file)).map(|()| library)
@@ -25,7 +25,7 @@ impl Library {
     /// Puts a database in a file in front of the others.
     ///
     /// # Errors
-    /// As [`Store::open`].
+    /// [`DatabaseError`] if the file cannot be opened or is no database; see [`Store::open`].
     pub fn open(&mut self, path: &Path) -> Result<(), DatabaseError> {
         self.stores.push(Store::open(path)?);
         Ok(())

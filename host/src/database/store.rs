@@ -81,7 +81,8 @@ impl Store {
     /// Opens a database that exists for writing.
     ///
     /// # Errors
-    /// As [`Store::open_to_write`]; [`DatabaseError::File`] if there is no file.
+    /// [`DatabaseError::File`] if there is no file, [`DatabaseError::Busy`] if another process writes to it, else as
+    /// [`Store::open`].
     pub fn open_existing(path: impl AsRef<Path>) -> Result<Store, DatabaseError> {
         Store::open_as(path.as_ref(), false)
     }

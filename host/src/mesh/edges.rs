@@ -34,7 +34,7 @@ pub struct Edge {
 pub struct EdgeUse {
     /// The triangle.
     pub triangle: u32,
-    /// Which of its sides, 0..3; side k goes from corner k to the next.
+    /// The number of a side of the triangle, 0..3; side k goes from corner k to the next.
     pub side: u8,
     /// Whether the triangle runs from the lower to the higher end.
     pub forward: bool,
@@ -49,7 +49,7 @@ pub enum Eye {
     Direction(DVec3),
 }
 
-/// Which edges inside smooth parts are wanted.
+/// The edges inside smooth parts that are wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interior {
     /// None.
@@ -62,7 +62,7 @@ pub enum Interior {
     All,
 }
 
-/// Which edges of a mesh become vectors.
+/// The edges of a mesh that become vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
     /// Edges of one triangle. (Edges of more than two are always creases.)

@@ -50,7 +50,7 @@ impl Format {
 /// Reads a mesh; see [`read_grouped`].
 ///
 /// # Errors
-/// As [`read_grouped`].
+/// [`MeshError`] if the file cannot be read, or holds no mesh of its format; see [`read_grouped`].
 pub fn read(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
     Ok(read_grouped(path)?.mesh)
 }
@@ -104,7 +104,7 @@ pub fn write(mesh: &Mesh, destination: &Destination) -> Result<(), MeshError> {
 /// Writes a mesh with names for its surfaces, as [`write()`] does; glTF keeps what they look like, too.
 ///
 /// # Errors
-/// As [`write()`].
+/// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written.
 pub fn write_grouped(grouped: &Grouped, destination: &Destination) -> Result<(), MeshError> {
     let path = destination.path();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
@@ -147,7 +147,7 @@ fn parse_beside(
 /// The bytes of a mesh file.
 ///
 /// # Errors
-/// If the mesh is not valid, or the format cannot hold it.
+/// [`Fault`] if the mesh is not valid, or the format cannot hold it.
 pub fn print(mesh: &Mesh, format: Format) -> Result<Vec<u8>, Fault> {
     print_grouped(&Grouped::from(mesh.clone()), format)
 }
@@ -155,7 +155,7 @@ pub fn print(mesh: &Mesh, format: Format) -> Result<Vec<u8>, Fault> {
 /// The bytes of a mesh file with names for its surfaces.
 ///
 /// # Errors
-/// As [`print()`].
+/// [`Fault`] if the mesh is not valid, or the format cannot hold it.
 pub fn print_grouped(grouped: &Grouped, format: Format) -> Result<Vec<u8>, Fault> {
     let Grouped { mesh, names, .. } = grouped;
     mesh.validate()?;

@@ -2,6 +2,7 @@
 
 use super::exact::Exact;
 use super::placing;
+use super::shape::GROUND;
 use super::shared::Shared;
 use super::{Camera, Made, Motion, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::{Bands, Light, Material};
@@ -134,8 +135,7 @@ impl Prepared {
 
     /// A box around what is looked at: all objects that are no grounds, or everything if there are only these.
     pub fn subject(&self) -> Bounds {
-        let ground = Shape::Ground { size: 1.0 }.word();
-        let all = self.objects.iter().filter(|object| object.shape != ground && !object.bounds.is_empty());
+        let all = self.objects.iter().filter(|object| object.shape != GROUND && !object.bounds.is_empty());
         all.map(|object| object.bounds).reduce(Bounds::union).unwrap_or(self.bounds)
     }
 

@@ -75,6 +75,9 @@ pub enum ShapeError {
     },
 }
 
+/// The word for [`Shape::Ground`].
+pub(super) const GROUND: &str = "ground";
+
 /// The form of an object in its own coordinates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -154,7 +157,7 @@ impl Shape {
             Shape::Bunny => "bunny",
             Shape::Solid(primitive) => primitive.word(),
             Shape::HalfSpace { .. } => "half_space",
-            Shape::Ground { .. } => "ground",
+            Shape::Ground { .. } => GROUND,
             Shape::Mesh { .. } => "mesh",
             Shape::Stored { .. } => "stored",
             Shape::Sculpture(_) => "surface",

@@ -34,10 +34,10 @@ const BYTES_PER_VERTEX: u64 = 50;
 /// Intensity at the back of the scene; 1 at its front.
 const BACK_INTENSITY: f64 = 0.25;
 
-/// Which lines of the objects are sent.
+/// The lines of objects that are sent, and how they are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawing {
-    /// Which edges of the objects are sent.
+    /// The edges of the objects that are sent.
     pub lines: Lines,
     /// Edges at which two triangles meet at more than this angle are sent whatever `lines` says, degrees.
     pub crease_degrees: f64,
@@ -48,7 +48,7 @@ pub struct Drawing {
     pub facets: bool,
 }
 
-/// Which edges are sent.
+/// The edges of objects that are sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Lines {
     /// Creases, boundaries, and the parameter lines of curved surfaces; all edges of a mesh that has none.
@@ -98,11 +98,11 @@ pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawi
     with_light(scene, camera, bounds, drawing, None)
 }
 
-/// As [`commands`], and the light of a solution by radiosity, which the node `SHADE` shades on the raster screen when it
-/// gets FIX(5); its polygons are not drawn as vectors.
+/// The commands that [`commands`] gives, and the light of a solution by radiosity, which the node `SHADE` shades on the
+/// raster screen when it gets FIX(5); its polygons are not drawn as vectors.
 ///
 /// # Errors
-/// As [`commands`].
+/// [`WorkstationError::Scene`], if the camera cannot see or an object cannot be tessellated.
 pub fn with_light(
     scene: &Scene,
     camera: &Camera,

@@ -66,7 +66,7 @@ pub enum FacetError<E> {
 /// D is reciprocal, and integrates to 1 but for what strikes a second facet.
 ///
 /// # Source
-/// As [`super::Microfacet`]; Smith's masking for any isotropic distribution after Ashikhmin, Premože and Shirley 2000,
+/// Those of [`super::Microfacet`]; Smith's masking for any isotropic distribution after Ashikhmin, Premože and Shirley 2000,
 /// with the area that facets show to a direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Plain", into = "Plain")]

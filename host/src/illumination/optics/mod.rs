@@ -142,7 +142,7 @@ pub struct Interior {
 pub struct Sighting<'a> {
     /// Towards the viewer.
     pub view: DVec3,
-    /// Which wavelengths are carried.
+    /// The number of the set of wavelengths that are carried.
     pub comb: usize,
     /// The refractive index on the side of the viewer and behind.
     pub side: Side,
@@ -182,13 +182,15 @@ impl Optics {
         self.of(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
     }
 
-    /// As [`Optics::value`], of those lobes.
+    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by the lobes that are
+    /// `among`; nothing of what only a mirror or a smooth interface would reach.
     pub fn value_among(&self, among: Among, sighting: &Sighting, light: DVec3) -> Channels {
         let lobes = self.lobes.iter().filter(|(which, lobe)| among.has(*which, lobe));
         lobes.fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))
     }
 
-    /// As [`Optics::value`], of all lobes.
+    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; nothing of
+    /// what only a mirror or a smooth interface would reach.
     #[inline]
     pub fn response(&self, sighting: &Sighting, light: DVec3) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.value(sighting, light))

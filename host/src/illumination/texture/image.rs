@@ -236,7 +236,7 @@ impl Level {
     }
 }
 
-/// Which of `from` pixels each of `to` covers, and how much of its mean they are.
+/// For each of `to` pixels, those of `from` pixels that it covers, and how much of its mean they are.
 fn shares(from: usize, to: usize) -> Vec<impl Iterator<Item = (usize, f64)> + Clone> {
     let span = from as f64 / to as f64;
     let covered = move |index: usize| {

@@ -416,7 +416,7 @@ impl Arrangement {
         }
     }
 
-    /// Which way a segment and a point turn, seen along an axis; see [`turn`].
+    /// The turn from a segment to a point, seen along an axis, by [`turn`]; 0 for a point that is known to be an end of it.
     fn turn(&self, axis: usize, segment: &Segment, point: u32) -> f64 {
         let [from, to, same] = [segment.ends[0], segment.ends[1], point].map(|p| self.same.root(p));
         if same == from || same == to {

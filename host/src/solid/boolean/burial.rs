@@ -11,7 +11,7 @@ use crate::numeric::bounds::Bounds;
 use crate::octree::Sorted;
 use rayon::prelude::*;
 
-/// Which triangles are buried.
+/// The triangles that lie deep inside other operands.
 #[derive(Default)]
 pub struct Burial {
     /// For each triangle, counted over all operands; empty if none is.

@@ -87,7 +87,7 @@ impl Judge<'_> {
         self.operands.meshes()[operand as usize].corners(source as usize)
     }
 
-    /// Which operand a triangle is of, and which surface of it.
+    /// The operand that a triangle is of, and the surface of that.
     fn kind(&self, triangle: u32) -> (u32, Option<u32>) {
         (self.outcome.sources[triangle as usize][0], self.mesh().surfaces.get(triangle as usize).copied())
     }

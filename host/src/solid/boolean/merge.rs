@@ -60,7 +60,7 @@ fn piece(facet: &Facet, fate: Fate) -> Option<Piece> {
     Some(Piece { corners, face, at: [face; 3], fate })
 }
 
-/// Which pieces belong together, and which points are not needed.
+/// The pieces that belong together, and the points that are not needed.
 struct Plan {
     /// Pieces of one region.
     regions: UnionFind,

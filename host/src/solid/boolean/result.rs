@@ -93,7 +93,7 @@ pub fn assemble(
     (outcome, Made { first: first_facet, first_vertex, is_free, kept: Some(kept) }, crosses)
 }
 
-/// Which of the triangles of a face, given by its lower one, a point lies in.
+/// The triangle of a face that a point lies in; the face is given by its lower triangle.
 fn half_at(operands: &Operands, triangle: u32, place: DVec3) -> u32 {
     let mut halves = operands.halves(triangle);
     let (Some(low), Some(high)) = (halves.next(), halves.next()) else { return triangle };

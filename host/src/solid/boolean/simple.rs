@@ -103,10 +103,15 @@ pub fn settled(mut outcome: Outcome) -> Result<Outcome, SolidError> {
             if attempt.goes_on { best.clone() } else { Trial { outcome: outcome.clone(), pairs: first.clone() } };
         let trial = from.made_simple(attempt);
         if trial.pairs.is_empty() {
-            // What was turned inside out goes now; where nothing overlaps, all that stays is whole.
-            let settled = right_side_out(&trial.outcome).unwrap_or(trial.outcome);
-            if is_right(&settled) {
-                let mut settled = settled;
+            // What was turned inside out goes now. All that stays is whole; that is looked at all the same.
+            let (mut settled, is_simple) = match right_side_out(&trial.outcome) {
+                Some(next) => {
+                    let overlaps = Overlaps::new(&trial.outcome.mesh, &[]).overlapping(&next.mesh);
+                    (next, overlaps.is_empty())
+                }
+                None => (trial.outcome, true),
+            };
+            if is_simple && is_right(&settled) {
                 settled.counts.settled = number;
                 return Ok(settled);
             }

@@ -104,7 +104,7 @@ pub enum RoundingError {
     Solid(#[from] SolidError),
 }
 
-/// Which edges are to be rounded.
+/// The edges of a solid that are to be rounded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EdgeChoice {
     /// All.
