@@ -5,10 +5,11 @@
 //! other random numbers with very many samples; its own error is told. On one thread, so that seconds are those of a
 //! processor. `cargo bench -p tests --bench two_way`
 
+use host::color::srgb::LUMINANCE;
 use host::picture::RELATIVE_FLOOR;
 use host::plan::Plan;
 use host::render::ray_tracing::RayTracer;
-use host::render::{LUMINANCE, Order, Renderer, Rendering, Watch};
+use host::render::{Order, Renderer, Rendering, Watch};
 use host::scene::{Prepared, Scene, View};
 use std::num::NonZeroUsize;
 use std::time::Instant;

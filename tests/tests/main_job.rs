@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec3};
 use host::{
     picture::Picture,
+    picture::display::DisplayTransform,
     production::{Production, difference, view_of_dials},
     render::{Order, Watch},
     script,
@@ -217,7 +218,8 @@ fn the_render_of_the_view_has_the_silhouette_of_the_vector_screen() {
     };
     let render = |production: &Production, matrix: &DMat4| {
         let order = Order::of(&scene.settings);
-        let picture: Picture = production.render(matrix, &order, &Watch::NOBODY).unwrap().rendering.picture;
+        let picture: Picture =
+            production.render(matrix, &order, &DisplayTransform::LINEAR, &Watch::NOBODY).unwrap().rendering.picture;
         Mask { size, on: picture.coverage8().iter().map(|c| *c > 127).collect() }
     };
     let unturned = vector(&mut machine, "unturned.png");

@@ -1,11 +1,12 @@
 //! Pictures against those that another renderer made of the same scenes: its values are kept in `peers/mitsuba.json`,
 //! which `peers/mitsuba_check.py` renews where that renderer is installed.
 
+use host::color::srgb::LUMINANCE;
 use host::plan::Plan;
 use host::render::radiosity::Radiosity;
 use host::render::ray_tracing::RayTracer;
 use host::render::scan_line::ScanLine;
-use host::render::{LUMINANCE, Order, Renderer, Watch};
+use host::render::{Order, Renderer, Watch};
 use host::scene::Prepared;
 use host::script::{Definition, Inputs, load_file};
 use serde_json::Value;

@@ -1,9 +1,12 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
+use super::display::DisplayArguments;
 use super::{Definitions, Exit, Failure, Row, load, say};
 use crate::mesh::{self, Grouped};
 use crate::picture::Picture;
-use crate::scene::Prepared;
+use crate::picture::display::{DisplayTransform, Exposure};
+use crate::render::metering::stops_of_picture;
+use crate::scene::{Prepared, View};
 use crate::workstation::{Drawing, Lines, structure};
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -45,6 +48,8 @@ struct Arguments {
     /// For .ps300: distance between curved surfaces and their triangles, as a part of the object's diagonal
     #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::part)]
     tolerance: f64,
+    #[command(flatten)]
+    display: DisplayArguments,
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
@@ -56,9 +61,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if most.is_some() && (to_commands || Picture::is_picture(output)) {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--triangles is for a mesh that is written")));
     }
+    if !arguments.display.is_empty() && !Picture::is_picture(input) {
+        let message = "--exposure, --tone, --white and --bloom are for a picture";
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+    }
     if Picture::is_picture(input) {
         let destination = Picture::destination(output)?;
-        let picture = Picture::read(input)?;
+        let mut picture = Picture::read(input)?;
+        if !arguments.display.is_empty() {
+            picture = shown(&picture, output, &arguments.display)?;
+        }
         picture.write(&destination)?;
         if *json {
             let known = serde_json::json!({ "file": output, "width": picture.width(), "height": picture.height() });
@@ -112,6 +124,20 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
         say!("{}: {polygons} polygons, {} bytes", output.display(), text.len());
     }
     Ok(())
+}
+
+/// A picture of radiance as the arguments show it; what they do not say is as it is.
+fn shown(picture: &Picture, output: &Path, arguments: &DisplayArguments) -> Result<Picture, Failure> {
+    if Picture::is_exr(output) {
+        let message = "EXR files keep the radiance: --exposure, --tone, --white and --bloom are for PNG files";
+        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+    }
+    let display = arguments.over(DisplayTransform::LINEAR)?;
+    let stops = match display.exposure {
+        Exposure::Stops(stops) => stops,
+        Exposure::Auto { compensation } => stops_of_picture(picture, display.tone) + compensation,
+    };
+    Ok(display.shown(picture, stops, View::parallel_pixel_angle(picture.width(), picture.height()))?)
 }
 
 /// Reads a factor above 0.

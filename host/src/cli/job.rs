@@ -253,7 +253,7 @@ impl Job<'_> {
             }
         }
         let order = Order { threads: self.common.threads, ..Order::of(&self.scene.settings) };
-        let shot = production.render(&matrix, &order, &progress::watch())?;
+        let shot = production.render(&matrix, &order, &self.scene.display, &progress::watch())?;
         progress::clear();
         let rendering = &shot.rendering;
         if let Some(bytes) = shot.octree_bytes {
@@ -268,13 +268,17 @@ impl Job<'_> {
         let text =
             format!("ray tracing: {rays} rays in {seconds:.3} s, {rate:.2} million a second on {threads} threads");
         self.note("ray_tracing", known, format_args!("{text}"));
+        let exposure = format!("exposed by {:+.2} stops", shot.stops);
+        self.note("exposure", json!(shot.stops), format_args!("{exposure}"));
         let what = "the ray-traced image of that view";
-        for name in ["raytraced.png", "raytraced.exr"] {
-            let form = if name.ends_with("exr") { " (linear light, coverage as alpha)" } else { "" };
-            let path = contents.file(name, &format!("{what}{form}"));
-            rendering.picture.write(&Picture::destination(&path)?)?;
+        for (name, form, picture) in [
+            ("raytraced.png", &exposure, &shot.shown),
+            ("raytraced.exr", &"linear radiance, coverage as alpha".to_string(), &rendering.picture),
+        ] {
+            let path = contents.file(name, &format!("{what} ({form})"));
+            picture.write(&Picture::destination(&path)?)?;
         }
-        Ok(shot.rendering.picture)
+        Ok(shot.shown)
     }
 
     fn study(&mut self, contents: &mut Contents<'_>) -> Result<(), Failure> {

@@ -9,6 +9,7 @@ mod continuity;
 mod convert;
 mod database;
 mod diff;
+mod display;
 mod exit;
 mod formula;
 mod functions;

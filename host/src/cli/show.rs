@@ -193,12 +193,12 @@ fn serve(
 fn render(production: &mut Production, scene: &Scene, threads: Option<NonZeroUsize>) -> Result<(), Failure> {
     let matrix = production.view()?;
     let order = Order { threads, ..Order::of(&scene.settings) };
-    let shot = production.render(&matrix, &order, &progress::watch());
+    let shot = production.render(&matrix, &order, &scene.display, &progress::watch());
     progress::clear();
     match shot {
         Ok(shot) => {
-            production.show_image(&shot.rendering.picture)?;
-            say!("rendered in {:.3} s", shot.rendering.seconds);
+            production.show_image(&shot.shown)?;
+            say!("rendered in {:.3} s, exposed by {:+.2} stops", shot.rendering.seconds, shot.stops);
         }
         // The person at the dials may have set a view that shows nothing; that ends nothing.
         Err(ProductionError::Render(error)) => say!("not rendered: {error}"),

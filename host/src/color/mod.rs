@@ -17,6 +17,7 @@ pub mod reflectance;
 pub mod shipped;
 pub mod spectrum;
 pub mod srgb;
+mod temperature;
 mod wavelengths;
 
 pub use bins::Bins;
@@ -27,4 +28,5 @@ pub use error::ColorError;
 pub use glass::Glass;
 pub use reflectance::SmoothReflectance;
 pub use spectrum::{Beyond, Spectrum, integral};
+pub use temperature::light_of_temperature;
 pub use wavelengths::{Curve, Wavelengths};

@@ -7,6 +7,9 @@ use std::sync::LazyLock;
 /// Chromaticities x, y of the red, green and blue of sRGB (IEC 61966-2-1).
 pub const PRIMARIES: [DVec2; 3] = [DVec2::new(0.64, 0.33), DVec2::new(0.30, 0.60), DVec2::new(0.15, 0.06)];
 
+/// Weights of red, green and blue in luminance (ITU-R BT.709).
+pub const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+
 /// The matrix from red, green and blue to X, Y and Z, and its inverse.
 ///
 /// White, (1, 1, 1), is a perfect reflector under D65 with Y = 1, by the very tables that this program uses: IEC

@@ -2,8 +2,8 @@
 
 use super::file::pixel_of;
 use super::source::{Source, Texel};
-use super::{Picture, PictureError, Pixel, encoder};
-use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
+use super::{Picture, PictureError, Pixel, Provenance, encoder};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, WritableImage};
 use files::Destination;
 use std::path::Path;
 
@@ -70,7 +70,7 @@ impl Deep {
         let coverage = layer("A", pixels.iter().map(|p| p.coverage).collect());
         let layers = [band("R", 0), band("G", 1), band("B", 2), coverage, layer("Z", self.depth.clone())];
         let channels = AnyChannels::sort(layers.into_iter().collect());
-        let image = Image::from_channels((*width as usize, *height as usize), channels);
+        let image = encoder::exr([*width, *height], channels, &Provenance::default());
         Ok(destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
     }
 }

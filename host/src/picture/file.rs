@@ -1,9 +1,9 @@
 //! Pictures as files: PNG with eight bits sRGB, OpenEXR with linear 32-bit floats.
 
 use super::source::{Source, Texel, format_of};
-use super::{Picture, PictureError, Pixel, encoder};
+use super::{Picture, PictureError, Pixel, Provenance, encoder};
 use crate::memory;
-use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
+use exr::prelude::{SpecificChannels, Vec2, WritableImage};
 use files::Destination;
 use image::ImageFormat;
 use protocol::raster::{light_of_srgb, linear_from_srgb};
@@ -36,19 +36,27 @@ impl Picture {
     /// [`PictureError::Format`] for another name, [`PictureError::Write`] if the file cannot be written; it may be kept
     /// elsewhere then.
     pub fn write(&self, destination: &Destination) -> Result<(), PictureError> {
+        self.write_with(destination, &Provenance::default())
+    }
+
+    /// Writes the picture as [`Picture::write`] does, with what is told of how it was made.
+    ///
+    /// # Errors
+    /// Those of [`Picture::write`].
+    pub fn write_with(&self, destination: &Destination, provenance: &Provenance) -> Result<(), PictureError> {
         let (width, height) = (self.width, self.height);
         match format_of(destination.path())? {
             ImageFormat::Png => {
                 let bytes = self.to_srgb8();
-                destination.write_or_keep(|file| encoder::png(file, &bytes, width, height))?;
+                destination.write_or_keep(|file| encoder::png(file, &bytes, [width, height], provenance))?;
             }
             _ => {
-                let pixel = |at: Vec2<usize>| {
+                let pixel = move |at: Vec2<usize>| {
                     let Pixel { radiance: [r, g, b], coverage } = self.pixels[at.y() * width as usize + at.x()];
                     (r, g, b, coverage)
                 };
-                let size = (width as usize, height as usize);
-                let image = Image::from_channels(size, SpecificChannels::rgba(pixel));
+                let channels = SpecificChannels::rgba(pixel);
+                let image = encoder::exr([width, height], channels, provenance);
                 destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?;
             }
         }

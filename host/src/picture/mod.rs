@@ -3,17 +3,22 @@
 mod compose;
 mod depth;
 mod difference;
+pub mod display;
 pub(crate) mod encoder;
 mod error;
 mod file;
+mod filter;
 mod flip;
+mod provenance;
 pub(crate) mod source;
 
 pub use compose::{Operator, compose, compose_by_depth};
 pub use depth::Deep;
 pub use difference::{Difference, RELATIVE_FLOOR, difference};
 pub use error::PictureError;
+pub use filter::Filter;
 pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip};
+pub use provenance::Provenance;
 
 use crate::memory::prefer_large_pages;
 use protocol::raster::srgb_from_linear;

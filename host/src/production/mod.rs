@@ -5,10 +5,11 @@ mod closed_form;
 pub use closed_form::{difference, view_of_dials};
 
 use crate::{
-    picture::Picture,
+    picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{
-        Order, RenderError, Renderer, Rendering, Watch, radiosity::Radiosity, ray_tracing::RayTracer, tiles::Tiling,
+        Order, RenderError, Renderer, Rendering, Watch, metering::Meter, radiosity::Radiosity, ray_tracing::RayTracer,
+        tiles::Tiling,
     },
     scene::{Prepared, Projection, Scene, SceneError, View},
     workstation::{Drawing, Session, WorkstationError, network, raster, structure, tiles},
@@ -67,6 +68,10 @@ pub struct Shot {
     pub octree_bytes: Option<f64>,
     /// Until octree and tables stood, seconds.
     pub build_seconds: f64,
+    /// The image as a display shows it.
+    pub shown: Picture,
+    /// Its exposure, stops.
+    pub stops: f64,
 }
 
 impl Production {
@@ -128,9 +133,17 @@ impl Production {
 
     /// Ray-traces the view of a matrix that was read back.
     ///
+    /// - `display`: how the image is shown; an automatic exposure is metered from this view.
+    ///
     /// # Errors
     /// [`ProductionError::Render`]; a matrix that shows nothing is one.
-    pub fn render(&self, matrix: &DMat4, order: &Order, watch: &Watch<'_>) -> Result<Shot, ProductionError> {
+    pub fn render(
+        &self,
+        matrix: &DMat4,
+        order: &Order,
+        display: &DisplayTransform,
+        watch: &Watch<'_>,
+    ) -> Result<Shot, ProductionError> {
         // The screen's sides are those of the longer side of the picture, a view's those of the shorter one.
         let zoom = structure::elongation(&self.prepared.settings);
         let matrix = DMat4::from_scale(DVec3::new(zoom, zoom, 1.0)) * *matrix;
@@ -141,10 +154,15 @@ impl Production {
         let build_seconds = start.elapsed().as_secs_f64();
         let triangles = self.prepared.triangles.len().max(1) as f64;
         let octree_bytes = tracer.octree().map(|octree| octree.bytes() as f64 / triangles);
-        Ok(Shot { rendering: tracer.render(&view, order, watch)?, octree_bytes, build_seconds })
+        let meter = Meter::new(&self.prepared.settings, display, order.threads);
+        let stops = meter.stops(&tracer, &self.prepared, &[view], watch)?;
+        let rendering = tracer.render(&view, order, watch)?;
+        let pixel_angle = view.pixel_angle(order.width, order.height);
+        let shown = display.shown(&rendering.picture, stops, pixel_angle).map_err(RenderError::from)?;
+        Ok(Shot { rendering, octree_bytes, build_seconds, shown, stops })
     }
 
-    /// Shows an image on the raster screen. It is there when this returns.
+    /// Shows an image on the raster screen, whose radiance is the light of the display. It is there when this returns.
     ///
     /// # Errors
     /// [`ProductionError::Workstation`].

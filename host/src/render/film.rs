@@ -1,13 +1,11 @@
 //! What the samples of all pixels add up to.
 
+use crate::color::srgb::LUMINANCE;
 use crate::memory::prefer_large_pages;
 use crate::picture::{Picture, PictureError, Pixel};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-
-/// Weights of red, green and blue in luminance (ITU-R BT.709).
-pub const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 /// Below this luminance errors count as if it was this, so that black pixels do not take all the samples.
 const LEAST_LUMINANCE: f64 = 0.05;
@@ -84,7 +82,7 @@ impl Class {
     /// The word for it in layers.
     pub fn word(self) -> &'static str {
         match self {
-            Class::Emitted => "emitted",
+            Class::Emitted => "emission",
             Class::Direct => "direct",
             Class::Caustic => "caustic",
             Class::Indirect => "indirect",
@@ -104,8 +102,8 @@ pub struct Tally {
     pub squares: f64,
     /// Samples.
     pub count: u32,
-    /// Those that met an object.
-    pub covered: u32,
+    /// Sum of the weights of those that met an object.
+    pub covered: f32,
     /// Sum of the distances of the elements that were seen first, scene units.
     pub distances: f64,
     /// Sum of their normals.
@@ -121,10 +119,12 @@ pub struct Tally {
 }
 
 /// One sample.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Radiance, linear sRGB.
+    /// Radiance, linear sRGB, times its weight.
     pub radiance: DVec3,
+    /// How much it counts in its pixel by the reconstruction filter; 1 on average.
+    pub weight: f64,
     /// Whether it met anything.
     pub covered: bool,
     /// The first element that it saw: distance, normal, object and material.
@@ -132,6 +132,12 @@ pub struct Sample {
     /// Standard error of its luminance by what it shares with the samples before and after it: light that was caught for
     /// all of them.
     pub shared: f64,
+}
+
+impl Default for Sample {
+    fn default() -> Sample {
+        Sample { radiance: DVec3::ZERO, weight: 1.0, covered: false, first: None, shared: 0.0 }
+    }
 }
 
 impl Tally {
@@ -151,7 +157,7 @@ impl Tally {
         self.sum += radiance * times;
         self.squares += radiance.dot(LUMINANCE).powi(2) * times;
         self.count += count;
-        self.covered += if sample.covered { count } else { 0 };
+        self.covered += if sample.covered { (sample.weight * times) as f32 } else { 0.0 };
         if sample.shared.is_finite() {
             self.shared += (sample.shared * times) as f32;
         }
@@ -170,10 +176,14 @@ impl Tally {
         self.sum / f64::from(self.count.max(1))
     }
 
+    /// The part of the pixel that objects cover, as the reconstruction filter counts it.
+    pub fn coverage(&self) -> f64 {
+        f64::from(self.covered) / f64::from(self.count.max(1))
+    }
+
     /// The pixel so far; black and uncovered without samples.
     pub fn pixel(&self) -> Pixel {
-        let coverage = f64::from(self.covered) / f64::from(self.count.max(1));
-        Pixel { radiance: self.mean().as_vec3().to_array(), coverage: coverage as f32 }
+        Pixel { radiance: self.mean().as_vec3().to_array(), coverage: self.coverage() as f32 }
     }
 
     /// Variance of the mean luminance, as if samples and ways of light were independent: evenly spread ones are better. What

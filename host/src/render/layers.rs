@@ -1,9 +1,9 @@
 //! Films as EXR files with layers: what is known of each pixel beside its radiance.
 
 use super::film::{Class, Film, Tally};
-use crate::picture::{PictureError, encoder};
+use crate::picture::{PictureError, Provenance, encoder};
 use crate::scene::Prepared;
-use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, WritableImage};
 use files::Destination;
 
 /// A layer: its name, and its value of a pixel.
@@ -17,11 +17,11 @@ const LAYERS: &[Layer] = &[
     Layer { name: "R", value: |tally| tally.mean().x },
     Layer { name: "G", value: |tally| tally.mean().y },
     Layer { name: "B", value: |tally| tally.mean().z },
-    Layer { name: "A", value: |tally| f64::from(tally.covered) / f64::from(tally.count.max(1)) },
+    Layer { name: "A", value: Tally::coverage },
     Layer { name: "Z", value: |tally| seen(tally, tally.distances).unwrap_or(f64::INFINITY) },
-    Layer { name: "normal.X", value: |tally| seen(tally, tally.normals.x).unwrap_or(0.0) },
-    Layer { name: "normal.Y", value: |tally| seen(tally, tally.normals.y).unwrap_or(0.0) },
-    Layer { name: "normal.Z", value: |tally| seen(tally, tally.normals.z).unwrap_or(0.0) },
+    Layer { name: "N.X", value: |tally| seen(tally, tally.normals.x).unwrap_or(0.0) },
+    Layer { name: "N.Y", value: |tally| seen(tally, tally.normals.y).unwrap_or(0.0) },
+    Layer { name: "N.Z", value: |tally| seen(tally, tally.normals.z).unwrap_or(0.0) },
     Layer { name: "variance.Y", value: Tally::variance },
 ];
 
@@ -37,7 +37,12 @@ impl Film {
     ///
     /// # Errors
     /// [`PictureError::Write`]; the file may be kept elsewhere then.
-    pub fn write_layers(&self, destination: &Destination, prepared: &Prepared) -> Result<(), PictureError> {
+    pub fn write_layers(
+        &self,
+        destination: &Destination,
+        prepared: &Prepared,
+        provenance: &Provenance,
+    ) -> Result<(), PictureError> {
         let tallies = self.tallies();
         let floats = LAYERS.iter().map(|layer| {
             let values = tallies.iter().map(|tally| (layer.value)(tally) as f32).collect();
@@ -79,8 +84,8 @@ impl Film {
             AnyChannel::new("samples.count", FlatSamples::U32(tallies.iter().map(|tally| tally.count).collect())),
         ];
         let channels = AnyChannels::sort(floats.chain(classes).chain(numbers).collect());
-        let size = (self.width() as usize, self.height() as usize);
-        let image = Image::from_channels(size, channels);
+        let size = [self.width(), self.height()];
+        let image = encoder::exr(size, channels, provenance);
         Ok(destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
     }
 }
@@ -106,14 +111,15 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");
         let prepared = Prepared::new(&Scene::default()).expect("nothing");
-        film.write_layers(&Destination::of(&path).expect("a destination"), &prepared).expect("written");
+        film.write_layers(&Destination::of(&path).expect("a destination"), &prepared, &Provenance::default())
+            .expect("written");
         let read = read_first_flat_layer_from_file(&path).expect("layers");
         let value = |name: &str, pixel: usize| {
             let channel = read.layer_data.channel_data.list.iter().find(|c| c.name.to_string() == name).expect("there");
             channel.sample_data.values_as_f32().nth(pixel).expect("two pixels")
         };
         assert_eq!([value("R", 1), value("B", 1), value("A", 1), value("Z", 1)], [1.0, 3.0, 1.0, 4.0]);
-        assert_eq!([value("normal.Y", 1), value("object.id", 1), value("samples.count", 1)], [1.0, 1.0, 1.0]);
+        assert_eq!([value("N.Y", 1), value("object.id", 1), value("samples.count", 1)], [1.0, 1.0, 1.0]);
         assert_eq!([value("Z", 0), value("object.id", 0)], [f32::INFINITY, 0.0]);
     }
 }

@@ -7,6 +7,7 @@ mod eye;
 mod film;
 mod layers;
 mod memo;
+pub mod metering;
 mod ready;
 pub mod radiosity;
 pub mod ray_tracing;
@@ -14,13 +15,13 @@ pub mod scan_line;
 pub mod tiles;
 mod state;
 
-pub use film::{ByClass, Class, Film, LUMINANCE, Sample, Tally};
+pub use film::{ByClass, Class, Film, Sample, Tally};
 pub use memo::Memo;
 pub use state::{Fingerprint, State, StateError};
 
 use crate::illumination::material::MaterialError;
 use crate::octree::OctreeError;
-use crate::picture::{Picture, PictureError};
+use crate::picture::{Filter, Picture, PictureError};
 use crate::scene::View;
 use serde::Serialize;
 use std::num::NonZeroUsize;
@@ -53,6 +54,8 @@ pub struct Order {
     /// So many samples of a pixel share the footprint in which textures are filtered, 1 and more: as many as there are, or
     /// are thought to become.
     pub footprints: u32,
+    /// How samples around a pixel become one value.
+    pub filter: Filter,
     /// Relative error of the luminance at which a pixel has samples enough; none for all samples everywhere.
     pub target: Option<f64>,
     /// Seconds after which no sample is begun.
@@ -69,12 +72,13 @@ pub struct Order {
 impl Order {
     /// What the scene's settings ask for, on every core.
     pub fn of(settings: &crate::scene::Settings) -> Order {
-        let crate::scene::Settings { width, height, samples, seed, .. } = *settings;
+        let crate::scene::Settings { width, height, samples, filter, seed, .. } = *settings;
         Order {
             width,
             height,
             samples,
             footprints: samples,
+            filter,
             target: None,
             seconds: None,
             matte: false,

@@ -6,6 +6,7 @@
 use super::Order;
 use super::film::{Adaptive, Film, Tally};
 use crate::picture::PictureError;
+use crate::picture::display::DisplayTransform;
 use crate::scene::{Prepared, Scene};
 use bincode::config::{Configuration, Fixint, LittleEndian, standard};
 use bincode::serde::{decode_from_std_read, encode_into_std_write};
@@ -17,7 +18,7 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// What such a file begins with; the last byte is the version.
-const MAGIC: [u8; 8] = *b"PERISF\x00\x03";
+const MAGIC: [u8; 8] = *b"PERISF\x00\x04";
 const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
 
 /// Bytes that are written at a time.
@@ -96,6 +97,8 @@ impl Fingerprint {
         let checksum = |bytes: &[u8]| crc32fast::hash(bytes);
         let mut scene = scene.clone();
         scene.settings.samples = 0;
+        // A film holds radiance, however it is shown.
+        scene.display = DisplayTransform::default();
         let words = serde_json::to_vec(&scene).unwrap_or_default();
         let mut geometry = Hasher::new();
         geometry.update(bytemuck::cast_slice(&prepared.triangles));

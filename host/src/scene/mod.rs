@@ -32,6 +32,8 @@ pub use view::{Camera, Lens, Parallel, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};
 use crate::octree::MAX_POINT_DEPTH;
+use crate::picture::Filter;
+use crate::picture::display::DisplayTransform;
 use glam::DMat4;
 use serde::{Deserialize, Serialize};
 
@@ -65,6 +67,8 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// How it is rendered.
     pub settings: Settings,
+    /// How its pictures are shown.
+    pub display: DisplayTransform,
 }
 
 /// One object: a shape, placed, of a material.
@@ -93,6 +97,8 @@ pub struct Settings {
     pub height: u32,
     /// Samples in each pixel; one samples the centre.
     pub samples: u32,
+    /// How samples around a pixel become one value.
+    pub filter: Filter,
     /// Seed of the sample positions.
     pub seed: u64,
     /// How often a ray may be reflected or refracted.
@@ -149,6 +155,7 @@ impl Default for Settings {
             width: 640,
             height: 480,
             samples: 16,
+            filter: Filter::Box,
             seed: 1,
             reflection_depth: 6,
             light_samples: 1,
@@ -202,6 +209,7 @@ impl Scene {
         if let Some(camera) = &self.camera {
             camera.check()?;
         }
+        self.display.check().map_err(SceneError::Setting)?;
         self.settings.check()
     }
 }

@@ -220,6 +220,26 @@ impl View {
         }
     }
 
+    /// What a pixel in the middle of a picture spans, degrees; of a parallel view, as if its shorter side spanned 30.
+    pub fn pixel_angle(&self, width: u32, height: u32) -> f64 {
+        // A matrix of a perspective divides by the depth; what it divides is as much greater as the field is narrow.
+        let half_tangent = self.projection().and_then(|projection| {
+            let rows = projection.to_clip.transpose();
+            let (across, depth) = (rows.x_axis.truncate().length(), rows.w_axis.truncate().length());
+            (depth > 0.0).then_some(depth / across).filter(|tangent| tangent.is_finite())
+        });
+        let shorter = f64::from(width.min(height).max(1));
+        match half_tangent {
+            Some(tangent) => (2.0 * tangent / shorter).to_degrees(),
+            None => View::parallel_pixel_angle(width, height),
+        }
+    }
+
+    /// What a pixel spans, degrees, in a picture whose shorter side is seen at an angle of 30 degrees.
+    pub fn parallel_pixel_angle(width: u32, height: u32) -> f64 {
+        FRAMING_FIELD_OF_VIEW / f64::from(width.min(height).max(1))
+    }
+
     /// What a picture shows in clip coordinates: x min, x max, y min, y max.
     ///
     /// The shorter side spans -1..1; the longer one shows as much more as keeps the pixels square.

@@ -4,12 +4,12 @@ use super::argument::Bound;
 use super::builder::Builder;
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, Parameter, parameter};
-use crate::color::{Color, Spectrum, blackbody, daylight};
+use crate::color::srgb::LUMINANCE;
+use crate::color::{Color, Spectrum, light_of_temperature};
 use crate::illumination::Light;
 use crate::illumination::light::{Goniometry, Patch, SkyMap};
 use crate::memory;
 use crate::picture::Picture;
-use crate::render::LUMINANCE;
 use crate::scene::MAX_LIGHTS;
 use glam::DVec3;
 use rhai::Dynamic;
@@ -235,16 +235,11 @@ pub(super) fn color_of_light(builder: &Builder, bound: &Bound, bands: DVec3) -> 
 }
 
 /// A spectrum of light by its name.
-fn spectrum(builder: &Builder, name: &str) -> Result<Spectrum, String> {
-    let mut words = name.split_whitespace();
-    let (kind, kelvin) = (words.next().unwrap_or_default(), words.next());
-    let temperature = |text: &str| text.parse::<f64>().map_err(|_| format!("{text} is no temperature"));
-    match (kind, kelvin) {
-        ("blackbody", Some(kelvin)) => blackbody::spectrum(temperature(kelvin)?),
-        ("daylight", Some(kelvin)) => daylight::spectrum(temperature(kelvin)?),
-        _ => return builder.library.light(name).map_err(|error| error.to_string()),
+pub(super) fn spectrum(builder: &Builder, name: &str) -> Result<Spectrum, String> {
+    match light_of_temperature(name) {
+        Some(spectrum) => spectrum.map_err(|error| error.to_string()),
+        None => builder.library.light(name).map_err(|error| error.to_string()),
     }
-    .map_err(|error| error.to_string())
 }
 
 /// Adds a light that was checked.

@@ -16,6 +16,7 @@ mod materials;
 mod printed;
 mod sculpting;
 mod shaping;
+mod showing;
 mod solids;
 mod spline;
 mod stored;
@@ -47,6 +48,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
         lighting::FUNCTIONS,
+        showing::FUNCTIONS,
         stored::FUNCTIONS,
         table::FUNCTIONS,
     ]

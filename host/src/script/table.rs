@@ -5,7 +5,7 @@ use super::builder::Builder;
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
 use crate::octree::MAX_POINT_DEPTH;
-use crate::picture::MAX_PIXELS;
+use crate::picture::{Filter, MAX_PIXELS};
 use crate::scene::{Camera, Lens, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel, Shape};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use rhai::Dynamic;
@@ -226,6 +226,21 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "samples(16);",
         action: |builder, bound| {
             builder.scene.settings.samples = bound.integer("count").and_then(|i| u32::try_from(i).ok()).unwrap_or(1);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
+        name: "filter",
+        summary: "Sets how samples around a pixel become one value.",
+        parameters: &[parameter(
+            "name",
+            Kind::Word(&Filter::WORDS),
+            Required,
+            "\"box\" is the mean over the pixel, as without a word; \"gaussian\" and \"blackman-harris\" smooth, \"mitchell\" sharpens",
+        )],
+        example: "filter(\"blackman-harris\");",
+        action: |builder, bound| {
+            builder.scene.settings.filter = bound.text("name").and_then(Filter::of_word).unwrap_or_default();
             Ok(Dynamic::UNIT)
         },
     },

@@ -1,6 +1,6 @@
 //! Plots over logarithmic and linear axes, as SVG and PNG, with a font of their own: nothing needs to be installed.
 
-use crate::picture::encoder;
+use crate::picture::{Provenance, encoder};
 use files::Folder;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
@@ -175,7 +175,8 @@ impl Plot {
         let svg = folder.write_or_keep(&format!("{name}.svg"), |file| file.write_all(text.as_bytes()))?;
         let (bytes, width, height) = self.pixels()?;
         let png = format!("{name}.png");
-        let png = folder.write_or_keep(&png, |file| encoder::png(file, &bytes, width, height))?;
+        let png =
+            folder.write_or_keep(&png, |file| encoder::png(file, &bytes, [width, height], &Provenance::default()))?;
         Ok([svg, png])
     }
 

@@ -4,15 +4,19 @@ mod pixel;
 mod saved;
 mod views;
 
+use super::display::DisplayArguments;
 use super::source::stem;
 use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load_lit, progress, warn};
-use crate::picture::Picture;
+use crate::picture::display::DisplayTransform;
+use crate::picture::{Filter, Picture};
 use crate::plan::Plan;
+use crate::render::metering::Meter;
 use crate::render::radiosity::Radiosity;
 use crate::render::ray_tracing::{RayTracer, Shelf};
 use crate::render::scan_line::ScanLine;
 use crate::render::{Film, Fingerprint, Order, RenderError, Renderer, Watch};
 use crate::scene::{Camera, MAX_SAMPLES, Prepared, Settings, View};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, FromArgMatches, ValueEnum};
 use files::Destination;
 use saved::{Intermediate, Saved};
@@ -67,6 +71,10 @@ struct Arguments {
     /// Samples in each pixel, instead of those of the scene
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
     samples: Option<u32>,
+    /// How samples around a pixel become one value, instead of that of the scene: box is the mean over the pixel, gaussian
+    /// and blackman-harris smooth, mitchell sharpens
+    #[arg(long, value_name = "FILTER", value_parser = PossibleValuesParser::new(Filter::WORDS).map(|word| Filter::of_word(&word).unwrap_or_default()))]
+    filter: Option<Filter>,
     /// Threads [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
@@ -109,6 +117,8 @@ struct Arguments {
     /// stays behind glass and in mirrors
     #[arg(long)]
     matte: bool,
+    #[command(flatten)]
+    display: DisplayArguments,
     /// Renders one pixel only, counted from the upper left corner, and prints its radiance; writes no file
     #[arg(long, value_name = "X,Y", value_parser = pixel::place)]
     pixel: Option<[u32; 2]>,
@@ -130,6 +140,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.light.as_ref().map(Destination::of).transpose()?;
     let mut scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     super::warn_of_emptiness(&scene);
+    // Layers of a composition are put together as light, and exposed as a whole.
+    let display = arguments.display.over(if arguments.matte { DisplayTransform::LINEAR } else { scene.display })?;
+    // Several views are exposed as the first, which is that of the scene.
+    let meter = Meter::new(&scene.settings, &display, arguments.threads);
     arguments.set(&mut scene.settings);
     let start = Instant::now();
     progress::stage("while building the geometry");
@@ -150,6 +164,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         views: &views,
         outputs: &outputs,
         prepared: &prepared,
+        display: &display,
+        stops: 0.0,
         start,
         radiosity: None,
         saved: None,
@@ -163,11 +179,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             all.radiosity = Some(solution.report);
             let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
             scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by radiosity, {what}")));
+            all.stops = meter.stops(&scan_line, &prepared, &views[..1], &watch)?;
             all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
         }
         Kind::ScanLine => {
             let scan_line = ScanLine::new(&prepared, &plan)?;
             scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by scan line, {what}")));
+            all.stops = meter.stops(&scan_line, &prepared, &views[..1], &watch)?;
             all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
         }
         Kind::RayTracing | Kind::TwoWay => {
@@ -180,6 +198,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
                 progress::stage("while sampling the pixel");
                 return pixel::explain(arguments, &tracer, &views[0], &order, pixel);
             }
+            all.stops = meter.stops(&tracer, &prepared, &views[..1], &watch)?;
             all.comes_bit_by_bit = true;
             all.render(&mut |view, film, checkpoints| {
                 let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
@@ -199,6 +218,7 @@ impl Arguments {
     fn set(&self, settings: &mut Settings) {
         (settings.width, settings.height) = size(settings.width, settings.height, self.width, self.height);
         settings.samples = self.samples.unwrap_or(settings.samples);
+        settings.filter = self.filter.unwrap_or(settings.filter);
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.tolerance = self.tolerance.or(settings.tolerance);
         settings.two_way |= self.renderer == Kind::TwoWay;

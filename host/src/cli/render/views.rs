@@ -3,17 +3,23 @@
 use super::saved::Saved;
 use super::{Arguments, Kind};
 use crate::cli::interrupts::{self, Keeping};
-use crate::cli::{Exit, Failure, progress, say};
+use crate::cli::source::stem;
+use crate::cli::{Exit, Failure, progress, say, warn};
 use crate::memory;
-use crate::picture::Picture;
+use crate::picture::display::{DisplayTransform, Tone, clipped};
+use crate::picture::{Picture, Provenance};
 use crate::render::radiosity::Report;
 use crate::render::ray_tracing::Checkpoints;
 use crate::render::{Film, Rendering};
 use crate::scene::{Prepared, View};
+use clap::ValueEnum;
 use files::Destination;
 use serde_json::Value;
 use std::path::Path;
 use std::time::Instant;
+
+/// The part of the pixels that are clipped from which on it is told: less than it are lamps in sight.
+const TOLD: f64 = 1e-3;
 
 /// Renders a view: on a film that was begun before, if there is one, and keeping it from time to time.
 pub(super) type Render<'a> = dyn FnMut(&View, Option<Film>, Option<Checkpoints<'_>>) -> Result<Rendering, Failure> + 'a;
@@ -25,6 +31,10 @@ pub(super) struct Views<'a> {
     /// The files of each view.
     pub(super) outputs: &'a [Vec<Destination>],
     pub(super) prepared: &'a Prepared,
+    /// How PNG files are shown.
+    pub(super) display: &'a DisplayTransform,
+    /// The exposure of all views, stops.
+    pub(super) stops: f64,
     /// When the work began.
     pub(super) start: Instant,
     /// What radiosity took.
@@ -66,7 +76,7 @@ impl Views<'_> {
             let rendering = render(view, film, checkpoints)?;
             let [least, most] = rendering.film.samples();
             let is_whole = least > 0;
-            let written = if is_whole { self.write(outputs, &rendering) } else { Ok(()) };
+            let written = if is_whole { self.write(outputs, view, &rendering) } else { Ok(0.0) };
             // The state comes after the picture, and does not depend on it.
             let is_followed = rendering.complete && number + 1 < self.views.len();
             let kept = saved.map_or(Ok(()), |saved| match is_followed {
@@ -75,7 +85,13 @@ impl Views<'_> {
             });
             drop(keeping);
             progress::clear();
-            written?;
+            let clipped = written?;
+            if clipped > TOLD && self.display.tone == Tone::Linear {
+                let part = 100.0 * clipped;
+                warn(&format!(
+                    "{part:.1}% of the pixels are brighter than white, and clipped; --tone filmic shows them"
+                ));
+            }
             if is_whole {
                 let outputs: Vec<&Path> = outputs.iter().map(Destination::path).collect();
                 match self.arguments.json {
@@ -115,14 +131,43 @@ impl Views<'_> {
         }
     }
 
-    fn write(&self, outputs: &[Destination], rendering: &Rendering) -> Result<(), Failure> {
-        let write = |file: &Destination| match self.arguments.layers && Picture::is_exr(file.path()) {
-            true => rendering.film.write_layers(file, self.prepared),
-            false => rendering.picture.write(file),
+    /// Writes the files of a view; the part of the pixels that are clipped in a PNG file, 0..=1.
+    fn write(&self, outputs: &[Destination], view: &View, rendering: &Rendering) -> Result<f64, Failure> {
+        let Rendering { picture, film, .. } = rendering;
+        let provenance = self.provenance(rendering);
+        let is_seen = outputs.iter().any(|file| !Picture::is_exr(file.path()));
+        let shown = match is_seen {
+            true => self.display.shown(picture, self.stops, view.pixel_angle(picture.width(), picture.height()))?,
+            false => Picture::new(1, 1)?,
+        };
+        let write = |file: &Destination| match (Picture::is_exr(file.path()), self.arguments.layers) {
+            (true, true) => film.write_layers(file, self.prepared, &provenance),
+            (true, false) => picture.write_with(file, &provenance),
+            (false, _) => shown.write_with(file, &provenance),
         };
         // One that fails is no reason not to write the others.
         let written: Vec<_> = outputs.iter().map(write).collect();
-        Ok(written.into_iter().collect::<Result<_, _>>()?)
+        written.into_iter().collect::<Result<(), _>>()?;
+        Ok(clipped(&shown))
+    }
+
+    /// What the files of a view tell of how it was made.
+    fn provenance(&self, rendering: &Rendering) -> Provenance {
+        let [least, most] = rendering.film.samples();
+        let renderer = self.arguments.renderer.to_possible_value();
+        let provenance = Provenance::new(self.display.white)
+            .with("Source", stem(&self.arguments.script))
+            .with("Renderer", renderer.map(|value| value.get_name().to_string()).unwrap_or_default())
+            .with("Samples", format!("{least} to {most}"))
+            .with("Seed", self.prepared.settings.seed)
+            .with("Exposure", format!("{:.4} stops, in PNG files only", self.stops))
+            .with("Tone", self.display.tone.word());
+        let error = rendering.film.standard_error();
+        if error.is_finite() {
+            provenance.with("Error", format!("{error:.3e}, standard error of luminance"))
+        } else {
+            provenance
+        }
     }
 
     fn json(&self, outputs: &[&Path], rendering: &Rendering, build_seconds: f64) -> serde_json::Value {
@@ -134,6 +179,8 @@ impl Views<'_> {
             "samples": rendering.film.samples(),
             "standard_error": Some(rendering.film.standard_error()).filter(|error| error.is_finite()),
             "seed": self.prepared.settings.seed,
+            "exposure": self.stops,
+            "tone": self.display.tone.word(),
             "triangles": self.prepared.triangles.len(),
             "build_seconds": build_seconds,
             "render_seconds": rendering.seconds,

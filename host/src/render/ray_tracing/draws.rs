@@ -1,6 +1,7 @@
 //! Random choices of a sample: each has its number, so that what one needs does not move another.
 
 use crate::numeric::sequence::Sequence;
+use crate::picture::Filter;
 
 /// What a choice is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,9 +47,12 @@ impl Draws {
         Draws { time: (part - 0.5) * shutter, ..self }
     }
 
-    /// Where in the pixel the sample lies, 0..1 both; a single one in the middle.
-    pub(super) fn position(&self) -> [f64; 2] {
-        if self.of <= 1 { [0.5; 2] } else { self.sequence.point(self.index, Purpose::Pixel as u64) }
+    /// Where the sample lies from the left upper corner of its pixel, and its weight by a filter; a single one in the middle.
+    pub(super) fn position(&self, filter: Filter) -> ([f64; 2], f64) {
+        if self.of <= 1 {
+            return ([0.5; 2], 1.0);
+        }
+        filter.sample(self.sequence.point(self.index, Purpose::Pixel as u64))
     }
 
     /// A point of the unit square for the sample as a whole.

@@ -1,13 +1,13 @@
 //! Ray tracing over the linear octree, after Whitted and Cook: light of all lights with its shadows, reflection and
 //! refraction, sharp and spread.
 //!
-//! Each pixel is the mean over its area (a box filter, so that coverage is the covered share of the area). Places in the
-//! pixel and on the lens, points of lights, directions and wavelengths are drawn from Owen's scrambled sequences.
+//! Each pixel is the mean of its samples as a reconstruction filter weighs them: by a box, which is what scenes have without
+//! a word, the mean over its area, and coverage the covered share of it. Places in the pixel and on the lens, points of lights, directions and wavelengths are drawn from Owen's scrambled sequences.
 
+mod accumulation;
 mod direct;
 mod draws;
 mod explain;
-mod exposure;
 mod light_buffer;
 mod media;
 mod tracer;
@@ -37,8 +37,8 @@ mod two_way_tests;
 #[cfg(test)]
 mod tests;
 
+pub use accumulation::{Accumulated, Checkpoints};
 pub use explain::Note;
-pub use exposure::{Checkpoints, Exposed};
 pub use tracer::ENERGY_CUTOFF;
 pub use two_way::{Balance, Shelf, widest_disc};
 
@@ -161,24 +161,24 @@ impl<'a> RayTracer<'a> {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let draws = Draws::new(order.seed, pixel, index, order.samples);
         let draws = if self.world.moves() { draws.within(self.prepared().settings.shutter) } else { draws };
-        let [dx, dy] = draws.position();
+        let ([dx, dy], weight) = draws.position(order.filter);
         let wavelengths = &self.world.appearance.wavelengths;
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
             let background = self.world.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0);
-            let radiance = if order.matte { DVec3::ZERO } else { wavelengths.seen(comb, background) };
+            let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.seen(comb, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
-            return (Sample { radiance, ..Sample::default() }, classes, comb);
+            return (Sample { radiance, weight, ..Sample::default() }, classes, comb);
         };
         let seen = tracer.radiance(&sight, comb, &draws, work, log);
         let first =
             seen.first.map(|First { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !seen.covered;
-        let light = |class: usize| wavelengths.seen(comb, seen.radiance[class]) + seen.other[class];
+        let light = |class: usize| weight * (wavelengths.seen(comb, seen.radiance[class]) + seen.other[class]);
         let classes = if left_out { ByClass::default() } else { [0, 1, 2, 3].map(light) };
-        let shared = if left_out { 0.0 } else { seen.shared.sqrt() };
-        (Sample { radiance: classes.into_iter().sum(), covered: seen.covered, first, shared }, classes, comb)
+        let shared = if left_out { 0.0 } else { weight.abs() * seen.shared.sqrt() };
+        (Sample { radiance: classes.into_iter().sum(), weight, covered: seen.covered, first, shared }, classes, comb)
     }
 
     /// Tells how the samples of a pixel come to their radiance.

@@ -407,8 +407,8 @@ fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
     }
     // What is missing can be added later, and nothing tells that it was.
     let mut film = part.film;
-    let exposed = tracer.expose(&mut film, &prepared.view(), &order, &Watch::NOBODY, None).expect("the rest");
-    assert!(exposed.complete && film == whole.film);
+    let added = tracer.accumulate(&mut film, &prepared.view(), &order, &Watch::NOBODY, None).expect("the rest");
+    assert!(added.complete && film == whole.film);
 }
 
 #[test]

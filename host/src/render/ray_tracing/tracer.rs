@@ -7,11 +7,12 @@ use super::media::Media;
 use super::two_way::CaughtLight;
 use super::world::{Encounter, Found, Met, World};
 use crate::color::Channels;
+use crate::color::srgb::LUMINANCE;
 use crate::illumination::light::Source;
 use crate::illumination::optics::{Among, Onward, Sighting};
 use crate::numeric::ray::Ray;
 use crate::render::eye::{Cone, Sight};
-use crate::render::{Class, LUMINANCE, RayCounts};
+use crate::render::{Class, RayCounts};
 use glam::DVec3;
 
 /// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.

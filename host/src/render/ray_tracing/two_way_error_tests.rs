@@ -3,7 +3,7 @@
 use super::tests::{diffuse, scene};
 use super::two_way_tests::{ball, block, glass, lamp};
 use super::*;
-use crate::render::LUMINANCE;
+use crate::color::srgb::LUMINANCE;
 use crate::scene::{Camera, Scene};
 
 /// A glass ball over a plane: its caustic fills a third of the picture.

@@ -33,7 +33,7 @@ use super::ready::Appearance;
 use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::{LightPoint, Source};
-use crate::picture::Picture;
+use crate::picture::{Filter, Picture};
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use casters::Casters;
@@ -173,6 +173,9 @@ impl<'a> ScanLine<'a> {
         }
         if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the sky is seen, but lights nothing");
+        }
+        if self.appearance.prepared.settings.filter != Filter::Box {
+            left_out.push("pixels are means over their areas: the filter is a box");
         }
         if self.plan.needs(Stage::Motion) {
             left_out.push("what moves stands where it is in the middle of the time in which the shutter is open");

@@ -190,7 +190,7 @@ impl<'a> Shader<'a> {
             let covered = first.is_some() || glow.is_some();
             let light = samples[samples[i].like].light * scale;
             let radiance = if self.matte && !covered { DVec3::ZERO } else { light };
-            let sample = Sample { radiance, covered, first, shared: 0.0 };
+            let sample = Sample { radiance, covered, first, ..Sample::default() };
             if let Some((before, count)) = last.replace((sample, 1)) {
                 tally.add_alike(&before, count);
             }
@@ -237,7 +237,12 @@ impl<'a> Shader<'a> {
         }
         let [mean, depth] = nearness.map(|sum| sum * pixel.part);
         let distance = self.distance(found.distance, self.depth(mean), depth);
-        Some(Sample { radiance, covered: true, first: Some((distance, found.element.normal, found.seen)), shared: 0.0 })
+        Some(Sample {
+            radiance,
+            covered: true,
+            first: Some((distance, found.element.normal, found.seen)),
+            ..Sample::default()
+        })
     }
 
     /// Whether two samples of a pixel, of which none glows, surely get the same light: they see the same surfaces in as many

@@ -89,7 +89,7 @@ fn usual() -> Camera {
 fn scene(objects: Vec<Object>, lights: Lamps, camera: Camera) -> Scene {
     let settings = Settings { width: 72, height: 64, samples: 16, ..Settings::default() };
     let (ambient, background) = (Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
-    Scene { objects, lights, settings, camera: Some(camera), ambient, background, motions: Vec::new() }
+    Scene { objects, lights, settings, camera: Some(camera), ambient, background, ..Scene::default() }
 }
 
 fn order(scene: &Scene, threads: usize) -> Order {
@@ -118,7 +118,7 @@ fn compared(scene: &Scene, view: Option<View>) -> [f64; 3] {
         let off = (a.mean() - b.mean()).abs().max_element();
         sums[0] += off;
         sums[1] += f64::from(off > 0.1);
-        let [covered_a, covered_b] = [a, b].map(|tally| f64::from(tally.covered) / f64::from(tally.count));
+        let [covered_a, covered_b] = [a, b].map(|tally| tally.coverage());
         assert!((covered_a - covered_b).abs() < 0.2, "pixel {index} is covered by {covered_a}, not {covered_b}");
         if a.elements == a.count && b.elements == b.count {
             let [near, far] = [a, b].map(|tally| tally.distances / f64::from(tally.elements));
@@ -305,7 +305,7 @@ fn a_highlight_is_the_same_however_many_samples_see_it() {
     let most = one.tallies().iter().map(|tally| tally.mean().max_element()).fold(0.0, f64::max);
     let mut seen = 0;
     for ((one, few), many) in one.tallies().iter().zip(few.tallies()).zip(many.tallies()) {
-        if many.covered == many.count {
+        if many.coverage() == 1.0 {
             let off = [few, many].map(|tally| (tally.mean() - one.mean()).abs().max_element());
             assert!(off.into_iter().all(|off| off < 0.02 * most), "{off:?} of {most}");
             seen += 1;

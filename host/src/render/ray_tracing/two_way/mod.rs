@@ -26,7 +26,7 @@ mod walls;
 pub use flight::Balance;
 pub use shelf::Shelf;
 
-use super::exposure::after;
+use super::accumulation::after;
 use super::world::{Found, World};
 use crate::color::{Channels, LANES};
 use crate::illumination::light::Start;

@@ -1,4 +1,5 @@
-//! Exposure of a film: passes over all pixels, each of which adds samples, that can be stopped and taken up again anywhere.
+//! Accumulation of samples on a film: passes over all pixels, each of which adds samples, that can be stopped and taken up
+//! again anywhere.
 
 use super::tracer::{Tracer, Work};
 use super::two_way::{Balance, CaughtLight};
@@ -30,9 +31,9 @@ pub(super) fn after(every: Duration, begin: Instant) -> Instant {
     now + every.max((now - begin) * LEAST_WORK)
 }
 
-/// What an exposure took.
+/// What accumulating samples took.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exposed {
+pub struct Accumulated {
     /// How many rays were traced.
     pub rays: RayCounts,
     /// What became of the light of lamps that was followed first, if any was.
@@ -51,18 +52,18 @@ impl RayTracer<'_> {
     /// The film may hold samples of the same order already, as after an interruption, also one in the middle of a pass: the
     /// same samples are then added as if there had been none.
     ///
-    /// - `checkpoints`: keeps the film while it is exposed.
+    /// - `checkpoints`: keeps the film while samples are added.
     ///
     /// # Errors
     /// [`RenderError`].
-    pub fn expose(
+    pub fn accumulate(
         &self,
         film: &mut Film,
         view: &View,
         order: &Order,
         watch: &Watch<'_>,
         mut checkpoints: Option<Checkpoints<'_>>,
-    ) -> Result<Exposed, RenderError> {
+    ) -> Result<Accumulated, RenderError> {
         let start = Instant::now();
         let eye = self.eye(view, order)?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
@@ -158,7 +159,7 @@ impl RayTracer<'_> {
             }
         }
         film.set_adaptive(adaptive);
-        Ok(Exposed {
+        Ok(Accumulated {
             rays,
             balance,
             // Time that ran out as it was asked for is no interruption.
@@ -168,7 +169,7 @@ impl RayTracer<'_> {
         })
     }
 
-    /// Makes a picture of a film to which samples are added, as [`RayTracer::expose`] does it.
+    /// Makes a picture of a film to which samples are added, as [`RayTracer::accumulate`] does it.
     ///
     /// # Errors
     /// [`RenderError`].
@@ -181,8 +182,8 @@ impl RayTracer<'_> {
         checkpoints: Option<Checkpoints<'_>>,
     ) -> Result<Rendering, RenderError> {
         (watch.stage)("while rendering");
-        let Exposed { rays, balance, complete, seconds, threads } =
-            self.expose(&mut film, view, order, watch, checkpoints)?;
+        let Accumulated { rays, balance, complete, seconds, threads } =
+            self.accumulate(&mut film, view, order, watch, checkpoints)?;
         let (picture, spans) = (film.picture()?, SpanCounts::default());
         Ok(Rendering { picture, film, complete, rays, spans, balance, seconds, threads })
     }
