@@ -25,7 +25,7 @@ pub(super) const ROW: Row = Row {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), a picture (.png, .exr), an octree (.octree), a scene script (.rhai) or the name of a scene that ships
+    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), a picture (.png, .exr, .hdr), an octree (.octree), a scene script (.rhai) or the name of a scene that ships
     #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]

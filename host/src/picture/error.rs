@@ -29,10 +29,12 @@ pub enum PictureError {
     #[error("pictures of different size: {0} x {1} and {2} x {3} pixels")]
     Mismatch(u32, u32, u32, u32),
     /// The name ends in something else than the formats known.
-    #[error("{}: a picture's name ends in .png or .exr", path.display())]
+    #[error("{}: a picture's name ends in {endings}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
+        /// The endings that are known.
+        endings: &'static str,
     },
     /// The file is broken, or holds what is not read.
     #[error("{}: {problem}", path.display())]

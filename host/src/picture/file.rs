@@ -26,7 +26,7 @@ impl Picture {
     /// [`PictureError::Format`] for a name that does not end in .png or .exr, [`PictureError::Write`] where no file can be
     /// written.
     pub fn destination(path: &Path) -> Result<Destination, PictureError> {
-        format_of(path)?;
+        written_as(path)?;
         Ok(Destination::of(path)?)
     }
 
@@ -45,7 +45,7 @@ impl Picture {
     /// Those of [`Picture::write`].
     pub fn write_with(&self, destination: &Destination, provenance: &Provenance) -> Result<(), PictureError> {
         let (width, height) = (self.width, self.height);
-        match format_of(destination.path())? {
+        match written_as(destination.path())? {
             ImageFormat::Png => {
                 let bytes = self.to_srgb8();
                 destination.write_or_keep(|file| encoder::png(file, &bytes, [width, height], provenance))?;
@@ -63,7 +63,7 @@ impl Picture {
         Ok(())
     }
 
-    /// Reads a PNG or EXR file back into linear light. Without an alpha channel, everything counts as covered.
+    /// Reads a PNG, EXR or HDR file into linear light. Without an alpha channel, everything counts as covered.
     ///
     /// PNG files hold colours beside their alpha; these are premultiplied by it here, as EXR files hold them.
     ///
@@ -87,7 +87,7 @@ impl Picture {
         Picture::new(width, height)
     }
 
-    /// Reads a PNG or EXR file as [`Picture::read`] does, in which every number must be finite.
+    /// Reads a file as [`Picture::read`] does, in which every number must be finite.
     ///
     /// # Errors
     /// Those of [`Picture::read`], and [`PictureError::Number`] for the first pixel with another number.
@@ -110,8 +110,16 @@ impl Picture {
     }
 }
 
+/// The format of the name of a picture that is written.
+fn written_as(path: &Path) -> Result<ImageFormat, PictureError> {
+    match format_of(path) {
+        Ok(format) if format != ImageFormat::Hdr => Ok(format),
+        _ => Err(PictureError::Format { path: path.into(), endings: ".png or .exr" }),
+    }
+}
+
 /// The pixel that a file tells. Colors beside a coverage are premultiplied by it.
-pub(super) fn pixel_of(texel: Texel) -> Pixel {
+pub(crate) fn pixel_of(texel: Texel) -> Pixel {
     let beside = |light: [f32; 3], coverage: f32| Pixel { radiance: light.map(|c| coverage * c), coverage };
     match texel {
         Texel::Eight([r, g, b, a]) => beside([r, g, b].map(linear_from_srgb), f32::from(a) / 255.0),

@@ -16,6 +16,7 @@ pub use compose::{Operator, compose, compose_by_depth};
 pub use depth::Deep;
 pub use difference::{Difference, RELATIVE_FLOOR, difference};
 pub use error::PictureError;
+pub(crate) use file::pixel_of;
 pub use filter::Filter;
 pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip};
 pub use provenance::Provenance;

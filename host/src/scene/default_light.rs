@@ -7,9 +7,8 @@
 use super::{Camera, Object, Prepared, Scene, SceneError};
 use crate::color::Color;
 use crate::illumination::Bands;
-use crate::illumination::light::{Light, Patch, SkyMap};
+use crate::illumination::light::{Light, Panorama, Patch, SkyMap};
 use crate::numeric::bounds::Bounds;
-use crate::picture::Picture;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -94,15 +93,13 @@ pub(super) fn soft_box(place: DVec3, on: DVec3, side: f64, irradiance: Bands) ->
 
 /// A sky that goes from the horizon smoothly up and down.
 fn sky() -> Result<SkyMap, SceneError> {
-    let mut picture = Picture::new(1, ROWS).map_err(|error| SceneError::Setting(error.to_string()))?;
     let [above, level, below] = SKY;
-    for (row, pixel) in picture.pixels_mut().iter_mut().enumerate() {
-        let elevation = FRAC_PI_2 - (row as f64 + 0.5) / f64::from(ROWS) * PI;
-        let part = elevation.sin().abs();
-        let radiance = level.lerp(if elevation > 0.0 { above } else { below }, part);
-        pixel.radiance = radiance.as_vec3().to_array();
-    }
-    Ok(SkyMap { file: String::new(), picture: Some(Arc::new(picture)) })
+    let radiance = |_, row: u32| {
+        let elevation = FRAC_PI_2 - f64::from(row) / f64::from(ROWS - 1) * PI;
+        level.lerp(if elevation > 0.0 { above } else { below }, elevation.sin().abs())
+    };
+    let panorama = Panorama::of(1, ROWS, radiance).map_err(|error| SceneError::Setting(error.to_string()))?;
+    Ok(SkyMap { file: String::new(), panorama: Some(Arc::new(panorama)) })
 }
 
 #[cfg(test)]

@@ -7,9 +7,8 @@ use super::function::{Done, Function, Kind, Parameter, parameter};
 use crate::color::srgb::LUMINANCE;
 use crate::color::{Color, Spectrum, light_of_temperature};
 use crate::illumination::Light;
-use crate::illumination::light::{Goniometry, Patch, SkyMap};
+use crate::illumination::light::{Goniometry, Panorama, Patch, SkyMap};
 use crate::memory;
-use crate::picture::Picture;
 use crate::scene::MAX_LIGHTS;
 use glam::DVec3;
 use rhai::Dynamic;
@@ -170,7 +169,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
         summary: "Surrounds the scene with light: the same from everywhere, or a picture over latitude and longitude.",
         parameters: &[
             parameter("radiance", Kind::Powers, Is("1"), "radiance, W/(m² sr); with a file a factor"),
-            parameter("file", Kind::Text, Is("none"), "a picture, .exr or .png; its top is up, its middle ahead (-z)"),
+            parameter(
+                "file",
+                Kind::Text,
+                Is("none"),
+                "a picture, .hdr, .exr or .png, over turn and angle from the zenith: its first row is up, its last down, its middle ahead (-z)",
+            ),
             parameter("turned", Kind::Number(-1e6, 1e6), Is("0"), "degrees about the upright axis"),
             SPECTRUM,
         ],
@@ -180,8 +184,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 None => None,
                 Some(file) => {
                     let path = builder.folders.file(file)?;
-                    let picture = Picture::read(&path).map_err(|error| error.to_string())?;
-                    Some(SkyMap { file: file.to_owned(), picture: Some(Arc::new(picture)) })
+                    let panorama = Panorama::read(&path).map_err(|error| error.to_string())?;
+                    Some(SkyMap { file: file.to_owned(), panorama: Some(Arc::new(panorama)) })
                 }
             };
             let radiance = color_of_light(builder, bound, bound.vector("radiance").unwrap_or(DVec3::ONE))?;

@@ -3,7 +3,7 @@
 use super::place::with_file;
 use glam::DVec3;
 use host::color::{Color, Wavelengths};
-use host::illumination::light::{Sky, SkyMap};
+use host::illumination::light::{Panorama, Sky, SkyMap};
 use host::picture::{Deep, Picture};
 use std::sync::Arc;
 
@@ -31,12 +31,11 @@ pub fn layers(bytes: &[u8]) {
 }
 
 pub fn environment(bytes: &[u8]) {
-    let Ok(picture) = with_file("a.exr", bytes, Picture::read) else { return };
-    let is_right = picture.pixels().iter().all(|p| p.radiance.iter().all(|band| (0.0..=1e30).contains(band)));
-    let map = SkyMap { file: "a.exr".into(), picture: Some(Arc::new(picture)) };
+    let Ok(panorama) = with_file("a.exr", bytes, Panorama::read) else { return };
+    let map = SkyMap { file: "a.exr".into(), panorama: Some(Arc::new(panorama)) };
     let sky = Sky::new(Some(&map), &Color::Bands(DVec3::ONE), 30.0, &Wavelengths::bands());
     for towards in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.6, 0.0, -0.8)] {
         let radiance = sky.radiance(towards, 0);
-        assert!(!is_right || radiance.max() >= 0.0, "{radiance:?}");
+        assert!(radiance.max() >= 0.0, "{radiance:?}");
     }
 }

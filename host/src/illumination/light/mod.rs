@@ -3,6 +3,7 @@
 mod area;
 mod emission;
 mod goniometry;
+mod panorama;
 mod patch;
 mod sky;
 mod source;
@@ -11,12 +12,12 @@ mod tests;
 
 pub use emission::Start;
 pub use goniometry::{Goniometry, GoniometryError};
+pub use panorama::Panorama;
 pub use patch::Patch;
 pub use sky::Sky;
 pub use source::{Beam, Glow, LightPoint, Source};
 
 use crate::color::Color;
-use crate::picture::Picture;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -92,7 +93,7 @@ pub struct SkyMap {
     pub file: String,
     /// The picture; empty where it is not kept.
     #[serde(skip)]
-    pub picture: Option<Arc<Picture>>,
+    pub panorama: Option<Arc<Panorama>>,
 }
 
 /// Why a light is none.

@@ -1,12 +1,19 @@
 //! Light from all around: one radiance, or a picture of it.
 
 use super::SkyMap;
+use super::panorama::Panorama;
 use crate::color::{Channels, Color, Curve, Wavelengths};
 use crate::numeric::sampling::{cosine_hemisphere, sphere};
-use crate::picture::Picture;
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::ops::Range;
 use std::sync::Arc;
+
+/// Most cells that have a block of their own each.
+const MOST_SINGLE: usize = 1 << 20;
+/// Cells along a side of a block of a larger picture.
+const BLOCK: usize = 8;
 
 /// Light from all around, ready for rendering.
 #[derive(Clone, Debug)]
@@ -18,22 +25,29 @@ pub struct Sky {
 }
 
 /// A picture of the sky, from which directions are drawn as bright as they are.
+///
+/// It is divided into cells between four pixels, in which its radiance is bilinear, and these into blocks. A block is drawn by
+/// a table, and a cell in it by looking at all of them: of a large picture the table is small.
 #[derive(Clone, Debug)]
 struct Map {
-    picture: Arc<Picture>,
+    panorama: Arc<Panorama>,
     /// Light of red, green and blue.
     primaries: [Curve; 3],
-    /// The part of all light up to each row.
+    /// Cells along a side of a block.
+    side: usize,
+    /// Light of all cells.
+    all: f64,
+    /// The part of all light up to each row of blocks.
     rows: Vec<f64>,
-    /// In each row, the part of its light up to each pixel.
+    /// In each row of blocks, the part of its light up to each block.
     columns: Vec<f64>,
 }
 
 impl Sky {
     /// - `radiance`: what the map is multiplied with; all of the light without one.
     pub fn new(map: Option<&SkyMap>, radiance: &Color, turned: f64, wavelengths: &Wavelengths) -> Sky {
-        let picture = map.and_then(|map| map.picture.clone());
-        let map = picture.map(|picture| Map::new(picture, wavelengths));
+        let panorama = map.and_then(|map| map.panorama.clone());
+        let map = panorama.map(|panorama| Map::new(panorama, wavelengths));
         // A map has its own light; what it is multiplied with is then a filter.
         let factor = match &map {
             Some(_) => wavelengths.filter(radiance),
@@ -116,84 +130,178 @@ fn direction(place: DVec2) -> DVec3 {
 }
 
 impl Map {
-    fn new(picture: Arc<Picture>, wavelengths: &Wavelengths) -> Map {
+    fn new(panorama: Arc<Panorama>, wavelengths: &Wavelengths) -> Map {
+        let [columns, rows] = panorama.cells();
+        Map::divided(panorama, wavelengths, if columns * rows <= MOST_SINGLE { 1 } else { BLOCK })
+    }
+
+    /// - `side`: cells along a side of a block, at most [`BLOCK`].
+    fn divided(panorama: Arc<Panorama>, wavelengths: &Wavelengths, side: usize) -> Map {
         let primaries = DVec3::AXES.map(|axis| wavelengths.light(&Color::Bands(axis)));
-        let (width, height) = (picture.width() as usize, picture.height() as usize);
-        let mut columns = Vec::with_capacity(width * height);
-        let mut rows = Vec::with_capacity(height);
-        let mut all = 0.0;
-        for (y, row) in picture.pixels().chunks_exact(width).enumerate() {
-            let sine = ((y as f64 + 0.5) / height as f64 * PI).sin();
-            let bright = |p: &crate::picture::Pixel| p.radiance.iter().map(|v| f64::from(v.max(0.0))).sum::<f64>();
-            let sum: f64 = row.iter().map(bright).sum();
-            let mut below = 0.0;
-            columns.extend(row.iter().enumerate().map(|(x, pixel)| {
-                below += bright(pixel);
-                if sum > 0.0 { below / sum } else { (x + 1) as f64 / width as f64 }
-            }));
-            all += sum * sine;
-            rows.push(all);
+        let cells = panorama.cells();
+        let mut map = Map { panorama, primaries, side, all: 0.0, rows: Vec::new(), columns: Vec::new() };
+        let [across, down] = cells.map(|count| count.div_ceil(side));
+        let blocks = (0..across * down).into_par_iter().with_min_len(1 << 10);
+        let mut light: Vec<f64> = blocks.map(|block| map.of_block([block % across, block / across])).collect();
+        for row in light.chunks_exact_mut(across) {
+            map.all += row.iter().sum::<f64>();
+            map.rows.push(map.all);
+            add_up(row);
         }
-        if all > 0.0 {
-            rows.iter_mut().for_each(|below| *below /= all);
-        }
-        Map { picture, primaries, rows, columns }
+        map.rows.iter_mut().for_each(|below| *below /= map.all.max(f64::MIN_POSITIVE));
+        map.columns = light;
+        map
     }
 
-    fn size(&self) -> [usize; 2] {
-        [self.picture.width() as usize, self.picture.height() as usize]
+    /// The cells of a block along one axis.
+    fn cells_of(&self, block: usize, axis: usize) -> Range<usize> {
+        let all = self.panorama.cells()[axis];
+        (block * self.side).min(all)..((block + 1) * self.side).min(all)
     }
 
-    fn pixel(&self, place: DVec2) -> [usize; 2] {
-        let [width, height] = self.size();
-        [((place.x * width as f64) as usize).min(width - 1), ((place.y * height as f64) as usize).min(height - 1)]
+    /// Light of a block.
+    fn of_block(&self, block: [usize; 2]) -> f64 {
+        let [columns, rows] = [0, 1].map(|axis| self.cells_of(block[axis], axis));
+        rows.flat_map(|y| columns.clone().map(move |x| [x, y])).map(|cell| self.of_cell(cell)).sum()
+    }
+
+    /// Light of a cell: the mean brightness of its corners times the mean sine of the angle from the zenith.
+    fn of_cell(&self, cell: [usize; 2]) -> f64 {
+        self.corners(cell).iter().sum::<f64>() / 4.0 * self.sine(cell[1])
+    }
+
+    /// Brightness of the corners of a cell: left and right above, left and right below.
+    fn corners(&self, [x, y]: [usize; 2]) -> [f64; 4] {
+        [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|corner| self.brightness(corner))
+    }
+
+    fn brightness(&self, [x, y]: [usize; 2]) -> f64 {
+        self.panorama.texel(x, y).element_sum()
+    }
+
+    /// The mean sine of the angle from the zenith in a row of cells.
+    fn sine(&self, row: usize) -> f64 {
+        let rows = self.panorama.cells()[1] as f64;
+        let [above, below] = [row, row + 1].map(|row| (row as f64 / rows * PI).cos());
+        (above - below) * rows / PI
     }
 
     fn radiance(&self, place: DVec2, comb: usize) -> Channels {
-        let [x, y] = self.pixel(place);
-        let pixel = self.picture.pixels()[y * self.size()[0] + x];
-        let of = |band: usize| self.primaries[band].of(comb) * f64::from(pixel.radiance[band].max(0.0));
+        self.light(self.panorama.at(place), comb)
+    }
+
+    fn light(&self, bands: DVec3, comb: usize) -> Channels {
+        let of = |band: usize| self.primaries[band].of(comb) * bands[band];
         of(0) + of(1) + of(2)
     }
 
-    /// The integral over all directions: each row has the solid angle between two latitudes.
+    /// The integral over all directions.
     fn total(&self, comb: usize) -> Channels {
-        let [width, height] = self.size();
+        let [width, rows] = self.panorama.cells();
+        let step = PI / rows as f64;
         let mut sums = DVec3::ZERO;
-        for (y, row) in self.picture.pixels().chunks_exact(width).enumerate() {
-            let [above, below] = [y, y + 1].map(|y| (y as f64 / height as f64 * PI).cos());
-            let bands = |p: &crate::picture::Pixel| DVec3::from_array(p.radiance.map(|v| f64::from(v.max(0.0))));
-            sums += row.iter().map(bands).sum::<DVec3>() * (TAU / width as f64 * (above - below));
+        for y in 0..=rows {
+            // The integral of the sine times a hat that is 1 in the row and 0 in those beside it.
+            let angle = y as f64 * step;
+            let hat = match y {
+                0 => 1.0 - step.sin() / step,
+                y if y == rows => 1.0 - step.sin() / step,
+                _ => 2.0 * angle.sin() * (1.0 - step.cos()) / step,
+            };
+            sums += (0..width).map(|x| self.panorama.texel(x, y)).sum::<DVec3>() * (hat * TAU / width as f64);
         }
-        let of = |band: usize| self.primaries[band].of(comb) * sums[band];
-        of(0) + of(1) + of(2)
+        self.light(sums, comb)
     }
 
     fn mean(&self) -> f64 {
-        let [width, height] = self.size();
-        let sum: f64 = self.picture.pixels().iter().map(|p| f64::from(p.radiance[1].max(0.0))).sum();
-        sum / (width * height) as f64
+        let [width, height] = self.panorama.size();
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        pixels.map(|[x, y]| self.panorama.texel(x, y).y).sum::<f64>() / (width * height) as f64
     }
 
-    /// A place, by the light that comes from its pixel.
+    /// A place, about as bright as it is.
     fn draw(&self, [x, y]: [f64; 2]) -> Option<DVec2> {
-        if self.rows.last().is_none_or(|all| *all <= 0.0) {
+        if self.all <= 0.0 {
             return None;
         }
-        let [width, height] = self.size();
+        let across = self.columns.len() / self.rows.len();
         let (row, down) = within(&self.rows, y);
-        let (column, across) = within(&self.columns[row * width..(row + 1) * width], x);
-        Some(DVec2::new((column as f64 + across) / width as f64, (row as f64 + down) / height as f64))
+        let (column, aside) = within(&self.columns[row * across..(row + 1) * across], x);
+        let (cell, [s, t]) =
+            if self.side == 1 { ([column, row], [aside, down]) } else { self.drawn([column, row], [aside, down]) };
+        // Down the means of both sides first, and then across where that is.
+        let [a, b, c, d] = self.corners(cell);
+        let t = linear(a + b, c + d, t);
+        let between = |above: f64, below: f64| above + (below - above) * t;
+        let s = linear(between(a, c), between(b, d), s);
+        Some(Panorama::place(cell, DVec2::new(s, t), self.panorama.cells()))
+    }
+
+    /// A cell of a block, and what is left of the numbers that chose it.
+    fn drawn(&self, block: [usize; 2], [x, y]: [f64; 2]) -> ([usize; 2], [f64; 2]) {
+        let [columns, rows] = [0, 1].map(|axis| self.cells_of(block[axis], axis));
+        // Brightness of a row of corners, in pairs.
+        let pairs = |y: usize| {
+            let mut pairs = [0.0; BLOCK];
+            let mut left = self.brightness([columns.start, y]);
+            for (x, pair) in columns.clone().zip(&mut pairs) {
+                let right = self.brightness([x + 1, y]);
+                *pair = left + right;
+                left = right;
+            }
+            pairs
+        };
+        let mut light = [0.0; BLOCK * BLOCK];
+        let mut of_rows = [0.0; BLOCK];
+        let mut above = pairs(rows.start);
+        for ((y, sum), cells) in rows.clone().zip(&mut of_rows).zip(light.chunks_exact_mut(BLOCK)) {
+            let (below, sine) = (pairs(y + 1), self.sine(y));
+            for ((cell, above), below) in cells.iter_mut().zip(above).zip(below) {
+                *cell = (above + below) / 4.0 * sine;
+            }
+            *sum = cells.iter().sum();
+            above = below;
+        }
+        let of_rows = &mut of_rows[..rows.len()];
+        add_up(of_rows);
+        let (row, down) = within(of_rows, y);
+        let cells = &mut light[row * BLOCK..][..columns.len()];
+        add_up(cells);
+        let (column, aside) = within(cells, x);
+        ([columns.start + column, rows.start + row], [aside, down])
     }
 
     /// The density of a place in the map.
     fn density(&self, place: DVec2) -> f64 {
-        let [width, height] = self.size();
-        let [x, y] = self.pixel(place);
-        let part = |below: &[f64], i: usize| below[i] - if i == 0 { 0.0 } else { below[i - 1] };
-        let row = &self.columns[y * width..(y + 1) * width];
-        part(&self.rows, y) * part(row, x) * (width * height) as f64
+        if self.all <= 0.0 {
+            return 0.0;
+        }
+        let ([_, y], _) = self.panorama.cell(place);
+        let [columns, rows] = self.panorama.cells();
+        self.panorama.at(place).element_sum() * self.sine(y) / self.all * (columns * rows) as f64
     }
+}
+
+/// Numbers as the part of their sum up to each; even parts where all are 0.
+fn add_up(numbers: &mut [f64]) {
+    let (sum, count) = (numbers.iter().sum::<f64>(), numbers.len() as f64);
+    let mut below = 0.0;
+    for number in numbers {
+        below += if sum > 0.0 { *number / sum } else { 1.0 / count };
+        *number = below;
+    }
+}
+
+/// A number, 0..=1, drawn from a density that goes from `a` to `b`.
+///
+/// # Source
+/// Pharr, Jakob and Humphreys 2023, section 2.3.2.
+fn linear(a: f64, b: f64, uniform: f64) -> f64 {
+    if a + b <= 0.0 {
+        return uniform;
+    }
+    let root = (a * a + uniform * (b * b - a * a)).max(0.0).sqrt();
+    (uniform * (a + b) / (a + root).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
 }
 
 /// The part in which a number falls, and where in it, 0..1.
@@ -202,4 +310,37 @@ fn within(below: &[f64], uniform: f64) -> (usize, f64) {
     let from = if index == 0 { 0.0 } else { below[index - 1] };
     let size = below[index] - from;
     (index, if size > 0.0 { ((uniform - from) / size).clamp(0.0, 1.0_f64.next_down()) } else { 0.5 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::sampling::Stream;
+
+    #[test]
+    fn blocks_draw_the_same_directions_as_single_cells_do() {
+        let radiance = |x: u32, y: u32| {
+            DVec3::splat(f64::from((x * 7 + y * 13) % 11) + if x == 5 && y == 9 { 300.0 } else { 0.0 })
+        };
+        let panorama = Arc::new(Panorama::of(37, 23, radiance).expect("small"));
+        let [single, blocks] = [1, BLOCK].map(|side| Map::divided(panorama.clone(), &Wavelengths::bands(), side));
+        assert!((single.all / blocks.all - 1.0).abs() < 1e-12);
+        let count = 40_000;
+        let (mut stream, mut sums) = (Stream::new(3, 5), [DVec2::ZERO; 2]);
+        let (mut seen, mut near) = (0.0, [0, 0]);
+        for _ in 0..count {
+            let uniform = stream.point();
+            for (number, map) in [&single, &blocks].into_iter().enumerate() {
+                let place = map.draw(uniform).expect("light");
+                sums[number] += place;
+                near[number] += u32::from((place - DVec2::new(5.5 / 37.0, 9.0 / 22.0)).abs().max_element() < 0.05);
+                assert!((map.density(place) / single.density(place) - 1.0).abs() < 1e-9);
+                seen += 0.5 / map.density(place);
+            }
+        }
+        let [a, b] = sums.map(|sum| sum / f64::from(count));
+        assert!((a - b).abs().max_element() < 0.01 && near[0].abs_diff(near[1]) < count / 50, "{a} {b} {near:?}");
+        // The mean of one over the density is the area of the map.
+        assert!((seen / f64::from(count) - 1.0).abs() < 0.03, "{seen}");
+    }
 }

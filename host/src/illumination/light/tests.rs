@@ -5,7 +5,6 @@ use crate::color::Wavelengths;
 use crate::numeric::cubature::unit_square;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::{Stream, sphere};
-use crate::picture::Pixel;
 use std::f64::consts::PI;
 
 fn source(light: Light) -> Source {
@@ -203,11 +202,8 @@ fn broken_files_of_luminaires_are_errors_with_their_line() {
 }
 
 fn map() -> SkyMap {
-    let mut picture = Picture::new(8, 4).expect("small");
-    for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
-        *pixel = Pixel { radiance: [(i % 5) as f32; 3], coverage: 1.0 };
-    }
-    SkyMap { file: String::new(), picture: Some(Arc::new(picture)) }
+    let panorama = Panorama::of(8, 4, |x, y| DVec3::splat(f64::from((y * 8 + x) % 5))).expect("small");
+    SkyMap { file: String::new(), panorama: Some(Arc::new(panorama)) }
 }
 
 #[test]
@@ -246,9 +242,16 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
         assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
     }
     let ahead = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 0.0 });
+    // In the middle of column 4 of row 1, which is 60 degrees from the zenith, and straight up, where row 0 is.
+    let towards = |degrees: f64, turn: f64| {
+        let ((sine, cosine), (across, along)) = (degrees.to_radians().sin_cos(), turn.to_radians().sin_cos());
+        ahead.sky(DVec3::new(sine * across, cosine, -sine * along), None, 0).expect("a sky").radiance.0[0]
+    };
     let pixel = |x: usize, y: usize| ((y * 8 + x) % 5) as f64;
-    assert_eq!(ahead.sky(DVec3::new(0.1, 0.1, -1.0).normalize(), None, 0).expect("a sky").radiance.0[0], pixel(4, 1));
-    assert_eq!(ahead.sky(DVec3::new(1.0, 0.1, -0.1).normalize(), None, 0).expect("a sky").radiance.0[0], pixel(5, 1));
+    assert!((towards(60.0, 22.5) - pixel(4, 1)).abs() < 1e-9 && (towards(60.0, 112.5) - pixel(6, 1)).abs() < 1e-9);
+    assert!(
+        (towards(1e-9, 22.5) - pixel(4, 0)).abs() < 1e-6 && (towards(180.0 - 1e-6, 22.5) - pixel(4, 3)).abs() < 1e-6
+    );
 }
 
 #[test]

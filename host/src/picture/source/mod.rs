@@ -1,6 +1,7 @@
 //! Files of pictures, pixel by pixel: whoever reads one decides what it keeps, and knows the size before.
 
 mod exr;
+mod hdr;
 mod png;
 
 use super::{Picture, PictureError};
@@ -20,6 +21,7 @@ pub(crate) struct Source<'a> {
 enum Format {
     Png(Box<png::Png>),
     Exr(Box<exr::Exr>),
+    Hdr(Box<hdr::Hdr>),
 }
 
 /// How a file tells its pixels.
@@ -51,7 +53,7 @@ pub(crate) enum Texel {
 }
 
 impl<'a> Source<'a> {
-    /// Opens a PNG or EXR file.
+    /// Opens a PNG, EXR or HDR file.
     ///
     /// # Errors
     /// [`PictureError`] for a file that is missing, broken, of another format or too large.
@@ -64,6 +66,10 @@ impl<'a> Source<'a> {
             ImageFormat::Png => {
                 let png = png::Png::open(file).map_err(broken)?;
                 (png.size(), Format::Png(Box::new(png)))
+            }
+            ImageFormat::Hdr => {
+                let hdr = hdr::Hdr::open(file).map_err(broken)?;
+                (hdr.size(), Format::Hdr(Box::new(hdr)))
             }
             _ => {
                 let exr = exr::Exr::open(file).map_err(broken)?;
@@ -84,6 +90,7 @@ impl<'a> Source<'a> {
         match &self.file {
             Format::Png(png) => png.precision(),
             Format::Exr(exr) => Precision::Float { grey: exr.is_grey() },
+            Format::Hdr(_) => Precision::Float { grey: false },
         }
     }
 
@@ -100,17 +107,19 @@ impl<'a> Source<'a> {
         let read = match self.file {
             Format::Png(png) => png.each(&mut tell),
             Format::Exr(exr) => exr.each(&mut tell),
+            Format::Hdr(hdr) => hdr.each(&mut tell),
         };
         read.map_err(|problem| PictureError::Broken { path: self.path.into(), problem })
     }
 }
 
-/// The format of a picture's name.
+/// The format of the name of a picture that is read.
 pub(super) fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("png") => Ok(ImageFormat::Png),
         Some("exr") => Ok(ImageFormat::OpenExr),
-        _ => Err(PictureError::Format { path: path.into() }),
+        Some("hdr" | "pic") => Ok(ImageFormat::Hdr),
+        _ => Err(PictureError::Format { path: path.into(), endings: ".png, .exr or .hdr" }),
     }
 }
 

@@ -148,12 +148,9 @@ fn rays_from_the_eye_alone_find_the_same_light() {
 
 /// A sky with a small sun in it.
 fn sky_with_a_sun() -> Light {
-    let mut picture = crate::picture::Picture::new(64, 32).expect("small");
-    for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
-        let sun = (i / 64).abs_diff(5) < 2 && (i % 64).abs_diff(20) < 2;
-        pixel.radiance = [if sun { 40.0 } else { 0.2 }; 3];
-    }
-    let map = crate::illumination::light::SkyMap { file: "sky".into(), picture: Some(std::sync::Arc::new(picture)) };
+    let radiance = |x: u32, y: u32| DVec3::splat(if y.abs_diff(5) < 2 && x.abs_diff(20) < 2 { 40.0 } else { 0.2 });
+    let panorama = crate::illumination::light::Panorama::of(64, 32, radiance).expect("small");
+    let map = crate::illumination::light::SkyMap { file: "sky".into(), panorama: Some(std::sync::Arc::new(panorama)) };
     Light::Sky { map: Some(map), radiance: Color::grey(1.0), turned: 0.0 }
 }
 
