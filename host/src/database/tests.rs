@@ -202,7 +202,7 @@ fn names_are_checked() {
 fn impossible_content_is_not_stored() {
     let folder = folder();
     let store = Store::open_to_write(folder.path().join("a.redb")).expect("a new database");
-    let map = SkyMap { file: "evening.exr".into(), panorama: None };
+    let map = SkyMap { file: "evening.exr".into(), ..SkyMap::default() };
     let sky = Light::Sky { map: Some(map), radiance: Color::grey(1.0), turned: 0.0 };
     let mut open = square();
     open.mesh.triangles[0] = [0, 1, 9];

@@ -13,6 +13,7 @@
 //! # Source
 //! The 1988 paper, equations 4 and 5.
 
+pub mod atmosphere;
 pub mod distribution;
 pub mod fresnel;
 pub mod light;

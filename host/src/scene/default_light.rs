@@ -99,7 +99,7 @@ fn sky() -> Result<SkyMap, SceneError> {
         level.lerp(if elevation > 0.0 { above } else { below }, elevation.sin().abs())
     };
     let panorama = Panorama::of(1, ROWS, radiance).map_err(|error| SceneError::Setting(error.to_string()))?;
-    Ok(SkyMap { file: String::new(), panorama: Some(Arc::new(panorama)) })
+    Ok(SkyMap { file: String::new(), panorama: Some(Arc::new(panorama)), ..SkyMap::default() })
 }
 
 #[cfg(test)]

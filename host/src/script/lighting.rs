@@ -185,7 +185,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 Some(file) => {
                     let path = builder.folders.file(file)?;
                     let panorama = Panorama::read(&path).map_err(|error| error.to_string())?;
-                    Some(SkyMap { file: file.to_owned(), panorama: Some(Arc::new(panorama)) })
+                    Some(SkyMap { file: file.to_owned(), panorama: Some(Arc::new(panorama)), ..SkyMap::default() })
                 }
             };
             let radiance = color_of_light(builder, bound, bound.vector("radiance").unwrap_or(DVec3::ONE))?;

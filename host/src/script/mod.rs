@@ -5,6 +5,7 @@
 
 mod argument;
 mod builder;
+mod daylight;
 mod definition;
 mod engine;
 mod error;
@@ -48,6 +49,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
         lighting::FUNCTIONS,
+        daylight::FUNCTIONS,
         showing::FUNCTIONS,
         stored::FUNCTIONS,
         table::FUNCTIONS,

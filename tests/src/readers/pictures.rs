@@ -32,7 +32,7 @@ pub fn layers(bytes: &[u8]) {
 
 pub fn environment(bytes: &[u8]) {
     let Ok(panorama) = with_file("a.exr", bytes, Panorama::read) else { return };
-    let map = SkyMap { file: "a.exr".into(), panorama: Some(Arc::new(panorama)) };
+    let map = SkyMap { file: "a.exr".into(), panorama: Some(Arc::new(panorama)), ..SkyMap::default() };
     let sky = Sky::new(Some(&map), &Color::Bands(DVec3::ONE), 30.0, &Wavelengths::bands());
     for towards in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.6, 0.0, -0.8)] {
         let radiance = sky.radiance(towards, 0);

@@ -4,6 +4,7 @@
 //! last straight down, with rows between them at even angles; columns are turns, each at the middle of its part. Between
 //! pixels the radiance is bilinear.
 
+use crate::color::{Color, Spectrum};
 use crate::memory;
 use crate::picture::source::Source;
 use crate::picture::{Picture, PictureError, Pixel, pixel_of};
@@ -25,6 +26,15 @@ pub struct Panorama {
     width: usize,
     height: usize,
     texels: Texels,
+    /// The same over the wavelength, if it is known.
+    spectra: Option<Spectra>,
+}
+
+/// Radiance over the wavelength, W/(m² sr nm): for each pixel how much there is of each part of a spectrum.
+#[derive(Clone, Debug, PartialEq)]
+struct Spectra {
+    parts: Vec<Spectrum>,
+    values: Vec<f32>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -74,13 +84,55 @@ impl Panorama {
         Ok(panorama)
     }
 
+    /// A panorama of spectra.
+    ///
+    /// - `parts`: spectra that are added up, W/(m² sr nm). `values`: for each pixel, row by row, how much of each part.
+    ///
+    /// # Errors
+    /// [`PictureError::Size`].
+    pub fn of_spectra(
+        width: u32,
+        height: u32,
+        parts: Vec<Spectrum>,
+        values: Vec<f32>,
+    ) -> Result<Panorama, PictureError> {
+        let bands: Vec<DVec3> = parts.iter().map(|part| Color::Spectrum(part.clone()).bands_of_light()).collect();
+        let count = bands.len();
+        let at = |x: u32, y: u32| (y as usize * width as usize + x as usize) * count;
+        let values = if values.len() == at(0, height) { values } else { vec![0.0; at(0, height)] };
+        let radiance =
+            |x, y| values[at(x, y)..][..count].iter().zip(&bands).map(|(v, band)| f64::from(*v) * *band).sum();
+        let panorama = Panorama::of(width, height, radiance)?;
+        Ok(Panorama { spectra: Some(Spectra { parts, values }), ..panorama })
+    }
+
+    /// The spectra of which the pixels are made; none where only red, green and blue are known.
+    pub(super) fn parts(&self) -> Option<&[Spectrum]> {
+        self.spectra.as_ref().map(|spectra| &spectra.parts[..])
+    }
+
+    /// How much of each spectrum there is at a place.
+    ///
+    /// - `tell`: for each of [`Panorama::parts`], in their order.
+    pub(super) fn parts_at(&self, place: DVec2, mut tell: impl FnMut(usize, f64)) {
+        let Some(Spectra { parts, values }) = &self.spectra else { return };
+        let ([x, y], DVec2 { x: s, y: t }) = self.cell(place);
+        let of = |x: usize, y: usize| (y.min(self.height - 1) * self.width + x % self.width) * parts.len();
+        let corners = [of(x, y), of(x + 1, y), of(x, y + 1), of(x + 1, y + 1)];
+        let weights = [(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t];
+        for part in 0..parts.len() {
+            let mix = corners.iter().zip(weights).map(|(corner, weight)| weight * f64::from(values[corner + part]));
+            tell(part, mix.sum());
+        }
+    }
+
     fn black(width: u32, height: u32) -> Panorama {
         let count = width as usize * height as usize;
         let texels = match count <= MOST_WHOLE {
             true => Texels::Whole(vec![[0.0; 3]; count]),
             false => Texels::Packed(vec![0; count]),
         };
-        Panorama { width: width as usize, height: height as usize, texels }
+        Panorama { width: width as usize, height: height as usize, texels, spectra: None }
     }
 
     fn set(&mut self, x: u32, y: u32, radiance: [f32; 3]) {
@@ -100,10 +152,11 @@ impl Panorama {
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        match &self.texels {
+        let texels = match &self.texels {
             Texels::Whole(whole) => size_of_val(&whole[..]),
             Texels::Packed(packed) => size_of_val(&packed[..]),
-        }
+        };
+        texels + self.spectra.as_ref().map_or(0, |spectra| size_of_val(&spectra.values[..]))
     }
 
     /// The radiance of a pixel.

@@ -1,7 +1,7 @@
 //! Light from all around: one radiance, or a picture of it.
 
-use super::SkyMap;
 use super::panorama::Panorama;
+use super::{SkyDisc, SkyMap};
 use crate::color::{Channels, Color, Curve, Wavelengths};
 use crate::numeric::sampling::{cosine_hemisphere, sphere};
 use glam::{DVec2, DVec3};
@@ -20,6 +20,7 @@ const BLOCK: usize = 8;
 pub struct Sky {
     factor: Curve,
     map: Option<Map>,
+    disc: Option<Disc>,
     /// Cosine and sine of the turn about the upright axis.
     turned: DVec2,
 }
@@ -33,6 +34,8 @@ struct Map {
     panorama: Arc<Panorama>,
     /// Light of red, green and blue.
     primaries: [Curve; 3],
+    /// Light of the parts of spectra, where these are known and rays carry wavelengths.
+    parts: Vec<Curve>,
     /// Cells along a side of a block.
     side: usize,
     /// Light of all cells.
@@ -47,6 +50,7 @@ impl Sky {
     /// - `radiance`: what the map is multiplied with; all of the light without one.
     pub fn new(map: Option<&SkyMap>, radiance: &Color, turned: f64, wavelengths: &Wavelengths) -> Sky {
         let panorama = map.and_then(|map| map.panorama.clone());
+        let disc = map.and_then(|map| map.disc).map(Disc::new);
         let map = panorama.map(|panorama| Map::new(panorama, wavelengths));
         // A map has its own light; what it is multiplied with is then a filter.
         let factor = match &map {
@@ -54,12 +58,13 @@ impl Sky {
             None => wavelengths.light(radiance),
         };
         let (sin, cos) = turned.to_radians().sin_cos();
-        Sky { factor, map, turned: DVec2::new(cos, sin) }
+        Sky { factor, map, disc, turned: DVec2::new(cos, sin) }
     }
 
     /// Radiance from a direction, unit length.
     pub fn radiance(&self, towards: DVec3, comb: usize) -> Channels {
         match &self.map {
+            None if self.is_beside(towards) => Channels::ZERO,
             None => self.factor.of(comb),
             Some(map) => self.factor.of(comb) * map.radiance(place(self.back(towards)), comb),
         }
@@ -69,6 +74,9 @@ impl Sky {
     ///
     /// - `normal`: of the element that is lit, unit length; a sky of one radiance is then drawn by its cosine above it.
     pub(super) fn draw(&self, [x, y]: [f64; 2], normal: Option<DVec3>) -> Option<(DVec3, f64)> {
+        if let Some(disc) = &self.disc {
+            return Some((self.forth(disc.draw([x, y])), disc.density));
+        }
         let Some(map) = &self.map else {
             let towards = normal.map_or_else(|| sphere([x, y]), |normal| cosine_hemisphere([x, y], normal));
             return Some((towards, self.density(towards, normal))).filter(|(_, density)| *density > 0.0);
@@ -80,6 +88,9 @@ impl Sky {
 
     /// The density of a direction, 1/sr; the normal as in [`Sky::draw`].
     pub(super) fn density(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
+        if let Some(disc) = &self.disc {
+            return if self.is_beside(towards) { 0.0 } else { disc.density };
+        }
         let Some(map) = &self.map else {
             return normal.map_or(0.5 / TAU, |normal| normal.dot(towards).max(0.0) / PI);
         };
@@ -90,18 +101,33 @@ impl Sky {
 
     /// Whether it has the same radiance in all directions.
     pub fn is_even(&self) -> bool {
-        self.map.is_none()
+        self.map.is_none() && self.disc.is_none()
+    }
+
+    /// Towards the middle of the disc that is all of it, unit length; none of another sky.
+    pub(super) fn disc(&self) -> Option<DVec3> {
+        self.disc.as_ref().map(|disc| self.forth(disc.towards))
+    }
+
+    /// Whether a direction, unit length, is beside the disc that is all of it.
+    pub(super) fn is_beside(&self, towards: DVec3) -> bool {
+        self.disc.as_ref().is_some_and(|disc| !disc.has(self.back(towards)))
     }
 
     /// The integral of its radiance over all directions.
     pub(super) fn total(&self, comb: usize) -> Channels {
-        let all = self.map.as_ref().map_or_else(|| Channels::splat(2.0 * TAU), |map| map.total(comb));
+        let all = match (&self.map, &self.disc) {
+            (Some(map), _) => map.total(comb),
+            (None, Some(disc)) => Channels::splat(disc.density.recip()),
+            (None, None) => Channels::splat(2.0 * TAU),
+        };
         self.factor.of(comb) * all
     }
 
     /// About the mean of its luminance over all directions.
     pub fn mean(&self) -> f64 {
-        self.factor.mean().max() * self.map.as_ref().map_or(1.0, Map::mean)
+        let part = self.disc.as_ref().map_or(1.0, |disc| 1.0 / (2.0 * TAU * disc.density));
+        self.factor.mean().max() * self.map.as_ref().map_or(part, Map::mean)
     }
 
     fn forth(&self, direction: DVec3) -> DVec3 {
@@ -112,6 +138,41 @@ impl Sky {
     fn back(&self, direction: DVec3) -> DVec3 {
         let DVec2 { x: cos, y: sin } = self.turned;
         DVec3::new(cos * direction.x - sin * direction.z, direction.y, cos * direction.z + sin * direction.x)
+    }
+}
+
+/// A disc in the sky.
+#[derive(Clone, Copy, Debug)]
+struct Disc {
+    towards: DVec3,
+    /// Two directions square to it and to each other.
+    aside: [DVec3; 2],
+    /// One less the cosine of its radius, without cancellation.
+    rise: f64,
+    /// The reciprocal of its solid angle, 1/sr.
+    density: f64,
+}
+
+impl Disc {
+    fn new(disc: SkyDisc) -> Disc {
+        let SkyDisc { towards, radius } = disc;
+        let (a, b) = towards.any_orthonormal_pair();
+        let rise = 2.0 * (0.5 * radius).sin().powi(2);
+        Disc { towards, aside: [a, b], rise, density: 1.0 / disc.solid_angle() }
+    }
+
+    /// Whether a direction, unit length, is in it.
+    fn has(&self, direction: DVec3) -> bool {
+        // The square of a chord is twice the rise.
+        (direction - self.towards).length_squared() <= 2.0 * self.rise
+    }
+
+    /// A direction in it, drawn evenly.
+    fn draw(&self, [x, y]: [f64; 2]) -> DVec3 {
+        let rise = x * self.rise;
+        let sine = (rise * (2.0 - rise)).sqrt();
+        let (across, along) = (y * TAU).sin_cos();
+        self.towards * (1.0 - rise) + (self.aside[0] * along + self.aside[1] * across) * sine
     }
 }
 
@@ -139,7 +200,10 @@ impl Map {
     fn divided(panorama: Arc<Panorama>, wavelengths: &Wavelengths, side: usize) -> Map {
         let primaries = DVec3::AXES.map(|axis| wavelengths.light(&Color::Bands(axis)));
         let cells = panorama.cells();
-        let mut map = Map { panorama, primaries, side, all: 0.0, rows: Vec::new(), columns: Vec::new() };
+        let is_known = panorama.parts().filter(|_| wavelengths.is_spectral());
+        let parts = is_known.unwrap_or_default().iter().map(|part| wavelengths.light(&Color::Spectrum(part.clone())));
+        let parts = parts.collect();
+        let mut map = Map { panorama, primaries, parts, side, all: 0.0, rows: Vec::new(), columns: Vec::new() };
         let [across, down] = cells.map(|count| count.div_ceil(side));
         let blocks = (0..across * down).into_par_iter().with_min_len(1 << 10);
         let mut light: Vec<f64> = blocks.map(|block| map.of_block([block % across, block / across])).collect();
@@ -187,7 +251,12 @@ impl Map {
     }
 
     fn radiance(&self, place: DVec2, comb: usize) -> Channels {
-        self.light(self.panorama.at(place), comb)
+        if self.parts.is_empty() {
+            return self.light(self.panorama.at(place), comb);
+        }
+        let mut sum = Channels::ZERO;
+        self.panorama.parts_at(place, |part, value| sum += self.parts[part].of(comb) * value);
+        sum
     }
 
     fn light(&self, bands: DVec3, comb: usize) -> Channels {

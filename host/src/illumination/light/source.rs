@@ -165,7 +165,7 @@ impl Source {
         }
     }
 
-    /// Points that stand for it: itself if it has no size, none for a sky.
+    /// Points that stand for it: itself if it has no size, the middle of a disc in the sky, none for another sky.
     ///
     /// A sphere's points lie on a smaller one, so that they are spread as its disc is, as seen from anywhere.
     ///
@@ -186,7 +186,7 @@ impl Source {
         match &self.kind {
             Kind::Point { at } | Kind::Spot { at, .. } | Kind::Luminaire { at, .. } => sharp(Some(*at), DVec3::ZERO),
             Kind::Directional { towards } => sharp(None, *towards),
-            Kind::Sky(_) => Vec::new(),
+            Kind::Sky(sky) => sky.disc().map_or_else(Vec::new, |towards| sharp(None, towards)),
             Kind::Area(patch) => spread(&|uniform| {
                 let (at, normal) = patch.point(uniform, count == 1);
                 (at, patch.seen_area(), normal, Sides::Front)
@@ -202,7 +202,8 @@ impl Source {
     #[inline]
     pub fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
         let (Some((area, normal, sides)), Some(at)) = (from.surface, from.at) else {
-            return self.beam(point, None, [0.5; 2], comb);
+            // The middle of a disc in the sky stands for it.
+            return self.beam(point, None, [0.0; 2], comb);
         };
         let beam = from_point(at - point, self.strength.of(comb) * area)?;
         let facing = match (normal, sides) {
@@ -234,11 +235,14 @@ impl Source {
         Some(Glow { t, radiance, density: patch.density(ray.origin, ray.direction / length, t * length) })
     }
 
-    /// What is seen of a sky in a direction, unit length; none of another light.
+    /// What is seen of a sky in a direction, unit length; none of another light, and beside a disc.
     ///
     /// - `normal`: of the element from which it is seen, as in [`Source::beam`].
     pub fn sky(&self, towards: DVec3, normal: Option<DVec3>, comb: usize) -> Option<Glow> {
         let Kind::Sky(sky) = &self.kind else { return None };
+        if sky.is_beside(towards) {
+            return None;
+        }
         Some(Glow { t: f64::INFINITY, radiance: sky.radiance(towards, comb), density: sky.density(towards, normal) })
     }
 
@@ -276,9 +280,14 @@ impl Source {
         }
     }
 
-    /// Whether it surrounds everything.
-    pub fn is_sky(&self) -> bool {
+    /// Whether it is seen where rays meet nothing: a sky, or a disc in it.
+    pub fn is_beyond(&self) -> bool {
         matches!(self.kind, Kind::Sky(_))
+    }
+
+    /// Whether it surrounds everything: no disc in the sky does.
+    pub fn is_sky(&self) -> bool {
+        matches!(&self.kind, Kind::Sky(sky) if sky.disc().is_none())
     }
 }
 

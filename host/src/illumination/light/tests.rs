@@ -203,7 +203,7 @@ fn broken_files_of_luminaires_are_errors_with_their_line() {
 
 fn map() -> SkyMap {
     let panorama = Panorama::of(8, 4, |x, y| DVec3::splat(f64::from((y * 8 + x) % 5))).expect("small");
-    SkyMap { file: String::new(), panorama: Some(Arc::new(panorama)) }
+    SkyMap { file: String::new(), panorama: Some(Arc::new(panorama)), ..SkyMap::default() }
 }
 
 #[test]
@@ -252,6 +252,27 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     assert!(
         (towards(1e-9, 22.5) - pixel(4, 0)).abs() < 1e-6 && (towards(180.0 - 1e-6, 22.5) - pixel(4, 3)).abs() < 1e-6
     );
+}
+
+#[test]
+fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
+    let disc = SkyDisc { towards: DVec3::new(0.6, 0.8, 0.0), radius: 0.004_653 };
+    let map = SkyMap { file: String::new(), panorama: None, disc: Some(disc) };
+    let sun = source(Light::Sky { map: Some(map), radiance: Color::grey(2.0 / disc.solid_angle()), turned: 0.0 });
+    assert!((irradiance(&sun, DVec3::ZERO, DVec3::Y) - 2.0 * 0.8).abs() < 1e-5);
+    assert!(!sun.is_sky() && sun.is_beyond() && sun.is_caught());
+    let mut stream = Stream::new(4, 9);
+    for _ in 0..1000 {
+        let beam = sun.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
+        let angle = beam.towards.cross(disc.towards).length().asin();
+        assert!(angle <= disc.radius * (1.0 + 1e-9) && (beam.towards.length() - 1.0).abs() < 1e-12);
+        let seen = sun.sky(beam.towards, None, 0).expect("it is there");
+        assert_eq!(Some(seen.density), beam.density);
+    }
+    assert!(sun.sky(-disc.towards, None, 0).is_none() && sun.sky(DVec3::Y, None, 0).is_none());
+    let [point] = sun.points(7)[..] else { panic!("one point") };
+    let beam = sun.beam_from(&point, DVec3::ZERO, 0).expect("light");
+    assert!((beam.irradiance.0[0] - 2.0).abs() < 1e-6 && (beam.towards - disc.towards).length() < 1e-12);
 }
 
 #[test]

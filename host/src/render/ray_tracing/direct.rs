@@ -34,9 +34,9 @@ impl<'a> Direct<'a> {
         self.spread
     }
 
-    /// Whether something surrounds everything.
+    /// Whether something is seen where rays meet nothing.
     pub(super) fn has_sky(&self) -> bool {
-        self.world.appearance.sources.iter().any(|(_, source)| source.is_sky())
+        self.world.appearance.sources.iter().any(|(_, source)| source.is_beyond())
     }
 
     /// Radiance towards the viewer by the light of all lights, of broad lobes and of narrow ones.

@@ -150,7 +150,11 @@ fn rays_from_the_eye_alone_find_the_same_light() {
 fn sky_with_a_sun() -> Light {
     let radiance = |x: u32, y: u32| DVec3::splat(if y.abs_diff(5) < 2 && x.abs_diff(20) < 2 { 40.0 } else { 0.2 });
     let panorama = crate::illumination::light::Panorama::of(64, 32, radiance).expect("small");
-    let map = crate::illumination::light::SkyMap { file: "sky".into(), panorama: Some(std::sync::Arc::new(panorama)) };
+    let map = crate::illumination::light::SkyMap {
+        file: "sky".into(),
+        panorama: Some(std::sync::Arc::new(panorama)),
+        ..Default::default()
+    };
     Light::Sky { map: Some(map), radiance: Color::grey(1.0), turned: 0.0 }
 }
 

@@ -216,7 +216,7 @@ impl<'a> ScanLine<'a> {
         matte: bool,
     ) -> Shader<'s> {
         let sources = || self.appearance.sources.iter().map(|(_, source)| source);
-        let (has_surfaces, has_sky) = (sources().any(Source::is_surface), sources().any(Source::is_sky));
+        let (has_surfaces, has_sky) = (sources().any(Source::is_surface), sources().any(Source::is_beyond));
         let wavelengths = &self.appearance.wavelengths;
         let background = || {
             let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0));

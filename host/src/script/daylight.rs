@@ -1,0 +1,168 @@
+//! The function of the scene language that lights a scene by the sun and a clear sky.
+
+use super::argument::Bound;
+use super::builder::Builder;
+use super::function::Default::Is;
+use super::function::{Done, Function, Kind, parameter};
+use super::lighting::add;
+use crate::color::{Beyond, Color, Spectrum};
+use crate::illumination::Light;
+use crate::illumination::atmosphere::{
+    Atmosphere, COLUMNS, ClearSky, Moment, NODES, ROWS, SUN_RADIUS, Spectral, node, solar_position,
+};
+use crate::illumination::light::{Panorama, SkyDisc, SkyMap};
+use glam::DVec3;
+use std::sync::Arc;
+
+const DEGREES: Kind = Kind::Number(-360.0, 360.0);
+
+/// The function.
+pub(super) const FUNCTIONS: &[Function] = &[Function {
+    name: "sun_and_sky",
+    summary: "Lights the scene by the sun and a clear sky, of a place, a date and an hour or of where the sun is; -z is north. Its light is that of the day: an exposure is best left to the meter.",
+    parameters: &[
+        parameter("latitude", Kind::Number(-90.0, 90.0), Is("30.26, Hangzhou"), "degrees, north above 0"),
+        parameter("longitude", Kind::Number(-180.0, 180.0), Is("120.12, Hangzhou"), "degrees, east above 0"),
+        parameter("date", Kind::Text, Is("\"1988-06-21\""), "year, month and day"),
+        parameter("hour", Kind::Number(0.0, 24.0), Is("10"), "of the day, 13.5 for half past one"),
+        parameter(
+            "zone",
+            Kind::Number(-14.0, 14.0),
+            Is("that of the longitude"),
+            "hours by which clocks are ahead of Greenwich",
+        ),
+        parameter(
+            "elevation",
+            Kind::Number(-20.0, 90.0),
+            Is("by place, date and hour"),
+            "of the sun over the horizon, degrees",
+        ),
+        parameter(
+            "azimuth",
+            DEGREES,
+            Is("by place, date and hour; 180 with an elevation"),
+            "of the sun, clockwise from north, degrees",
+        ),
+        parameter(
+            "turbidity",
+            Kind::Number(1.0, 10.0),
+            Is("3"),
+            "how much haze there is: 1 none, 2 clear, 3 ordinary, 10 thick",
+        ),
+        parameter(
+            "ground",
+            Kind::Number(0.0, 1.0),
+            Is("0.2"),
+            "the part of the light that the ground beyond the scene reflects",
+        ),
+        parameter("altitude", Kind::Number(0.0, 50_000.0), Is("50"), "of the scene over that ground, metres"),
+        parameter("factor", Kind::Number(0.0, 1e9), Is("1"), "what all of it is multiplied with"),
+        parameter("sun", Kind::Flag, Is("true"), "whether the sun shines; without it, it stands behind something"),
+    ],
+    example: "sun_and_sky(#{ latitude: 48.2, longitude: 16.4, date: \"2026-09-23\", hour: 17.5 });",
+    action: sun_and_sky,
+}];
+
+fn sun_and_sky(builder: &mut Builder, bound: &Bound) -> Done {
+    let number = |name, default| bound.number(name).unwrap_or(default);
+    let [azimuth, elevation] = place_of_sun(bound)?;
+    let atmosphere = Atmosphere {
+        turbidity: number("turbidity", 3.0),
+        albedo: number("ground", 0.2),
+        altitude: number("altitude", 50.0),
+        elevation,
+    };
+    let sky = ClearSky::new(&atmosphere);
+    let factor = number("factor", 1.0);
+    let towards = DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), -azimuth.cos() * elevation.cos());
+    let map = SkyMap { file: "a clear sky".into(), panorama: Some(Arc::new(panorama(&sky)?)), disc: None };
+    // The table begins at the sun; the panorama's middle is -z.
+    let turned = -azimuth.to_degrees();
+    let done = add(builder, Light::Sky { map: Some(map), radiance: Color::grey(factor), turned })?;
+    let is_up = sky.sun.iter().any(|light| *light > 0.0);
+    if !(is_up && bound.flag("sun").unwrap_or(true)) {
+        return Ok(done);
+    }
+    let disc = SkyDisc { towards, radius: SUN_RADIUS };
+    let samples: Vec<(f64, f64)> =
+        sky.sun.iter().enumerate().map(|(index, light)| (node(index), light / disc.solid_angle() * factor)).collect();
+    let spectrum = Spectrum::irregular(&samples, Beyond::Held).map_err(|error| error.to_string())?;
+    let map = SkyMap { file: "the sun".into(), panorama: None, disc: Some(disc) };
+    add(builder, Light::Sky { map: Some(map), radiance: Color::Spectrum(spectrum), turned: 0.0 })
+}
+
+/// Azimuth and elevation of the sun, radians.
+fn place_of_sun(bound: &Bound) -> Result<[f64; 2], String> {
+    if let Some(elevation) = bound.number("elevation") {
+        return Ok([bound.number("azimuth").unwrap_or(180.0).to_radians(), elevation.to_radians()]);
+    }
+    let number = |name, default| bound.number(name).unwrap_or(default);
+    let (latitude, longitude) = (number("latitude", 30.26), number("longitude", 120.12));
+    let zone = number("zone", (longitude / 15.0).round());
+    let [year, month, day] = date(bound.text("date").unwrap_or("1988-06-21"))?;
+    let moment = Moment { year, month: month as u32, day: day as u32, hour: number("hour", 10.0) - zone };
+    let [azimuth, elevation] = solar_position(&moment, latitude, longitude);
+    Ok([bound.number("azimuth").map_or(azimuth, f64::to_radians), elevation])
+}
+
+/// Year, month and day of `1988-06-21`.
+fn date(text: &str) -> Result<[i32; 3], String> {
+    let wrong = || format!("'{text}' is no date: give year, month and day, such as 1988-06-21");
+    let parts: Vec<i32> = text.split('-').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let [year, month, day] = parts[..] else { return Err(wrong()) };
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let days = match month {
+        2 => 28 + i32::from(is_leap),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    };
+    let is_date = (1600..=3000).contains(&year) && (1..=12).contains(&month) && (1..=days).contains(&day);
+    is_date.then_some([year, month, day]).ok_or_else(wrong)
+}
+
+/// The sky as a panorama of spectra, its middle at the sun.
+fn panorama(sky: &ClearSky) -> Result<Panorama, String> {
+    // Hats over the nodes, which add up to what is linear between them.
+    let hat = |index: usize| {
+        let middle = node(index);
+        let step = node(1) - node(0);
+        Spectrum::irregular(&[(middle - step, 0.0), (middle, 1.0), (middle + step, 0.0)], Beyond::Zero)
+    };
+    let hats = (0..NODES).map(hat).collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+    let value = |row: usize, column: usize| {
+        // Columns of a panorama are at the middles of their parts, and those of the table begin at the sun.
+        let [a, b]: [&Spectral; 2] =
+            [0, 1].map(|next| &sky.radiance[row * COLUMNS + (column + COLUMNS / 2 + next) % COLUMNS]);
+        std::array::from_fn::<f32, NODES, _>(|index| (0.5 * (a[index] + b[index])) as f32)
+    };
+    let values = (0..ROWS).flat_map(|row| (0..COLUMNS).flat_map(move |column| value(row, column))).collect();
+    Panorama::of_spectra(COLUMNS as u32, ROWS as u32, hats, values).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{problem, run};
+    use super::*;
+
+    #[test]
+    fn the_sun_stands_where_place_date_and_hour_put_it() {
+        let made = run("sun_and_sky(#{ latitude: 51.5, longitude: 0, date: \"2024-06-21\", hour: 12, turbidity: 2 });");
+        let [Light::Sky { turned, .. }, Light::Sky { map: Some(sun), .. }] = &made.scene.lights[..] else {
+            panic!("{:?}", made.scene.lights)
+        };
+        let disc = sun.disc.expect("a sun");
+        assert!((disc.towards.y.asin().to_degrees() - (90.0 - 51.5 + 23.44)).abs() < 0.1, "{disc:?}");
+        // It is in the south, +z, and the brightest part of the sky with it.
+        assert!(disc.towards.z > 0.4 && disc.towards.x.abs() < 0.03 && (turned + 180.0).abs() < 3.0, "{turned}");
+        assert_eq!(run("sun_and_sky(#{ elevation: 20, sun: false });").scene.lights.len(), 1);
+        assert_eq!(run("sun_and_sky(#{ elevation: -8 });").scene.lights.len(), 1);
+    }
+
+    #[test]
+    fn days_that_are_none_are_refused_with_their_place() {
+        for wrong in ["2026-02-29", "2026-13-01", "tomorrow", "2026-09", "2026-09-31"] {
+            let (line, _, message) = problem(&format!("sun_and_sky(#{{ date: \"{wrong}\" }});"));
+            assert!(line == 1 && message.contains("is no date"), "{message}");
+        }
+    }
+}
