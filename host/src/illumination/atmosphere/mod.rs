@@ -31,7 +31,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 pub type Spectral = [f64; NODES];
 
 /// Columns of a table of the sky: all around.
-pub const COLUMNS: usize = 256;
+pub const COLUMNS: usize = 128;
 /// Rows of a table of the sky: from straight up to straight down, one of them level.
 pub const ROWS: usize = 513;
 
@@ -60,7 +60,7 @@ pub struct ClearSky {
 impl ClearSky {
     /// Finds the sky.
     ///
-    /// Time: about 5 million steps along lines of sight, whatever the numbers.
+    /// Time: about a million steps along lines of sight, whatever the numbers.
     pub fn new(atmosphere: &Atmosphere) -> ClearSky {
         let air = Air::new(atmosphere.turbidity);
         let columns = Columns::new();

@@ -10,10 +10,12 @@ use std::f64::consts::PI;
 
 /// Heights and elevations of the sun at which further scattering is known.
 const SIDE: usize = 32;
-/// Directions of further scattering: so many turns of so many.
-const DIRECTIONS: usize = 8;
+/// Directions of further scattering: angles from the zenith, and turns to one side of the sun.
+const DIRECTIONS: [usize; 2] = [16, 4];
 /// Steps along a line of further scattering, and along one of sight.
-const STEPS: [usize; 2] = [32, 80];
+const STEPS: [usize; 2] = [20, 48];
+/// Lines of sight that meet the ground before so many kilometres take so many steps.
+const NEAR: (f64, usize) = (20.0, 8);
 
 /// Light in the air under a sun of irradiance 1 at all wavelengths.
 pub(super) struct Scattering<'a> {
@@ -47,10 +49,11 @@ impl<'a> Scattering<'a> {
         let radius = radius.clamp(GROUND + 1e-3, TOP - 1e-3);
         let sun = DVec3::new((1.0 - sun * sun).max(0.0).sqrt(), sun, 0.0);
         let (mut second, mut again) = ([0.0; NODES], [0.0; NODES]);
-        let count = 2 * DIRECTIONS * DIRECTIONS;
+        let [angles, turns] = DIRECTIONS;
+        let count = angles * turns;
         for index in 0..count {
-            let cosine = 1.0 - (2.0 * (index / DIRECTIONS) as f64 + 1.0) / (2 * DIRECTIONS) as f64;
-            let turn = ((index % DIRECTIONS) as f64 + 0.5) / DIRECTIONS as f64 * PI;
+            let cosine = 1.0 - (2.0 * (index / turns) as f64 + 1.0) / angles as f64;
+            let turn = ((index % turns) as f64 + 0.5) / turns as f64 * PI;
             let sine = (1.0 - cosine * cosine).sqrt();
             let view = DVec3::new(sine * turn.cos(), cosine, sine * turn.sin());
             self.along(radius, view, sun, STEPS[0], |node, part, scattered, _, lit| {
@@ -116,7 +119,9 @@ impl<'a> Scattering<'a> {
         let radius = GROUND + height.max(1e-3);
         let phases = phases(view.dot(sun));
         let mut sums = [0.0; NODES];
-        self.along(radius, view, sun, STEPS[1], |node, part, [both, air, haze], further, lit| {
+        let is_near = to_ground(radius, view.y).is_some_and(|distance| distance < NEAR.0);
+        let steps = if is_near { NEAR.1 } else { STEPS[1] };
+        self.along(radius, view, sun, steps, |node, part, [both, air, haze], further, lit| {
             sums[node] += part * ((air * phases[0] + haze * phases[1]) * lit + both * further);
         });
         if let Some(distance) = to_ground(radius, view.y) {
