@@ -114,7 +114,7 @@ struct Arguments {
     #[arg(long)]
     layers: bool,
     /// Leaves the background out where nothing stands before it, so that `peris compose` can put another one there; it
-    /// stays behind glass and in mirrors
+    /// stays behind glass and in mirrors. PNG files are then linear, whatever the scene says, unless --exposure or --tone do
     #[arg(long)]
     matte: bool,
     #[command(flatten)]
