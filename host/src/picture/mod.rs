@@ -1,5 +1,18 @@
 //! Pictures in linear light, with coverage: files, how far two of them are apart, and how two become one.
 
+/// The words of the rows of a table, for scripts and the command line.
+macro_rules! words {
+    ($rows:expr) => {{
+        let mut words = [""; $rows.len()];
+        let mut row = 0;
+        while row < $rows.len() {
+            words[row] = $rows[row].word;
+            row += 1;
+        }
+        words
+    }};
+}
+
 mod compose;
 mod depth;
 mod difference;

@@ -26,7 +26,7 @@ pub struct Panorama {
     width: usize,
     height: usize,
     texels: Texels,
-    /// The same over the wavelength, if it is known.
+    /// Radiance over the wavelength, if it is known.
     spectra: Option<Spectra>,
 }
 
@@ -39,7 +39,7 @@ struct Spectra {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Texels {
-    /// As it is: twelve bytes a pixel.
+    /// Three numbers of 32 bits: twelve bytes a pixel.
     Whole(Vec<[f32; 3]>),
     /// Four bytes a pixel: parts of the brightest band's power of two, within 1/500 of the brightest band and 1/250 in blue.
     Packed(Vec<u32>),

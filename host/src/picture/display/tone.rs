@@ -39,15 +39,7 @@ const ROWS: &[Row] = &[
 
 impl Tone {
     /// The words for all of them.
-    pub const WORDS: [&str; ROWS.len()] = {
-        let mut words = [""; ROWS.len()];
-        let mut row = 0;
-        while row < ROWS.len() {
-            words[row] = ROWS[row].word;
-            row += 1;
-        }
-        words
-    };
+    pub const WORDS: [&str; ROWS.len()] = words!(ROWS);
 
     /// The one that a word names.
     pub fn of_word(word: &str) -> Option<Tone> {
