@@ -1,13 +1,13 @@
-//! Refractive indices of transparent solids by Sellmeier's formula.
+//! Refractive indices of transparent solids and liquids by Sellmeier's formula.
 
 use serde::{Deserialize, Serialize};
 
 use super::ColorError;
 
-/// A transparent solid: n² = 1 + Σ B w² / (w² − C), w the wavelength in micrometres.
+/// A transparent solid or a liquid: n² = 1 + Σ B w² / (w² − C), w the wavelength in micrometres.
 ///
 /// # Source
-/// Sellmeier 1871; coefficients as the file `data/color/glasses.txt` states.
+/// Sellmeier 1871; coefficients as the files `data/color/glasses.txt` and `data/color/liquids.txt` state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Glass {
     /// What it is called.
@@ -55,19 +55,46 @@ impl Glass {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shipped::glass;
+    use super::super::shipped::{glass, liquid};
     use super::Glass;
 
     #[test]
     fn indices_and_dispersion_are_those_of_the_catalogues() {
         // n_d and Abbe's number of the Schott data sheets; silica from Malitson's table; diamond from Peter.
-        for (name, n_d, abbe) in
-            [("BK7", 1.51680, 64.17), ("SF11", 1.78472, 25.76), ("silica", 1.45846, 67.82), ("diamond", 2.4175, 55.3)]
-        {
+        // Sapphire, fluorite and
+        // acrylic: handbooks.
+        for (name, n_d, abbe) in [
+            ("BK7", 1.51680, 64.17),
+            ("BAK4", 1.56883, 55.98),
+            ("N-F2", 1.62005, 36.43),
+            ("SF6", 1.80518, 25.43),
+            ("SF11", 1.78472, 25.76),
+            ("silica", 1.45846, 67.82),
+            ("diamond", 2.4175, 55.3),
+            ("sapphire", 1.76823, 72.3),
+            ("fluorite", 1.43385, 95.0),
+            ("acrylic", 1.4906, 53.2),
+        ] {
             let glass = glass(name).expect("a glass");
             assert!((glass.index(587.5618).expect("an index") - n_d).abs() < 6e-5 * n_d, "{name}");
             assert!((glass.abbe_number().expect("a number") / abbe - 1.0).abs() < 5e-3, "{name}");
         }
+    }
+
+    #[test]
+    fn liquids_have_the_indices_of_handbooks() {
+        // Water over a vacuum: 1.33299 times the index of air.
+        for (name, n_d, error) in [
+            ("water", 1.33335, 3e-5),
+            ("ethanol", 1.3614, 1e-3),
+            ("glycerol", 1.4722, 2e-3),
+            ("acetone", 1.3588, 5e-4),
+            ("toluene", 1.4969, 3e-3),
+        ] {
+            let index = liquid(name).expect("a liquid").index(589.3).expect("an index");
+            assert!((index - n_d).abs() < error, "{name} {index}");
+        }
+        assert!((glass("ice").expect("ice").index(589.3).expect("an index") - 1.3097).abs() < 2e-4);
     }
 
     #[test]

@@ -9,15 +9,28 @@ use std::sync::LazyLock;
 /// Light of lamps and standard illuminants, relative to any unit.
 const LIGHTS: &[&str] =
     &[include_str!("../../data/color/illuminants.txt"), include_str!("../../data/color/fluorescent.txt")];
-/// Metals, and the tables of their indices.
-const METALS: &[(&str, &str)] = &[
-    ("copper", include_str!("../../data/color/copper.txt")),
-    ("gold", include_str!("../../data/color/gold.txt")),
-    ("silver", include_str!("../../data/color/silver.txt")),
-    ("aluminium", include_str!("../../data/color/aluminium.txt")),
-    ("iron", include_str!("../../data/color/iron.txt")),
+/// Refractive indices of metals and alloys: of each two columns, its name with `.n` and with `.k`.
+const METALS: &[&str] = &[
+    include_str!("../../data/color/noble_metals.txt"),
+    include_str!("../../data/color/transition_metals.txt"),
+    include_str!("../../data/color/aluminium.txt"),
+    include_str!("../../data/color/brasses.txt"),
+    include_str!("../../data/color/steels.txt"),
+    include_str!("../../data/color/platinum.txt"),
+    include_str!("../../data/color/rhodium.txt"),
+    include_str!("../../data/color/tungsten.txt"),
+    include_str!("../../data/color/molybdenum.txt"),
+    include_str!("../../data/color/mercury.txt"),
+    include_str!("../../data/color/lead.txt"),
+    include_str!("../../data/color/magnesium.txt"),
+    include_str!("../../data/color/electrum.txt"),
+    include_str!("../../data/color/permalloy.txt"),
+    include_str!("../../data/color/titanium_nitride.txt"),
 ];
+/// Transparent solids.
 const GLASSES: &str = include_str!("../../data/color/glasses.txt");
+/// Liquids.
+const LIQUIDS: &str = include_str!("../../data/color/liquids.txt");
 /// What surfaces reflect; the patches of the colour checker first.
 const REFLECTANCES: &[&str] = &[
     CHECKER,
@@ -63,25 +76,34 @@ pub fn light(name: &str) -> Result<Spectrum, ColorError> {
     Err(unknown("light", name, &lights()))
 }
 
-/// The names of all metals.
+/// The names of all metals and alloys.
 pub fn metals() -> Vec<&'static str> {
-    METALS.iter().map(|row| row.0).collect()
+    METALS.iter().flat_map(|text| metals_of(text)).collect()
 }
 
-/// A metal, as [`metals`] names it.
+/// The names of the metals of a table.
+fn metals_of(text: &'static str) -> impl Iterator<Item = &'static str> {
+    columns::names(text).into_iter().filter_map(|column| column.strip_suffix(".n"))
+}
+
+/// A metal or an alloy, as [`metals`] names it.
 ///
 /// # Errors
 /// [`ColorError::Unknown`].
 pub fn metal(name: &str) -> Result<Metal, ColorError> {
     let missing = || unknown("metal", name, &metals());
-    let (_, text) = METALS.iter().find(|row| row.0 == name).ok_or_else(missing)?;
-    let mut spectra = columns::spectra(text, Beyond::Held)?.into_iter().map(|(_, spectrum)| spectrum);
-    spectra.next().zip(spectra.next()).map(|(n, k)| Metal { n, k }).ok_or_else(missing)
+    let text = METALS.iter().find(|text| metals_of(text).any(|known| known == name)).ok_or_else(missing)?;
+    let spectra = columns::spectra(text, Beyond::Held)?;
+    let column = |letter| {
+        let of = |column: &&(&str, Spectrum)| column.0.strip_suffix(letter) == Some(name);
+        spectra.iter().find(of).map(|(_, spectrum)| spectrum.clone()).ok_or_else(missing)
+    };
+    Ok(Metal { n: column(".n")?, k: column(".k")? })
 }
 
-/// The names of all glasses.
+/// The names of all glasses and other transparent solids.
 pub fn glasses() -> Vec<&'static str> {
-    columns::named_rows(GLASSES).unwrap_or_default().iter().map(|row| row.first).collect()
+    first_words(GLASSES)
 }
 
 /// A glass or another transparent solid, as [`glasses`] names it.
@@ -89,13 +111,38 @@ pub fn glasses() -> Vec<&'static str> {
 /// # Errors
 /// [`ColorError::Unknown`].
 pub fn glass(name: &str) -> Result<Glass, ColorError> {
-    let rows = columns::named_rows(GLASSES)?;
-    match rows.iter().find(|row| row.first == name).map(|row| row.numbers.as_slice()) {
-        Some(&[from, to, ref terms @ ..]) => {
-            Ok(Glass { name: name.into(), from, to, terms: terms.chunks_exact(2).map(|t| [t[0], t[1]]).collect() })
+    formula(GLASSES, name)?.ok_or_else(|| unknown("glass", name, &glasses()))
+}
+
+/// The names of all liquids.
+pub fn liquids() -> Vec<&'static str> {
+    first_words(LIQUIDS)
+}
+
+/// A liquid, as [`liquids`] names it.
+///
+/// # Errors
+/// [`ColorError::Unknown`].
+pub fn liquid(name: &str) -> Result<Glass, ColorError> {
+    formula(LIQUIDS, name)?.ok_or_else(|| unknown("liquid", name, &liquids()))
+}
+
+/// The first words of the lines of a table.
+fn first_words(text: &'static str) -> Vec<&'static str> {
+    columns::named_rows(text).unwrap_or_default().iter().map(|row| row.first).collect()
+}
+
+/// Sellmeier's formula of a line of a table.
+fn formula(text: &str, name: &str) -> Result<Option<Glass>, ColorError> {
+    let rows = columns::named_rows(text)?;
+    let numbers = rows.iter().find(|row| row.first == name).map(|row| row.numbers.as_slice());
+    Ok(numbers.and_then(|numbers| match *numbers {
+        [from, to, ref terms @ ..] => {
+            let terms = terms.chunks_exact(2).map(|term| [term[0], term[1]]).filter(|term| term[0] != 0.0);
+            Some(Glass { name: name.into(), from, to, terms: terms.collect() })
         }
-        _ => Err(unknown("glass", name, &glasses())),
-    }
+        _ => None,
+    }))
 }
 
 /// The names of the 24 patches of the colour checker, row by row.
@@ -140,10 +187,11 @@ pub fn function(name: &str) -> Result<Vec<(&'static str, Spectrum)>, ColorError>
 
 /// Where the figures of a name come from, whatever it names.
 pub fn origin(name: &str) -> Option<Origin> {
-    let named = METALS.iter().chain(FUNCTIONS).find(|row| row.0 == name).map(|row| row.1);
-    let glass = || glasses().contains(&name).then_some(GLASSES);
+    let function = || FUNCTIONS.iter().find(|row| row.0 == name).map(|row| row.1);
+    let metal = || METALS.iter().find(|text| metals_of(text).any(|known| known == name)).copied();
+    let clear = || [GLASSES, LIQUIDS].into_iter().find(|text| first_words(text).contains(&name));
     let column = || LIGHTS.iter().chain(REFLECTANCES).find(|text| columns::names(text).contains(&name)).copied();
-    named.or_else(glass).or_else(column).map(columns::origin)
+    function().or_else(metal).or_else(clear).or_else(column).map(columns::origin)
 }
 
 fn unknown(kind: &'static str, name: &str, known: &[&str]) -> ColorError {
@@ -176,8 +224,9 @@ mod tests {
     fn everything_that_is_named_can_be_had() {
         assert_eq!(lights(), ["A", "D65", "F2", "F7", "F11"]);
         assert!(lights().iter().all(|name| light(name).is_ok_and(|s| s.samples().all(|(_, v)| v >= 0.0))));
-        assert_eq!(metals().iter().filter(|name| metal(name).is_ok()).count(), 5);
-        assert_eq!(glasses().iter().filter(|name| glass(name).is_ok()).count(), 4);
+        assert_eq!(metals().iter().filter(|name| metal(name).is_ok()).count(), 26);
+        assert_eq!(glasses().iter().filter(|name| glass(name).is_ok()).count(), 15);
+        assert_eq!(liquids().iter().filter(|name| liquid(name).is_ok()).count(), 5);
         assert_eq!((patches().len(), reflectances().len()), (24, 70));
         for name in reflectances() {
             assert!(reflectance(name).is_ok_and(|s| s.samples().all(|(_, v)| (0.0..=1.0).contains(&v))), "{name}");
@@ -187,7 +236,7 @@ mod tests {
 
     #[test]
     fn every_name_is_given_once_and_has_source_and_terms() {
-        let mut names = [lights(), metals(), glasses(), reflectances(), functions()].concat();
+        let mut names = [lights(), metals(), glasses(), liquids(), reflectances(), functions()].concat();
         for name in &names {
             let Origin { what, source, terms } = origin(name).expect("an origin");
             assert!(what.ends_with('.') && source.ends_with('.') && terms.ends_with('.'), "{name}: {source} {terms}");
@@ -260,10 +309,36 @@ mod tests {
         assert!(known.windows(2).all(|pair| y(pair[0]) > y(pair[1])), "{:?}", known.map(y));
     }
 
+    /// The part of light that a metal reflects at right angles, at 450, 550 and 650 nm.
+    fn reflected(name: &str) -> [f64; 3] {
+        let Metal { n, k } = metal(name).expect("a metal");
+        [450.0, 550.0, 650.0].map(|w| {
+            let (n, k) = (n.at(w), k.at(w));
+            ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k)
+        })
+    }
+
+    #[test]
+    fn metals_have_the_colors_of_their_names() {
+        // Yellow and red ones reflect more of long waves, in this order of how much; the others are about grey.
+        for name in ["bronze", "red_brass", "brass", "copper", "gold", "electrum", "titanium_nitride"] {
+            let [blue, green, red] = reflected(name);
+            assert!(blue < 0.66 && blue + 0.15 < red && green + 0.015 < red, "{name} {blue} {green} {red}");
+        }
+        for name in metals() {
+            let [blue, green, red] = reflected(name);
+            assert!(green > 0.4 && green < 0.99 && red > 0.4, "{name} {blue} {green} {red}");
+        }
+        // Handbooks: silver 0.98, aluminium 0.91, rhodium 0.77, mercury 0.78, chromium 0.55 to 0.7, tungsten 0.5.
+        for (name, published) in [("rhodium", 0.77), ("mercury", 0.78), ("aluminium", 0.915), ("tungsten", 0.5)] {
+            assert!((reflected(name)[1] - published).abs() < 0.02, "{name} {:?}", reflected(name));
+        }
+    }
+
     #[test]
     fn a_name_that_is_not_known_is_answered_by_those_that_are() {
         let message = metal("unobtainium").expect_err("unknown").to_string();
-        assert_eq!(message, "no metal is called \"unobtainium\"; there are copper, gold, silver, aluminium, iron");
+        assert!(message.starts_with("no metal is called \"unobtainium\"; there are copper, gold, silver, iron, "));
         assert!(light("").is_err() && glass("gl\u{e4}ss").is_err() && reflectance("DARK").is_err());
     }
 }

@@ -11,6 +11,7 @@ mod caught;
 mod check;
 mod error;
 mod exchange;
+mod first_materials;
 mod kind;
 mod library;
 mod record;

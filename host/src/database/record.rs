@@ -3,7 +3,7 @@
 //! The bytes of a record are its version and a checksum, four bytes each, lowest first, and then in bincode a head (what
 //! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
 
-use super::{CaughtLight, DatabaseError, Kind};
+use super::{CaughtLight, DatabaseError, Kind, first_materials};
 use crate::color::shipped::Metal;
 use crate::color::{Origin, Spectrum};
 use crate::illumination::light::{Light, SkyMap};
@@ -179,10 +179,14 @@ impl Content {
         }
     }
 
-    fn of_bytes(kind: Kind, bytes: &[u8]) -> Result<Content, String> {
+    /// - `version`: of the form in which it was stored, up to that of the kind.
+    fn of_bytes(kind: Kind, version: u32, bytes: &[u8]) -> Result<Content, String> {
         let content = match kind {
             Kind::Geometry => Content::Geometry(Box::new(decoded(bytes)?)),
             Kind::Texture => Content::Texture(Box::new(decoded::<Pixels>(bytes)?.picture()?)),
+            Kind::Material if version == 1 => {
+                Content::Material(Box::new(decoded::<first_materials::Material>(bytes)?.into()))
+            }
             Kind::Material => Content::Material(Box::new(decoded(bytes)?)),
             Kind::Light => Content::Light(Box::new(decoded(bytes)?)),
             Kind::Spectrum => Content::Spectrum(decoded(bytes)?),
@@ -306,11 +310,11 @@ impl Record {
     /// later program.
     pub fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Record, DatabaseError> {
         let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
-        let (Head { what, source, terms, .. }, content) = head(kind, name, bytes)?;
+        let (version, Head { what, source, terms, .. }, content) = head(kind, name, bytes)?;
         if checksum(kind, name, bytes).to_le_bytes() != bytes[4..BEFORE] {
             return Err(failed("damaged: its checksum is another".into()));
         }
-        let content = Content::of_bytes(kind, content).map_err(failed)?;
+        let content = Content::of_bytes(kind, version, content).map_err(failed)?;
         Ok(Record { name: name.into(), origin: Origin { what, source, terms }, content })
     }
 }
@@ -318,26 +322,27 @@ impl Record {
 impl Entry {
     /// What a list says of a record, from its bytes; only its head is read.
     pub(super) fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Entry, DatabaseError> {
-        let (Head { summary, what, source, terms }, _) = head(kind, name, bytes)?;
+        let (_, Head { summary, what, source, terms }, _) = head(kind, name, bytes)?;
         Ok(Entry { kind, name: name.into(), summary, what, source, terms, bytes: bytes.len() as u64 })
     }
 }
 
-/// The head of a record, and the bytes behind it.
-fn head<'a>(kind: Kind, name: &str, bytes: &'a [u8]) -> Result<(Head, &'a [u8]), DatabaseError> {
+/// The version of a record, its head, and the bytes behind it.
+fn head<'a>(kind: Kind, name: &str, bytes: &'a [u8]) -> Result<(u32, Head, &'a [u8]), DatabaseError> {
     let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
     let (before, rest) = bytes.split_at_checked(BEFORE).ok_or_else(|| failed("damaged: it has no head".into()))?;
-    let version = before[..4].iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte));
-    let known = u64::from(kind.version());
+    let version = before[..4].iter().rev().fold(0, |number, byte| number << 8 | u32::from(*byte));
+    let known = kind.version();
     if version > known {
-        return Err(DatabaseError::Newer { what: format!("{kind} \"{name}\""), found: version, known });
+        let (found, known) = (u64::from(version), u64::from(known));
+        return Err(DatabaseError::Newer { what: format!("{kind} \"{name}\""), found, known });
     }
     if version == 0 {
         return Err(failed("damaged: it has no version".into()));
     }
     let (head, used) = bincode::serde::decode_from_slice(rest, ENCODING)
         .map_err(|error| failed(format!("damaged: its head cannot be read: {error}")))?;
-    Ok((head, &rest[used..]))
+    Ok((version, head, &rest[used..]))
 }
 
 /// The checksum over kind, name, version and all behind the checksum.
@@ -347,6 +352,19 @@ fn checksum(kind: Kind, name: &str, bytes: &[u8]) -> u32 {
         sum.update(part);
     }
     sum.finalize()
+}
+
+/// The bytes of a material with a content of the form of version 1.
+#[cfg(test)]
+pub(super) fn first_for_tests(record: &Record, content: &impl Serialize) -> Vec<u8> {
+    let Origin { what, source, terms } = record.origin.clone();
+    let head = Head { summary: record.content.summary(), what, source, terms };
+    let mut bytes = vec![1, 0, 0, 0, 0, 0, 0, 0];
+    bytes.extend(encoded(&head).expect("a head"));
+    bytes.extend(encoded(content).expect("a content"));
+    let sum = checksum(Kind::Material, &record.name, &bytes);
+    bytes[4..BEFORE].copy_from_slice(&sum.to_le_bytes());
+    bytes
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub fn names(kind: Kind) -> Vec<&'static str> {
                 Vec::new()
             }
         }
-        Kind::Material => [shipped::metals(), shipped::glasses()].concat(),
+        Kind::Material => [shipped::metals(), shipped::glasses(), shipped::liquids()].concat(),
         Kind::Spectrum => {
             [shipped::lights(), shipped::metals(), shipped::reflectances(), shipped::functions()].concat()
         }
@@ -60,7 +60,10 @@ pub fn find(kind: Kind, name: &str) -> Result<Option<Record>, DatabaseError> {
         Kind::Material if shipped::metals().contains(&name) => {
             shipped::metal(name).map(|shipped::Metal { n, k }| polished(n, k))
         }
-        Kind::Material => shipped::glass(name).map(clear),
+        Kind::Material if shipped::liquids().contains(&name) => {
+            shipped::liquid(name).map(|liquid| clear(liquid, Transparent::LIQUID))
+        }
+        Kind::Material => shipped::glass(name).map(|glass| clear(glass, 0)),
         Kind::Spectrum => curves(name).map(Content::Spectrum),
         Kind::Geometry | Kind::Texture | Kind::Light | Kind::CaughtLight => return Ok(None),
     };
@@ -84,9 +87,8 @@ fn polished(n: crate::color::Spectrum, k: crate::color::Spectrum) -> Content {
     Content::Material(Box::new(Body::Metal(Metal { n, k, finish: Finish::Polished }).into()))
 }
 
-fn clear(glass: crate::color::Glass) -> Content {
-    let absorption = crate::color::Color::BLACK;
-    let body = Transparent { index: Index::Dispersive(glass), roughness: 0.0, absorption };
+fn clear(substance: crate::color::Glass, priority: i32) -> Content {
+    let body = Transparent { priority, ..Transparent::clear(Index::Dispersive(substance)) };
     Content::Material(Box::new(Body::Transparent(body).into()))
 }
 

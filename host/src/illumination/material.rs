@@ -1,10 +1,10 @@
 //! Of what a surface is: what a scene says of it, before it is made ready for rendering.
 
-use super::distribution::{DistributionError, FAMILY, FacetTable, Tabulated};
+use super::distribution::{DistributionError, FAMILY, FacetTable, Tabulated, checked_roughness};
 use super::fresnel::{Conductor, Dielectric, IndexError};
-use super::texture::{Paint, Relief, TextureError};
+use super::texture::{Number, Paint, Relief, TextureError};
 use crate::color::{Color, ColorError, Glass, Spectrum};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// How a surface reflects, lets through and emits.
@@ -43,7 +43,7 @@ pub struct Classic {
     /// Fraction in the highlight of Phong's model, 0..=1.
     pub specular: Paint,
     /// Phong's exponent n, 1 to [`Classic::MOST_EXPONENT`]; the lobe falls to one half at acos(2^(-1/n)).
-    pub exponent: f64,
+    pub exponent: Number,
     /// Fraction reflected as by a mirror, 0..=1.
     pub mirror: Paint,
     /// Fraction that goes straight through, 0..=1.
@@ -68,7 +68,7 @@ pub enum Form {
         /// The name, as in [`FAMILY`].
         name: String,
         /// Its roughness m, 1e-8..=1000.
-        roughness: f64,
+        roughness: Number,
     },
     /// One that the user defined, of the directions of light and viewer.
     Table(Tabulated),
@@ -98,12 +98,12 @@ pub enum Finish {
         /// The name, as in [`FAMILY`].
         name: String,
         /// Its roughness m, 1e-8..=1000.
-        roughness: f64,
+        roughness: Number,
     },
     /// Facets of a Gaussian surface, not as rough along one direction as across it.
     Brushed {
         /// Roughness along and across, 1e-8..=1000.
-        roughness: DVec2,
+        roughness: [Number; 2],
         /// The direction, in the coordinates of the scene; any length but 0.
         along: DVec3,
     },
@@ -115,9 +115,22 @@ pub struct Transparent {
     /// The refractive index.
     pub index: Index,
     /// Roughness m of both sides of its surface, 1e-8..=1000; 0 is polished.
-    pub roughness: f64,
+    pub roughness: Number,
     /// What is absorbed inside, in one unit of length of the scene: light falls by exp(−absorption).
     pub absorption: Color,
+    /// Of bodies that are in one place, that of the greatest priority is there; of several with the same, the smallest.
+    /// [`Transparent::LIQUID`] of liquids, and 0 of what is solid, if nothing else is said.
+    pub priority: i32,
+}
+
+impl Transparent {
+    /// The priority of liquids: the glass in which one is keeps its place.
+    pub const LIQUID: i32 = -1;
+
+    /// A polished, clear one of a refractive index, with the priority of solids.
+    pub fn clear(index: Index) -> Transparent {
+        Transparent { index, roughness: 0.0.into(), absorption: Color::BLACK, priority: 0 }
+    }
 }
 
 /// A refractive index.
@@ -148,13 +161,13 @@ pub struct Coated {
     /// Refractive index of the coat, 1e-6..=1e6.
     pub index: f64,
     /// Roughness m of the coat, 1e-8..=1000; 0 is polished.
-    pub roughness: f64,
+    pub roughness: Number,
 }
 
 impl Default for Classic {
     fn default() -> Classic {
         let [diffuse, specular, mirror, transparency] = [0.7, 0.0, 0.0, 0.0].map(Paint::grey);
-        Classic { diffuse, specular, exponent: 50.0, mirror, transparency }
+        Classic { diffuse, specular, exponent: 50.0.into(), mirror, transparency }
     }
 }
 
@@ -175,7 +188,13 @@ impl From<Body> for Material {
     }
 }
 
+/// The least roughness that a pattern gives: where it has less, there would be a mirror at single points.
+pub const LEAST_VARYING_ROUGHNESS: f64 = 1e-3;
+
 impl Material {
+    /// The greatest priority of a transparent body, and the least with the other sign.
+    pub const MOST_PRIORITY: i32 = 1000;
+
     /// Whether it may pass on as a beam some of the light that comes to it.
     pub fn may_throw(&self) -> bool {
         match &self.body {
@@ -230,6 +249,9 @@ pub enum MaterialError {
     /// An exponent of Phong's model that is none.
     #[error("exponent {0} is not within 1 to {most}", most = Classic::MOST_EXPONENT)]
     Exponent(f64),
+    /// A priority that is none.
+    #[error("priority {0} is not within -{most} to {most}", most = Material::MOST_PRIORITY)]
+    Priority(i32),
     /// No such distribution.
     #[error("no distribution is called \"{name}\"; there are {known}")]
     Unknown {
@@ -278,15 +300,31 @@ impl Material {
         }
     }
 
+    /// The numbers in it that may change from place to place.
+    pub fn numbers(&self) -> Vec<&Number> {
+        match &self.body {
+            Body::Classic(classic) => vec![&classic.exponent],
+            Body::Shaped(Shaped { form: Form::Member { roughness, .. }, .. })
+            | Body::Metal(Metal { finish: Finish::Rough { roughness, .. }, .. })
+            | Body::Transparent(Transparent { roughness, .. })
+            | Body::Coated(Coated { roughness, .. }) => vec![roughness],
+            Body::Metal(Metal { finish: Finish::Brushed { roughness, .. }, .. }) => roughness.iter().collect(),
+            Body::Metal(_) | Body::Shaped(_) => Vec::new(),
+        }
+    }
+
     /// Whether it changes from place to place.
     pub fn is_textured(&self) -> bool {
-        self.relief.is_some() || self.paints().into_iter().any(Paint::is_pattern)
+        self.relief.is_some()
+            || self.paints().into_iter().any(Paint::is_pattern)
+            || self.numbers().into_iter().any(Number::is_varying)
     }
 
     /// Whether parameters of the surface are needed to tell what it is like at a place.
     pub fn needs_parameters(&self) -> bool {
         self.relief.as_ref().is_some_and(Relief::needs_parameters)
             || self.paints().into_iter().any(Paint::needs_parameters)
+            || self.numbers().into_iter().any(Number::needs_parameters)
     }
 
     /// Checks every number.
@@ -302,13 +340,19 @@ impl Material {
                 fraction("specular reflectance", &classic.specular)?;
                 fraction("mirror reflectance", &classic.mirror)?;
                 fraction("transparency", &classic.transparency)?;
-                let possible = (1.0..=Classic::MOST_EXPONENT).contains(&classic.exponent);
-                if possible { Ok(()) } else { Err(MaterialError::Exponent(classic.exponent)) }
+                classic.exponent.check()?;
+                let impossible = |exponent: &f64| !(1.0..=Classic::MOST_EXPONENT).contains(exponent);
+                classic
+                    .exponent
+                    .range()
+                    .into_iter()
+                    .find(impossible)
+                    .map_or(Ok(()), |n| Err(MaterialError::Exponent(n)))
             }
             Body::Shaped(shaped) => {
                 fraction("reflectance", &shaped.reflectance)?;
                 match &shaped.form {
-                    Form::Member { name, roughness } => member(name, *roughness),
+                    Form::Member { name, roughness } => member(name, roughness),
                     Form::Table(_) | Form::Facets(_) => Ok(()),
                 }
             }
@@ -318,25 +362,25 @@ impl Material {
                 }
                 match &metal.finish {
                     Finish::Polished => Ok(()),
-                    Finish::Rough { name, roughness } => member(name, *roughness),
-                    Finish::Brushed { roughness, .. } => roughness
-                        .to_array()
-                        .into_iter()
-                        .try_for_each(|m| Ok(super::distribution::checked_roughness(m).map(|_| ())?)),
+                    Finish::Rough { name, roughness } => member(name, roughness),
+                    Finish::Brushed { roughness, .. } => roughness.iter().try_for_each(rough),
                 }
             }
-            Body::Transparent(Transparent { index, roughness, absorption }) => {
+            Body::Transparent(Transparent { index, roughness, absorption, priority }) => {
+                if priority.abs() > Material::MOST_PRIORITY {
+                    return Err(MaterialError::Priority(*priority));
+                }
                 power("absorption", absorption)?;
                 if let Index::Dispersive(glass) = index {
                     glass.check()?;
                 }
                 Dielectric::new(1.0, index.at(550.0))?;
-                polished_or_rough(*roughness)
+                polished_or_rough(roughness)
             }
             Body::Coated(Coated { diffuse, index, roughness }) => {
                 fraction("diffuse reflectance", diffuse)?;
                 Dielectric::new(1.0, *index)?;
-                polished_or_rough(*roughness)
+                polished_or_rough(roughness)
             }
         }
     }
@@ -349,7 +393,7 @@ impl Material {
         match &self.body {
             Body::Classic(Classic { diffuse, specular, exponent, mirror, .. }) => {
                 let [diffuse, specular, mirror] = [diffuse, specular, mirror].map(bands);
-                Appearance { diffuse, specular, exponent: *exponent, mirror }
+                Appearance { diffuse, specular, exponent: exponent.mean(), mirror }
             }
             Body::Shaped(shaped) => Appearance { diffuse: bands(&shaped.reflectance), ..black },
             Body::Metal(metal) => {
@@ -360,10 +404,10 @@ impl Material {
                 match &metal.finish {
                     Finish::Polished => Appearance { mirror: color, ..black },
                     Finish::Rough { roughness, .. } => {
-                        Appearance { specular: color, exponent: shine(*roughness), ..black }
+                        Appearance { specular: color, exponent: shine(roughness.mean()), ..black }
                     }
-                    Finish::Brushed { roughness, .. } => {
-                        Appearance { specular: color, exponent: shine((roughness.x * roughness.y).sqrt()), ..black }
+                    Finish::Brushed { roughness: [along, across], .. } => {
+                        Appearance { specular: color, exponent: shine((along.mean() * across.mean()).sqrt()), ..black }
                     }
                 }
             }
@@ -373,8 +417,8 @@ impl Material {
             Body::Coated(Coated { diffuse, index, roughness }) => {
                 let reflected = DVec3::splat(normal_reflectance(*index));
                 let [specular, mirror] =
-                    if *roughness > 0.0 { [reflected, DVec3::ZERO] } else { [DVec3::ZERO, reflected] };
-                Appearance { diffuse: bands(diffuse), specular, exponent: shine(*roughness), mirror }
+                    if roughness.mean() > 0.0 { [reflected, DVec3::ZERO] } else { [DVec3::ZERO, reflected] };
+                Appearance { diffuse: bands(diffuse), specular, exponent: shine(roughness.mean()), mirror }
             }
         }
     }
@@ -413,15 +457,27 @@ fn power(what: &'static str, color: &Color) -> Result<(), MaterialError> {
     if least >= 0.0 && most.is_finite() { Ok(()) } else { Err(MaterialError::Negative { what, least, most }) }
 }
 
-fn polished_or_rough(roughness: f64) -> Result<(), MaterialError> {
-    if roughness == 0.0 { Ok(()) } else { Ok(super::distribution::checked_roughness(roughness).map(|_| ())?) }
+/// Checks a roughness that may be 0.
+fn polished_or_rough(roughness: &Number) -> Result<(), MaterialError> {
+    if *roughness == Number::Constant(0.0) { Ok(()) } else { rough(roughness) }
 }
 
-/// Whether the family has a member of a name, for a roughness.
-fn member(name: &str, roughness: f64) -> Result<(), MaterialError> {
+/// Checks a roughness. One that varies may be 0 here and there: surfaces are no smoother there than they can be.
+fn rough(roughness: &Number) -> Result<(), MaterialError> {
+    roughness.check()?;
+    let [least, most] = roughness.range();
+    let least = if roughness.is_varying() && least >= 0.0 { least.max(LEAST_VARYING_ROUGHNESS) } else { least };
+    for m in [least, most.max(least)] {
+        checked_roughness(m)?;
+    }
+    Ok(())
+}
+
+/// Checks a member of the family: its name, and its roughness.
+fn member(name: &str, roughness: &Number) -> Result<(), MaterialError> {
     if !FAMILY.iter().any(|row| row.name == name) {
         let names: Vec<&str> = FAMILY.iter().map(|row| row.name).collect();
         return Err(MaterialError::Unknown { name: name.into(), known: names.join(", ") });
     }
-    Ok(super::distribution::checked_roughness(roughness).map(|_| ())?)
+    rough(roughness)
 }

@@ -30,6 +30,8 @@ pub(super) struct Element {
     pub(super) through: DVec3,
     /// Where a ray towards a light begins: on the curved surface that the triangle stands for, if it bulges out.
     pub(super) leave_curved: DVec3,
+    /// How far from the triangle rays begin that leave it or go through, scene units.
+    pub(super) clearance: f64,
 }
 
 impl Element {
@@ -43,7 +45,8 @@ impl Element {
         let side = if outside.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
         let face = outside * side;
         let largest = corners.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
-        let clearance = face * (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+        let distance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+        let clearance = face * distance;
         let leave = position + clearance;
         let through = position - clearance;
         let flat = Element {
@@ -55,6 +58,7 @@ impl Element {
             leave,
             through,
             leave_curved: leave,
+            clearance: distance,
         };
         let corner_normals = if curved { prepared.corner_normals(triangle) } else { None };
         let Some(corner_normals) = corner_normals else { return Some(flat) };
@@ -189,6 +193,7 @@ mod tests {
                 leave: face,
                 through: zero,
                 leave_curved: face,
+                clearance: 0.0,
             };
             for angle in [0.1f64, 0.5, 1.0, 1.5] {
                 let direction = DVec3::new(angle.cos(), -angle.sin(), 0.0);

@@ -36,7 +36,7 @@ fn diffuse(k: f64) -> Classic {
 
 fn glass(index: f64, roughness: f64, absorption: f64) -> Material {
     let (index, absorption) = (Index::Constant(index), Color::grey(absorption));
-    Body::Transparent(Transparent { index, roughness, absorption }).into()
+    Body::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
 }
 
 fn metal(n: f64, k: f64, finish: Finish) -> Material {
@@ -45,7 +45,7 @@ fn metal(n: f64, k: f64, finish: Finish) -> Material {
 }
 
 fn rough(name: &str, roughness: f64) -> Finish {
-    Finish::Rough { name: name.into(), roughness }
+    Finish::Rough { name: name.into(), roughness: f64::into(roughness) }
 }
 
 fn camera(from: DVec3, at: DVec3, up: DVec3, field_of_view: f64) -> Camera {
@@ -134,7 +134,9 @@ fn polished_surfaces_reflect_what_fresnel_says_up_to_grazing() {
 
 #[test]
 fn no_roughness_and_no_angle_creates_light() {
-    let coated = |roughness| Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness }).into();
+    let coated = |roughness| {
+        Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) }).into()
+    };
     for roughness in [1e-6, 0.1, 10.0] {
         let lossless = |name| metal(0.0, 3.0, rough(name, roughness));
         let materials: [(Material, f64); 5] = [

@@ -4,7 +4,7 @@ use super::RenderError;
 use crate::color::{Channels, Curve, Wavelengths};
 use crate::illumination::Material;
 use crate::illumination::light::{Glow, Source};
-use crate::illumination::optics::{Interreflection, Library, Optics};
+use crate::illumination::optics::{Interior, Interreflection, Library, Optics};
 use crate::numeric::print_of;
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
@@ -34,6 +34,10 @@ pub(super) struct Appearance<'a> {
     pub(super) exact: bool,
     /// Whether something lets light straight through.
     pub(super) passing: bool,
+    /// The place of each object among all of them, the largest first; empty where less than two are transparent.
+    by_size: Vec<u32>,
+    /// Whether two or more objects are transparent: one may be in another.
+    pub(super) has_nested: bool,
 }
 
 impl<'a> Appearance<'a> {
@@ -54,6 +58,8 @@ impl<'a> Appearance<'a> {
             curved: plan.needs(Stage::Normals),
             exact: plan.needs(Stage::ExactSurfaces),
             passing: false,
+            by_size: Vec::new(),
+            has_nested: false,
             wavelengths,
         };
         appearance.add_materials(plan)?;
@@ -62,6 +68,12 @@ impl<'a> Appearance<'a> {
         }
         appearance.add_emitters(plan);
         appearance.passing = appearance.optics.iter().any(Optics::is_passable);
+        let is_transparent =
+            |numbers: &&Vec<u32>| numbers.iter().any(|number| appearance.optics[*number as usize].interior.is_some());
+        appearance.has_nested = appearance.optics_of.iter().filter(is_transparent).nth(1).is_some();
+        if appearance.has_nested {
+            appearance.by_size = places_by_size(prepared);
+        }
         Ok(appearance)
     }
 
@@ -121,6 +133,18 @@ impl<'a> Appearance<'a> {
         &self.optics[self.optics_of[object as usize][material as usize] as usize]
     }
 
+    /// What is inside a material of an object, if it is transparent.
+    pub(super) fn interior(&self, object: u32, material: u32) -> Option<&Interior> {
+        self.optics(object, material).interior.as_ref()
+    }
+
+    /// Of transparent bodies in one place, that of the greatest is there: of the greatest priority; of several with the same
+    /// the smallest, and of equally large ones the last of the scene.
+    pub(super) fn rank(&self, object: u32, material: u32) -> (i32, u32) {
+        let priority = self.interior(object, material).map_or(0, |interior| interior.priority);
+        (priority, self.by_size.get(object as usize).copied().unwrap_or(object))
+    }
+
     /// Radiance where there is nothing: of the skies, or the background without any.
     ///
     /// - `normal`: of the element from which it is seen, if there is one.
@@ -154,4 +178,16 @@ impl<'a> Appearance<'a> {
         let index = self.emitters.iter().find(|(emitter, _)| *emitter == key).map(|(_, index)| *index);
         Some((emission, index))
     }
+}
+
+/// The place of each object among all of them, the largest first.
+fn places_by_size(prepared: &Prepared) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..prepared.objects.len() as u32).collect();
+    let size = |object: &u32| prepared.objects[*object as usize].bounds.diagonal();
+    order.sort_by(|a, b| size(b).total_cmp(&size(a)).then(a.cmp(b)));
+    let mut places = vec![0; order.len()];
+    for (place, object) in order.into_iter().enumerate() {
+        places[object as usize] = place as u32;
+    }
+    places
 }

@@ -29,7 +29,7 @@ fn problems_name_the_object_or_the_light() {
             .starts_with("ball: diffuse reflectance")
     );
     assert!(
-        problem(|s| s.objects[0].material = Some(Classic { exponent: f64::NAN, ..Classic::default() }.into()))
+        problem(|s| s.objects[0].material = Some(Classic { exponent: f64::NAN.into(), ..Classic::default() }.into()))
             .starts_with("ball: exponent")
     );
     assert!(problem(|s| s.objects[0].transform = DMat4::ZERO).starts_with("ball: its transformation"));

@@ -9,6 +9,7 @@ use crate::curve::SplineCurve;
 use crate::database::Library;
 use crate::illumination::Paint;
 use crate::illumination::distribution::FacetTable;
+use crate::illumination::texture::{Band, Number, Varying};
 use crate::solid::primitive::path;
 use crate::surface::SurfaceSide;
 use glam::DVec3;
@@ -19,6 +20,7 @@ use rhai::{Dynamic, Map};
 enum Argument {
     Object(Handle),
     Number(f64),
+    Amount(Number),
     Integer(i64),
     Vector(DVec3),
     Text(String),
@@ -148,6 +150,7 @@ macro_rules! values {
 values! {
     object: Object -> Handle,
     number: Number -> f64,
+    amount: Amount -> Number,
     integer: Integer -> i64,
     vector: Vector -> DVec3,
     paint: Paint -> Paint,
@@ -167,6 +170,23 @@ pub(super) fn number(value: &Dynamic) -> Option<f64> {
     value.as_float().ok().or_else(|| value.as_int().ok().map(|i| i as f64)).filter(|x| x.is_finite())
 }
 
+/// A number, or a pattern of numbers: as bright as a pattern is.
+fn amount(value: &Dynamic) -> Option<Number> {
+    if let Some(number) = number(value) {
+        return Some(Number::Constant(number));
+    }
+    if let Some(amount) = value.read_lock::<Number>() {
+        return Some(amount.clone());
+    }
+    match &*value.read_lock::<Paint>()? {
+        Paint::Pattern(pattern) => {
+            let varying = Varying { pattern: (**pattern).clone(), band: Band::Mean, from: 0.0, to: 1.0 };
+            Some(Number::Varying(Box::new(varying)))
+        }
+        Paint::Plain(_) => None,
+    }
+}
+
 /// A vector, or one number for all three components.
 fn vector_or_number(value: &Dynamic) -> Option<DVec3> {
     number(value).map(DVec3::splat).or_else(|| vector(value))
@@ -177,6 +197,13 @@ fn check(kind: Kind, value: &Dynamic) -> Option<Argument> {
     match kind {
         Kind::Object => value.read_lock::<Handle>().map(|h| Argument::Object(*h)),
         Kind::Number(min, max) => number(value).filter(|x| (min..=max).contains(x)).map(Argument::Number),
+        Kind::Amount(min, max) => amount(value)
+            .filter(|amount| {
+                let [least, most] = amount.range();
+                least >= min && most <= max
+            })
+            .map(Argument::Amount),
+        Kind::NumberOrText(min, max) => check(Kind::Number(min, max), value).or_else(|| check(Kind::Text, value)),
         Kind::Length => number(value).filter(|x| *x > 0.0).map(Argument::Number),
         Kind::Integer(min, max) => {
             let whole = value.as_int().ok();
@@ -240,6 +267,7 @@ fn shown(value: &Dynamic) -> String {
         (value.is::<SplineCurve>(), "a curve"),
         (value.is::<ControlMeaning>(), "a kind of spline"),
         (value.is::<Paint>(), "a pattern"),
+        (value.is::<Number>(), "a pattern of numbers"),
         (value.is::<FacetTable>(), "a distribution"),
     ] {
         if is_one {

@@ -12,6 +12,7 @@ use super::{Evaluated, Inputs, functions};
 use crate::curve::SplineCurve;
 use crate::illumination::Paint;
 use crate::illumination::distribution::{FacetError, FacetTable};
+use crate::illumination::texture::Number;
 use crate::memory;
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, FnPtr, Map, NativeCallContext};
@@ -62,6 +63,7 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -
     engine.register_type_with_name::<ControlMeaning>("spline");
     engine.register_type_with_name::<SplineCurve>("curve");
     engine.register_type_with_name::<Paint>("pattern");
+    engine.register_type_with_name::<Number>("pattern of numbers");
     engine.register_type_with_name::<FacetTable>("distribution");
     for function in functions() {
         bind(&mut engine, function, &state);

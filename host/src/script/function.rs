@@ -50,6 +50,10 @@ pub enum Kind {
     Object,
     /// A number within limits.
     Number(f64, f64),
+    /// A number within limits, or a pattern of such numbers.
+    Amount(f64, f64),
+    /// A number within limits, or a string.
+    NumberOrText(f64, f64),
     /// A whole number within limits.
     Integer(i64, i64),
     /// A length above 0.
@@ -125,6 +129,8 @@ impl Kind {
             Kind::Number(min, max) if max.is_infinite() && min.is_infinite() => "a number".into(),
             Kind::Number(min, max) if max.is_infinite() => format!("a number not below {min}"),
             Kind::Number(min, max) => format!("a number from {min} to {max}"),
+            Kind::Amount(min, max) => format!("{} or a pattern of such numbers", Kind::Number(min, max).words()),
+            Kind::NumberOrText(min, max) => format!("{} or a string", Kind::Number(min, max).words()),
             Kind::Integer(min, max) => format!("a whole number from {min} to {max}"),
             Kind::Length => "a length above 0".into(),
             Kind::Vector => "three numbers [x, y, z]".into(),

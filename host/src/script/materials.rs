@@ -8,16 +8,31 @@ use super::lighting::{SPECTRUM, color_of_light};
 use crate::color::{Color, shipped};
 use crate::illumination::Paint;
 use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
-use glam::DVec2;
+use crate::illumination::texture::Number;
 use rhai::Dynamic;
 
 /// A roughness; 0 is polished.
 const ROUGHNESS: Parameter = parameter(
     "roughness",
-    Kind::Number(0.0, 1000.0),
+    Kind::Amount(0.0, 1000.0),
     Is("0: polished"),
     "roughness m: root mean square slope of its facets, times the root of 2",
 );
+
+/// What a transparent body absorbs.
+const ABSORPTION: Parameter =
+    parameter("absorption", Kind::Powers, Is("0"), "light falls by exp(-absorption) in one unit of length");
+
+/// Which of several bodies in one place is there.
+const fn priority(default: &'static str) -> Parameter {
+    let most = Material::MOST_PRIORITY as i64;
+    parameter(
+        "priority",
+        Kind::Integer(-most, most),
+        Is(default),
+        "of bodies that overlap, that of the greatest priority is there; of several with the same, the smallest",
+    )
+}
 
 /// The functions.
 pub(super) const FUNCTIONS: &[Function] = &[
@@ -28,7 +43,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             OBJECT,
             parameter("diffuse", Kind::Reflectance, Is("0.7"), "diffusely reflected fraction"),
             parameter("specular", Kind::Reflectance, Is("0"), "fraction in the highlight"),
-            parameter("exponent", Kind::Number(1.0, Classic::MOST_EXPONENT), Is("50"), "sharpness of the highlight"),
+            parameter("exponent", Kind::Amount(1.0, Classic::MOST_EXPONENT), Is("50"), "sharpness of the highlight"),
             parameter("mirror", Kind::Reflectance, Is("0"), "mirrored fraction"),
             parameter("transparency", Kind::Reflectance, Is("0"), "fraction that goes straight through"),
         ],
@@ -38,7 +53,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let classic = Classic {
                 diffuse: bound.paint("diffuse").unwrap_or(diffuse),
                 specular: bound.paint("specular").unwrap_or(specular),
-                exponent: bound.number("exponent").unwrap_or(exponent),
+                exponent: bound.amount("exponent").unwrap_or(exponent),
                 mirror: bound.paint("mirror").unwrap_or(mirror),
                 transparency: bound.paint("transparency").unwrap_or(transparency),
             };
@@ -50,7 +65,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
         summary: "Makes an object of a metal, with the refractive indices that were measured of it.",
         parameters: &[
             OBJECT,
-            parameter("name", Kind::Text, Required, "copper, gold, silver, aluminium, iron, or one of a database"),
+            parameter(
+                "name",
+                Kind::Text,
+                Required,
+                "brass, bronze, chromium, copper, gold, iron, nickel, silver, stainless_steel, titanium or another: peris db list names them",
+            ),
             ROUGHNESS,
             parameter(
                 "distribution",
@@ -59,32 +79,58 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "how its facets are distributed: a member of the family that peris study illumination lists",
             ),
             parameter("along", Kind::Vector, Is("not brushed"), "the direction in which it is brushed"),
-            parameter("across", Kind::Number(1e-8, 1000.0), Is("roughness"), "roughness across that direction"),
+            parameter("across", Kind::Amount(0.0, 1000.0), Is("roughness"), "roughness across that direction"),
         ],
         example: "pot.metal(\"copper\", 0.2);",
         action: add_metal,
     },
     Function {
         name: "glass",
-        summary: "Makes an object of glass, water or a gem: it reflects, refracts and absorbs. It must be closed.",
+        summary: "Makes an object of glass, plastic or a gem: it reflects, refracts and absorbs. It must be closed. Where bodies overlap, that of the greatest priority is there: let water reach a little into the glass in which it stands.",
         parameters: &[
             OBJECT,
-            parameter("index", Kind::Number(1e-6, 1e6), Is("1.5"), "refractive index, of all wavelengths"),
-            parameter("name", Kind::Text, Is("none"), "a glass that disperses: BK7, F2, SF11 and others"),
+            parameter(
+                "index",
+                Kind::NumberOrText(1e-6, 1e6),
+                Is("1.5"),
+                "refractive index of all wavelengths, or the name of a glass that disperses, as BK7, SF11 or diamond",
+            ),
+            parameter("name", Kind::Text, Is("none"), "the name of a glass, instead of an index"),
             ROUGHNESS,
-            parameter("absorption", Kind::Powers, Is("0"), "light falls by exp(-absorption) in one unit of length"),
+            ABSORPTION,
+            priority("0"),
         ],
-        example: "pot.glass(#{ name: \"BK7\", absorption: [0.3, 0.05, 0.1] });",
+        example: "pot.glass(\"BK7\");",
         action: |builder, bound| {
-            let index = match (bound.number("index"), bound.text("name")) {
-                (Some(_), Some(_)) => return Err("give either an index or the name of a glass".into()),
-                (index, None) => Index::Constant(index.unwrap_or(1.5)),
-                (None, Some(name)) => Index::Dispersive(shipped::glass(name).map_err(|error| error.to_string())?),
+            let named = |name: &str| shipped::glass(name).map(Index::Dispersive).map_err(|error| error.to_string());
+            let index = match (bound.number("index"), bound.text("index"), bound.text("name")) {
+                (None, None, None) => Index::Constant(1.5),
+                (Some(index), None, None) => Index::Constant(index),
+                (None, Some(name), None) | (None, None, Some(name)) => named(name)?,
+                _ => return Err("give either an index or the name of a glass".into()),
             };
-            let roughness = bound.number("roughness").unwrap_or(0.0);
-            let absorption = bound.vector("absorption").map_or(Color::BLACK, Color::Bands);
-            give(builder, bound, Body::Transparent(Transparent { index, roughness, absorption }))
+            transparent(builder, bound, Transparent::clear(index))
         },
+    },
+    Function {
+        name: "water",
+        summary: "Makes an object of water. It must be closed; in a vessel of glass, let it reach a little into the glass, which keeps its place.",
+        parameters: &[OBJECT, ABSORPTION, ROUGHNESS, priority("-1")],
+        example: "pot.water([0.35, 0.06, 0.02]);",
+        action: |builder, bound| liquid(builder, bound, "water"),
+    },
+    Function {
+        name: "liquid",
+        summary: "Makes an object of a liquid. It must be closed; in a vessel of glass, let it reach a little into the glass, which keeps its place.",
+        parameters: &[
+            OBJECT,
+            parameter("name", Kind::Text, Required, "water, ethanol, glycerol, acetone or toluene"),
+            ABSORPTION,
+            ROUGHNESS,
+            priority("-1"),
+        ],
+        example: "pot.liquid(\"ethanol\", [0.1, 0.8, 2]);",
+        action: |builder, bound| liquid(builder, bound, bound.text("name").unwrap_or_default()),
     },
     Function {
         name: "coated",
@@ -98,7 +144,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "pot.coated([0.7, 0.1, 0.1], 0.05);",
         action: |builder, bound| {
             let diffuse = bound.paint("diffuse").unwrap_or(Paint::grey(0.7));
-            let (index, roughness) = (bound.number("index").unwrap_or(1.5), bound.number("roughness").unwrap_or(0.0));
+            let (index, roughness) = (bound.number("index").unwrap_or(1.5), roughness(bound));
             give(builder, bound, Body::Coated(Coated { diffuse, index, roughness }))
         },
     },
@@ -109,16 +155,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
             OBJECT,
             parameter("reflectance", Kind::Reflectance, Required, "the reflected fraction K"),
             parameter("distribution", Kind::Distribution, Required, "its name, as peris study illumination lists it"),
-            parameter("roughness", Kind::Number(1e-8, 1000.0), Is("0.3"), "its roughness m; not of one of the user's"),
+            parameter("roughness", Kind::Amount(0.0, 1000.0), Is("0.3"), "its roughness m; not of one of the user's"),
         ],
         example: "pot.shaped(#{ reflectance: 0.6, distribution: \"Blinn\", roughness: 0.2 });",
         action: |builder, bound| {
-            let form = match (bound.facets("distribution"), bound.number("roughness")) {
+            let form = match (bound.facets("distribution"), bound.amount("roughness")) {
                 (Some(_), Some(_)) => return Err("a distribution of the user's has no roughness".into()),
                 (Some(table), None) => Form::Facets(table),
                 (None, roughness) => Form::Member {
                     name: bound.text("distribution").unwrap_or_default().to_owned(),
-                    roughness: roughness.unwrap_or(0.3),
+                    roughness: roughness.unwrap_or(Number::Constant(0.3)),
                 },
             };
             let reflectance = bound.paint("reflectance").unwrap_or(Paint::grey(0.0));
@@ -161,12 +207,31 @@ fn give(builder: &mut Builder, bound: &Bound, body: Body) -> Done {
     Ok(value(bound.object("object")))
 }
 
+fn roughness(bound: &Bound) -> Number {
+    bound.amount("roughness").unwrap_or(Number::Constant(0.0))
+}
+
+fn liquid(builder: &mut Builder, bound: &Bound, name: &str) -> Done {
+    let liquid = shipped::liquid(name).map_err(|error| error.to_string())?;
+    let clear = Transparent::clear(Index::Dispersive(liquid));
+    transparent(builder, bound, Transparent { priority: Transparent::LIQUID, ..clear })
+}
+
+/// Gives an object what is transparent, with the roughness, the absorption and the priority of a call.
+fn transparent(builder: &mut Builder, bound: &Bound, clear: Transparent) -> Done {
+    let absorption = bound.vector("absorption").map_or(clear.absorption, Color::Bands);
+    let priority = bound.integer("priority").and_then(|priority| i32::try_from(priority).ok());
+    let body =
+        Transparent { roughness: roughness(bound), absorption, priority: priority.unwrap_or(clear.priority), ..clear };
+    give(builder, bound, Body::Transparent(body))
+}
+
 fn add_metal(builder: &mut Builder, bound: &Bound) -> Done {
     let shipped::Metal { n, k } =
         builder.library.metal(bound.text("name").unwrap_or_default()).map_err(|error| error.to_string())?;
-    let roughness = bound.number("roughness").unwrap_or(0.0);
+    let roughness = roughness(bound);
     let name = bound.text("distribution");
-    let finish = match (bound.vector("along"), bound.number("across")) {
+    let finish = match (bound.vector("along"), bound.amount("across")) {
         (Some(along), across) => {
             if along.try_normalize().is_none() {
                 return Err("along must not have the length 0".into());
@@ -174,10 +239,11 @@ fn add_metal(builder: &mut Builder, bound: &Bound) -> Done {
             if name.is_some() {
                 return Err("a brushed metal has Beckmann's facets; leave the distribution out".into());
             }
-            Finish::Brushed { roughness: DVec2::new(roughness, across.unwrap_or(roughness)), along }
+            let across = across.unwrap_or_else(|| roughness.clone());
+            Finish::Brushed { roughness: [roughness, across], along }
         }
         (None, Some(_)) => return Err("across needs along".into()),
-        (None, None) if roughness == 0.0 => Finish::Polished,
+        (None, None) if roughness == Number::Constant(0.0) => Finish::Polished,
         (None, None) => Finish::Rough { name: name.unwrap_or("Beckmann, all").to_owned(), roughness },
     };
     give(builder, bound, Body::Metal(Metal { n, k, finish }))

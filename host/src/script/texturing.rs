@@ -6,7 +6,7 @@ use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, Parameter, parameter};
 use crate::database::{self, Record};
 use crate::illumination::Paint;
-use crate::illumination::texture::{Content, Image, Laying, Motif, Pattern, Relief};
+use crate::illumination::texture::{Band, Content, Image, Laying, Motif, Number, Pattern, Relief, Varying};
 use glam::DVec3;
 use rhai::Dynamic;
 
@@ -33,10 +33,22 @@ pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         name: "picture",
         summary: "Makes a pattern of an image that lies on the parameters (u, v) of surfaces, or the texture coordinates of a file. Give it where a reflectance is asked for.",
-        parameters: &[FILE, SIZE_ON_SURFACE, AT, UP],
+        parameters: &[
+            FILE,
+            SIZE_ON_SURFACE,
+            AT,
+            UP,
+            parameter(
+                "numbers",
+                Kind::Flag,
+                Is("false"),
+                "whether a PNG file holds numbers, as maps of roughness do, and not colors of sRGB",
+            ),
+        ],
         example: "pot.material(picture(\"tiles.png\", 0.25));",
         action: |builder, bound| {
-            let motif = Motif::Image { image: read(builder, bound, Content::Color)? };
+            let content = if bound.flag("numbers").unwrap_or(false) { Content::Numbers } else { Content::Color };
+            let motif = Motif::Image { image: read(builder, bound, content)? };
             pattern(motif, laying(bound, false), Vec::new())
         },
     },
@@ -109,6 +121,34 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let turbulence = bound.number("turbulence").unwrap_or(0.6);
             let motif = Motif::Wood { turbulence, grain: bound.number("grain").unwrap_or(0.25) };
             pattern(motif, laying(bound, true), paints(bound))
+        },
+    },
+    Function {
+        name: "between",
+        summary: "Makes a pattern of numbers of any range: low where a pattern is black, high where it is white. Give it where a pattern of numbers is asked for, as for a roughness.",
+        parameters: &[
+            parameter("low", Kind::Number(f64::MIN, f64::MAX), Required, "the number where the pattern is 0"),
+            parameter("high", Kind::Number(f64::MIN, f64::MAX), Required, "the number where it is 1"),
+            parameter("pattern", Kind::Reflectance, Required, "the pattern"),
+            parameter(
+                "band",
+                Kind::Word(&["mean", "red", "green", "blue"]),
+                Is("\"mean\""),
+                "which band of it counts; maps of glTF have roughness in green, metalness in blue",
+            ),
+        ],
+        example: "pot.metal(\"brass\", between(0.05, 0.4, noise(0, 1, 0.2)));",
+        action: |_, bound| match bound.paint("pattern") {
+            Some(Paint::Pattern(pattern)) => {
+                let end = |name| bound.number(name).unwrap_or_default();
+                let word = bound.text("band").unwrap_or("mean");
+                let band = Band::ALL.into_iter().find(|row| row.0 == word).map_or(Band::Mean, |row| row.1);
+                let varying = Varying { pattern: *pattern, band, from: end("low"), to: end("high") };
+                let number = Number::Varying(Box::new(varying));
+                number.check().map_err(|error| error.to_string())?;
+                Ok(Dynamic::from(number))
+            }
+            _ => Err("between needs a pattern, not one color".into()),
         },
     },
     Function {

@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn materials_and_lights_stay_within_the_ranges_of_the_machine() {
         let (black, white) = (Paint::grey(0.0), Paint::grey(1.0));
-        let mirror = Classic { diffuse: black, mirror: white, exponent: 1e6, ..Classic::default() };
+        let mirror = Classic { diffuse: black, mirror: white, exponent: 1e6.into(), ..Classic::default() };
         let seen = attributes(&mirror.into()).front;
         assert_eq!((seen.color, seen.diffuse, seen.specular), ([0.0, 0.0, 1.0], LEAST_DIFFUSE, 10));
         let matt = attributes(&Classic { diffuse: Paint::grey(0.5), ..Classic::default() }.into()).front;

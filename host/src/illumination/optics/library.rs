@@ -4,15 +4,17 @@ use super::coat::{Coat, Ground};
 use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth};
 use super::lobe::Lobe;
-use super::shade::{Painted, Shade};
+use super::shade::{Changing, Painted, Shade};
+use super::varied::{Varied, nodes};
 use super::{Interior, Interreflection, Optics};
 use crate::color::{LANES, Wavelengths};
 use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Facets, Microfacet, Phong};
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
 use crate::illumination::material::{
-    Body, Classic, Coated, Finish, Form, Index, Material, MaterialError, Metal, Shaped, Transparent,
+    Body, Classic, Coated, Finish, Form, Index, LEAST_VARYING_ROUGHNESS, Material, MaterialError, Metal, Shaped,
+    Transparent,
 };
-use crate::illumination::texture::Paint;
+use crate::illumination::texture::{Number, Paint};
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -59,33 +61,42 @@ impl<'a> Library<'a> {
         match &material.body {
             Body::Classic(classic) => self.classic(classic, diffuse, &mut optics)?,
             Body::Shaped(Shaped { reflectance, form }) => {
-                let shape = match form {
-                    Form::Member { name, roughness } => self.shape(name, *roughness)?,
-                    Form::Table(table) => Shape::Once(Arc::new(table.clone())),
-                    Form::Facets(table) => Shape::Once(Arc::new(table.clone())),
-                };
-                let distribution: Arc<dyn Distribution> = match shape {
-                    Shape::Once(distribution) => distribution,
-                    Shape::All(compensated) => compensated,
-                };
                 let fraction = self.shade(reflectance, &mut optics);
                 optics.ambient = fraction.clone();
-                optics.add(Lobe::Shaped(fraction, distribution), Interreflection::Followed);
+                let lobe = match form {
+                    Form::Member { name, roughness } => self.rough(roughness, &mut optics, |library, m| {
+                        let distribution: Arc<dyn Distribution> = match library.shape(name, m)? {
+                            Shape::Once(distribution) => distribution,
+                            Shape::All(compensated) => compensated,
+                        };
+                        Ok(Lobe::Shaped(fraction.clone(), distribution))
+                    })?,
+                    Form::Table(table) => Lobe::Shaped(fraction, Arc::new(table.clone())),
+                    Form::Facets(table) => Lobe::Shaped(fraction, Arc::new(table.clone())),
+                };
+                optics.add(lobe, Interreflection::Followed);
             }
             Body::Metal(metal) => self.metal(metal, &mut optics)?,
-            Body::Transparent(transparent) => self.transparent(transparent, &mut optics),
+            Body::Transparent(transparent) => self.transparent(transparent, &mut optics)?,
             Body::Coated(coated) => self.coated(coated, diffuse, &mut optics)?,
         }
         Ok(optics)
     }
 
-    fn classic(&self, classic: &Classic, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
+    fn classic(
+        &mut self,
+        classic: &Classic,
+        carried: Interreflection,
+        optics: &mut Optics,
+    ) -> Result<(), MaterialError> {
         if let Some(shade) = self.needed(&classic.diffuse, optics) {
             optics.ambient = shade.clone();
             optics.add(Lobe::Diffuse(shade), carried);
         }
         if let Some(shade) = self.needed(&classic.specular, optics) {
-            optics.add(Lobe::Phong(shade, Phong::new(classic.exponent)?), carried);
+            let made = |_: &mut Library<'a>, n| Ok(Lobe::Phong(shade.clone(), Phong::new(n)?));
+            let lobe = self.varied(&classic.exponent, 1.0, optics, made)?;
+            optics.add(lobe, carried);
         }
         if let Some(shade) = self.needed(&classic.mirror, optics) {
             optics.add(Lobe::Mirror(shade), Interreflection::Followed);
@@ -112,42 +123,100 @@ impl<'a> Library<'a> {
         let conductors = Arc::new((0..self.wavelengths.combs()).map(lanes).collect::<Result<Vec<_>, _>>()?);
         let lobe = match finish {
             Finish::Polished => Lobe::Polished(conductors),
-            Finish::Rough { name, roughness } => {
-                Lobe::Metallic(Metallic::new(self.shape(name, *roughness)?, conductors))
-            }
-            Finish::Brushed { roughness, along } => {
-                optics.along = Some(*along);
-                let form = Arc::new(Microfacet::new(Facets::Beckmann, *roughness)?);
-                Lobe::Metallic(Metallic::new(Shape::Once(form), conductors))
+            Finish::Rough { name, roughness } => self.rough(roughness, optics, |library, m| {
+                Ok(Lobe::Metallic(Metallic::new(library.shape(name, m)?, conductors.clone())))
+            })?,
+            Finish::Brushed { roughness: [along, across], along: direction } => {
+                optics.along = Some(*direction);
+                // Where both vary, each node of the one is a lobe that varies by the other.
+                let across_at = across.is_varying().then(|| optics.varying(across));
+                let across_nodes = nodes(across, LEAST_VARYING_ROUGHNESS);
+                self.rough(along, optics, |_, along| {
+                    let brushed = |across: f64| -> Result<Lobe, MaterialError> {
+                        let form = Arc::new(Microfacet::new(Facets::Beckmann, DVec2::new(along, across))?);
+                        Ok(Lobe::Metallic(Metallic::new(Shape::Once(form), conductors.clone())))
+                    };
+                    match (across_at, across) {
+                        (None, across) => brushed(across.mean()),
+                        (Some(quantity), _) => {
+                            let lobes = across_nodes.iter().map(|m| Ok((*m, brushed(*m)?)));
+                            let lobes = lobes.collect::<Result<_, MaterialError>>()?;
+                            Ok(Lobe::Varied(Box::new(Varied::new(quantity, lobes))))
+                        }
+                    }
+                })?
             }
         };
         optics.add(lobe, Interreflection::Followed);
         Ok(())
     }
 
-    fn transparent(&self, Transparent { index, roughness, absorption }: &Transparent, optics: &mut Optics) {
+    fn transparent(&mut self, transparent: &Transparent, optics: &mut Optics) -> Result<(), MaterialError> {
+        let Transparent { index, roughness, absorption, priority } = transparent;
         optics.interior = Some(Interior {
             index: self.wavelengths.quantity(|wavelength| index.at(wavelength)),
             absorption: self.wavelengths.filter(absorption),
             disperses: matches!(index, Index::Dispersive(_)),
+            priority: *priority,
         });
-        let lobe = if *roughness > 0.0 {
-            Lobe::Rough(Rough { facets: Facets::Ggx, roughness: DVec2::splat(*roughness) })
-        } else {
-            Lobe::Smooth(Smooth)
+        let lobe = match roughness {
+            Number::Constant(0.0) => Lobe::Smooth(Smooth),
+            roughness => self.rough(roughness, optics, |_, m| {
+                Ok(Lobe::Rough(Rough { facets: Facets::Ggx, roughness: DVec2::splat(m) }))
+            })?,
         };
         optics.add(lobe, Interreflection::Followed);
+        Ok(())
     }
 
     fn coated(&mut self, coated: &Coated, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
-        let coat = self.coat(coated.index, coated.roughness)?;
-        optics.add(Lobe::Coat(coat.clone()), Interreflection::Followed);
-        if let Some(shade) = self.needed(&coated.diffuse, optics) {
-            let ground = Ground::new(coat, coated.index, &shade, self.wavelengths.combs());
-            optics.add(Lobe::Ground(ground), carried);
+        let Coated { diffuse, index, roughness } = coated;
+        let coat = match roughness {
+            Number::Constant(0.0) => Lobe::Coat(self.coat(*index, 0.0)?),
+            roughness => self.rough(roughness, optics, |library, m| Ok(Lobe::Coat(library.coat(*index, m)?)))?,
+        };
+        optics.add(coat, Interreflection::Followed);
+        if let Some(shade) = self.needed(diffuse, optics) {
+            let combs = self.wavelengths.combs();
+            let ground = |library: &mut Library<'a>, m: f64| {
+                Ok(Lobe::Ground(Ground::new(library.coat(*index, m)?, *index, &shade, combs)))
+            };
+            let ground = match roughness {
+                Number::Constant(0.0) => ground(self, 0.0)?,
+                roughness => self.rough(roughness, optics, ground)?,
+            };
+            optics.add(ground, carried);
             optics.ambient = shade;
         }
         Ok(())
+    }
+
+    /// A lobe of a roughness, which may change from place to place.
+    fn rough(
+        &mut self,
+        roughness: &Number,
+        optics: &mut Optics,
+        made: impl FnMut(&mut Library<'a>, f64) -> Result<Lobe, MaterialError>,
+    ) -> Result<Lobe, MaterialError> {
+        self.varied(roughness, LEAST_VARYING_ROUGHNESS, optics, made)
+    }
+
+    /// A lobe of a number, which may change from place to place.
+    ///
+    /// - `least`: the least that is told apart where it changes. `made`: the lobe of a value.
+    fn varied(
+        &mut self,
+        number: &Number,
+        least: f64,
+        optics: &mut Optics,
+        mut made: impl FnMut(&mut Library<'a>, f64) -> Result<Lobe, MaterialError>,
+    ) -> Result<Lobe, MaterialError> {
+        if let Number::Constant(value) = number {
+            return made(self, *value);
+        }
+        let lobes = nodes(number, least).into_iter().map(|value| Ok((value, made(self, value)?)));
+        let lobes = lobes.collect::<Result<_, MaterialError>>()?;
+        Ok(Lobe::Varied(Box::new(Varied::new(optics.varying(number), lobes))))
     }
 
     /// A coat of a refractive index and a roughness.
@@ -170,7 +239,7 @@ impl<'a> Library<'a> {
         match paint {
             Paint::Plain(color) => Shade::Plain(self.wavelengths.reflectance(color)),
             Paint::Pattern(pattern) => {
-                optics.patterns.push(Painted::new(pattern, self.wavelengths));
+                optics.patterns.push(Changing::Paint(Painted::new(pattern, self.wavelengths)));
                 Shade::Painted(optics.patterns.len() - 1)
             }
         }

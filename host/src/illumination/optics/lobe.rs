@@ -4,6 +4,7 @@ use super::coat::{Coat, Ground};
 use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth, reflected};
 use super::shade::Shade;
+use super::varied::Varied;
 use super::{Onward, Sighting};
 use crate::color::Channels;
 use crate::illumination::distribution::{Distribution, Phong};
@@ -47,6 +48,8 @@ pub(super) enum Lobe {
     Smooth(Smooth),
     /// A rough one.
     Rough(Rough),
+    /// One whose roughness changes from place to place.
+    Varied(Box<Varied>),
 }
 
 /// A lobe that is drawn with a greater density from straight above, 1/sr, is narrow: a diffuse one has 1/π.
@@ -65,13 +68,17 @@ impl Lobe {
             Lobe::Coat(coat) => coat.density(DVec3::Z, DVec3::Z),
             // Of facets that all are seen, a quarter of the density of their normals.
             Lobe::Rough(rough) => 0.25 * rough.facets.area(DVec3::Z, rough.roughness),
+            Lobe::Varied(varied) => return varied.typical().is_broad(),
         };
         density < NARROW
     }
 
     /// Whether it reflects light alike to everywhere.
     pub(super) fn is_diffuse(&self) -> bool {
-        matches!(self, Lobe::Diffuse(_) | Lobe::Ground(_))
+        match self {
+            Lobe::Varied(varied) => varied.typical().is_diffuse(),
+            _ => matches!(self, Lobe::Diffuse(_) | Lobe::Ground(_)),
+        }
     }
 
     /// Whether it reflects nothing, wherever.
@@ -83,6 +90,7 @@ impl Lobe {
             | Lobe::Straight(fraction)
             | Lobe::Shaped(fraction, _) => fraction.is_black(),
             Lobe::Ground(ground) => ground.is_black(),
+            Lobe::Varied(varied) => varied.typical().is_black(),
             _ => false,
         }
     }
@@ -99,8 +107,10 @@ impl Lobe {
     /// Radiance towards the viewer for a unit of flux density, 1/sr; 0 for what only knows single directions.
     pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
         let view = sighting.view;
-        if let Lobe::Rough(rough) = self {
-            return rough.value(sighting, light);
+        match self {
+            Lobe::Rough(rough) => return rough.value(sighting, light),
+            Lobe::Varied(varied) => return varied.mixed(sighting, |lobe| lobe.value(sighting, light)),
+            _ => {}
         }
         if light.z <= 0.0 || view.z <= 0.0 {
             return Channels::ZERO;
@@ -121,6 +131,7 @@ impl Lobe {
         match self {
             Lobe::Diffuse(fraction) => fraction.of(sighting),
             Lobe::Ground(ground) => ground.mean(sighting),
+            Lobe::Varied(varied) => varied.mixed(sighting, |lobe| lobe.diffuse(sighting)),
             _ => Channels::ZERO,
         }
     }
@@ -135,6 +146,7 @@ impl Lobe {
             Lobe::Metallic(metal) => metal.reflected(view.z, comb),
             Lobe::Coat(coat) => Channels::splat(coat.reflected(view.z)),
             Lobe::Smooth(_) | Lobe::Rough(_) => reflected(sighting, view.z),
+            Lobe::Varied(varied) => varied.mixed(sighting, |lobe| lobe.shown(sighting)),
             _ => Channels::ZERO,
         }
     }
@@ -142,8 +154,10 @@ impl Lobe {
     /// The density of its samples, 1/sr.
     pub(super) fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
         let view = sighting.view;
-        if let Lobe::Rough(rough) = self {
-            return rough.density(sighting, light);
+        match self {
+            Lobe::Rough(rough) => return rough.density(sighting, light),
+            Lobe::Varied(varied) => return varied.mixed_number(sighting, |lobe| lobe.density(sighting, light)),
+            _ => {}
         }
         if light.z <= 0.0 || view.z <= 0.0 {
             return 0.0;
@@ -178,6 +192,7 @@ impl Lobe {
             Lobe::Coat(coat) if !coat.is_polished() => coat.sample(view, point).map(spread),
             Lobe::Rough(rough) => rough.sample(sighting, choice, point).map(spread),
             Lobe::Smooth(smooth) => smooth.sample(sighting, choice),
+            Lobe::Varied(varied) => varied.sample(sighting, choice, point),
             _ => self.mirrored(sighting).into_iter().flatten().next(),
         }
     }
@@ -215,6 +230,7 @@ impl Lobe {
             // Where Fresnel's term vanishes, so does what is reflected; a rough coat may still show tilted facets.
             Lobe::Coat(coat) => coat.reflected(view.z).max(if coat.is_polished() { 0.0 } else { 0.02 }),
             Lobe::Ground(ground) => ground.strength(sighting),
+            Lobe::Varied(varied) => varied.mixed_number(sighting, |lobe| lobe.strength(sighting)),
         }
     }
 }

@@ -14,35 +14,43 @@ mod lobe;
 mod shade;
 #[cfg(test)]
 mod tests;
+mod varied;
 
 pub use library::Library;
 pub use lobe::Side;
 
-use super::texture::{Place, Relief};
+use super::texture::{Number, Place, Relief};
 use crate::color::{Channels, Curve};
 use glam::DVec3;
 use lobe::Lobe;
-use shade::{Painted, Shade};
+use shade::{Changing, Quantity, Shade};
 
-/// Most lobes of a material, each of which may have a pattern.
+/// Most lobes of a material.
 const MOST_LOBES: usize = 4;
 
-/// What the patterns of a material give at a place.
-pub type Painting = [Channels; MOST_LOBES];
+/// What the patterns of a material give at a place, one after the other; a number is in all lanes.
+pub type Painting = Vec<Channels>;
 
 /// What patterns are mixed of at a place.
 #[derive(Clone, Debug, Default)]
 pub struct Mixture<'a> {
-    /// The number of the pattern, a color in it, and how much there is of it.
+    /// How many patterns there are.
+    count: usize,
+    /// Which pattern it is, a color in it, and how much there is of it.
     parts: Vec<(usize, &'a Curve, f64)>,
+    /// Which pattern it is, and the number that it tells.
+    numbers: Vec<(usize, f64)>,
 }
 
 impl Mixture<'_> {
     /// What the patterns give at the wavelengths of a comb.
     pub fn at(&self, comb: usize) -> Painting {
-        let mut painting = Painting::default();
-        for (number, curve, amount) in &self.parts {
-            painting[*number] += curve.of(comb) * *amount;
+        let mut painting = vec![Channels::ZERO; self.count];
+        for (pattern, curve, amount) in &self.parts {
+            painting[*pattern] += curve.of(comb) * *amount;
+        }
+        for (pattern, number) in &self.numbers {
+            painting[*pattern] = Channels::splat(*number);
         }
         painting
     }
@@ -114,7 +122,8 @@ pub struct Optics {
     spreads: bool,
     /// What the ambient term reflects.
     ambient: Shade,
-    patterns: Vec<Painted>,
+    /// What changes from place to place.
+    patterns: Vec<Changing>,
     relief: Option<Relief>,
     /// The part of light that goes straight through; none if none does.
     passing: Option<Shade>,
@@ -135,6 +144,8 @@ pub struct Interior {
     pub absorption: Curve,
     /// Whether the index differs with the wavelength.
     pub disperses: bool,
+    /// Which of several bodies in one place is there: that of the greatest.
+    pub priority: i32,
 }
 
 /// How an element is seen, and what is on its two sides.
@@ -277,20 +288,21 @@ impl Optics {
 
     /// What its patterns are mixed of in the mean over a place, for any wavelengths.
     pub fn mix(&self, place: &Place) -> Mixture<'_> {
-        let mut mixture = Mixture::default();
-        for (number, pattern) in self.patterns.iter().enumerate() {
-            pattern.each(place, 1.0, &mut |curve, amount| mixture.parts.push((number, curve, amount)));
+        let mut mixture = Mixture { count: self.patterns.len(), ..Mixture::default() };
+        for (index, pattern) in self.patterns.iter().enumerate() {
+            match pattern {
+                Changing::Paint(painted) => {
+                    painted.each(place, 1.0, &mut |curve, amount| mixture.parts.push((index, curve, amount)));
+                }
+                Changing::Number(number) => mixture.numbers.push((index, number.at(place))),
+            }
         }
         mixture
     }
 
     /// What its patterns give in the mean over a place.
     pub fn paint(&self, place: &Place, comb: usize) -> Painting {
-        let mut painting = Painting::default();
-        for (color, pattern) in painting.iter_mut().zip(&self.patterns) {
-            *color = pattern.at(place, comb);
-        }
-        painting
+        self.patterns.iter().map(|pattern| pattern.at(place, comb)).collect()
     }
 
     /// The normal of an element, tilted by the relief.
@@ -312,8 +324,8 @@ impl Optics {
         match &self.passing {
             None => Channels::ZERO,
             Some(Shade::Plain(curve)) => curve.of(comb),
-            Some(Shade::Painted(number)) => {
-                self.patterns.get(*number).map_or(Channels::ZERO, |pattern| pattern.at(&place(), comb))
+            Some(Shade::Painted(pattern)) => {
+                self.patterns.get(*pattern).map_or(Channels::ZERO, |pattern| pattern.at(&place(), comb))
             }
         }
     }
@@ -384,6 +396,12 @@ impl Optics {
             _ => self.takes = true,
         }
         self.lobes.push((which, lobe));
+    }
+
+    /// Takes in a number that changes from place to place.
+    fn varying(&mut self, number: &Number) -> Quantity {
+        self.patterns.push(Changing::Number(number.clone()));
+        Quantity::Varying(self.patterns.len() - 1)
     }
 
     fn of(&self, which: Which) -> impl Iterator<Item = &Lobe> {

@@ -1,8 +1,8 @@
-//! Paints made ready for rendering: tabulated at the wavelengths that rays carry.
+//! Paints and numbers made ready for rendering: paints are tabulated at the wavelengths that rays carry.
 
 use super::Sighting;
 use crate::color::{Channels, Curve, Wavelengths};
-use crate::illumination::texture::{Paint, Pattern, Place};
+use crate::illumination::texture::{Number, Paint, Pattern, Place};
 
 /// A fraction of light, ready.
 #[derive(Clone, Debug)]
@@ -11,6 +11,20 @@ pub(super) enum Shade {
     Plain(Curve),
     /// What the pattern of a number gives at the place that is looked at.
     Painted(usize),
+}
+
+/// A number, ready.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Quantity {
+    /// What the pattern of a number gives at the place that is looked at.
+    Varying(usize),
+}
+
+/// What changes from place to place: a fraction of light, or a number.
+#[derive(Clone, Debug)]
+pub(super) enum Changing {
+    Paint(Painted),
+    Number(Number),
 }
 
 /// A pattern, ready.
@@ -57,6 +71,26 @@ impl Painted {
                 Part::Plain(curve) => give(curve, amount),
                 Part::Painted(painted) => painted.each(place, amount, give),
             }
+        }
+    }
+}
+
+impl Changing {
+    /// The mean over a place; a number is in all lanes.
+    pub(super) fn at(&self, place: &Place, comb: usize) -> Channels {
+        match self {
+            Changing::Paint(painted) => painted.at(place, comb),
+            Changing::Number(number) => Channels::splat(number.at(place)),
+        }
+    }
+}
+
+impl Quantity {
+    /// The number at the place that is looked at.
+    #[inline]
+    pub(super) fn of(self, sighting: &Sighting<'_>) -> f64 {
+        match self {
+            Quantity::Varying(number) => sighting.painted.get(number).map_or(0.0, |channels| channels.0[0]),
         }
     }
 }

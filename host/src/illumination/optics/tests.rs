@@ -3,7 +3,7 @@
 use super::*;
 use crate::color::{Color, Wavelengths, shipped};
 use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
-use crate::illumination::texture::Paint;
+use crate::illumination::texture::{Band, Laying, Motif, Number, Paint, Pattern, Varying};
 use crate::numeric::cubature::unit_square;
 use crate::numeric::sampling::{Stream, sphere};
 use std::f64::consts::{PI, TAU};
@@ -26,7 +26,7 @@ fn copper(finish: Finish) -> Material {
 }
 
 fn rough(name: &str, roughness: f64) -> Finish {
-    Finish::Rough { name: name.into(), roughness }
+    Finish::Rough { name: name.into(), roughness: f64::into(roughness) }
 }
 
 /// Light that comes to the viewer of a radiance of 1 from everywhere, by samples that are spread evenly.
@@ -64,7 +64,8 @@ fn integral(optics: &Optics, sighting: &Sighting) -> f64 {
 fn a_white_coated_ground_returns_what_it_gets() {
     let wavelengths = Wavelengths::bands();
     for (index, roughness) in [(1.5, 0.0), (1.33, 0.0), (2.4, 0.0), (1.0, 0.0), (1.5, 0.1), (1.5, 0.7)] {
-        let material = Body::Coated(Coated { diffuse: Paint::grey(1.0), index, roughness }).into();
+        let material =
+            Body::Coated(Coated { diffuse: Paint::grey(1.0), index, roughness: f64::into(roughness) }).into();
         let optics = ready(&material, &wavelengths);
         for degrees in [0.0, 40.0, 75.0, 88.0] {
             let sighting = sighting(degrees, 1.0, 1.0);
@@ -79,22 +80,21 @@ fn a_white_coated_ground_returns_what_it_gets() {
 fn samples_and_values_tell_the_same_of_every_material() {
     let wavelengths = Wavelengths::bands();
     let classic =
-        Classic { diffuse: Paint::grey(0.4), specular: Paint::grey(0.3), exponent: 20.0, ..Classic::default() };
+        Classic { diffuse: Paint::grey(0.4), specular: Paint::grey(0.3), exponent: 20.0.into(), ..Classic::default() };
     let glass = |roughness| {
         Material::from(Body::Transparent(Transparent {
-            index: Index::Constant(1.5),
-            roughness,
-            absorption: Color::BLACK,
+            roughness: f64::into(roughness),
+            ..Transparent::clear(Index::Constant(1.5))
         }))
     };
-    let shaped = Form::Member { name: "Blinn".into(), roughness: 0.4 };
+    let shaped = Form::Member { name: "Blinn".into(), roughness: 0.4.into() };
     let materials = [
         (Material::from(classic), 1.0),
         (copper(rough("Beckmann", 0.3)), 1.0),
         (copper(rough("GGX, all", 0.6)), 1.0),
         (copper(rough("improved (7)", 0.4)), 1.0),
         (Body::Shaped(Shaped { reflectance: Paint::grey(0.8), form: shaped }).into(), 1.0),
-        (Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.2 }).into(), 1.0),
+        (Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.2.into() }).into(), 1.0),
         (glass(0.3), 1.5),
         (glass(0.15), 1.5),
     ];
@@ -111,13 +111,74 @@ fn samples_and_values_tell_the_same_of_every_material() {
     }
 }
 
+/// A number that a pattern tells, from one to another.
+fn varying(from: f64, to: f64) -> Number {
+    let paints = vec![Paint::grey(0.0), Paint::grey(1.0)];
+    let pattern =
+        Pattern { motif: Motif::Noise { octaves: 3 }, laying: Laying { solid: true, ..Laying::default() }, paints };
+    Number::Varying(Box::new(Varying { pattern, band: Band::Mean, from, to }))
+}
+
+#[test]
+fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
+    let wavelengths = Wavelengths::bands();
+    let metal = |roughness| copper(Finish::Rough { name: "GGX".into(), roughness });
+    let coated = |roughness| Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness }).into();
+    let glass =
+        |roughness| Body::Transparent(Transparent { roughness, ..Transparent::clear(Index::Constant(1.5)) }).into();
+    let kinds: [&dyn Fn(Number) -> Material; 3] = [&metal, &coated, &glass];
+    for made in kinds {
+        let varied = ready(&made(varying(0.1, 0.5)), &wavelengths);
+        assert!(varied.is_textured());
+        for roughness in [0.1, 0.17, 0.3, 0.5] {
+            let painted = [Channels::splat(roughness); 2];
+            let of = sighting(40.0, 1.0, 1.5);
+            let at = Sighting { painted: &painted, ..of };
+            let same = ready(&made(roughness.into()), &wavelengths);
+            let (drawn, sum) = (furnace(&varied, &at), integral(&varied, &at));
+            assert!((drawn - sum).abs() < 0.01, "{roughness}: {drawn} {sum}");
+            let constant = integral(&same, &of);
+            assert!((constant - sum).abs() < 2e-3, "{roughness}: {constant} {sum}");
+            let light = DVec3::new(-0.55, 0.1, 0.8).normalize();
+            let [a, b] = [varied.response(&at, light).0[0], same.response(&of, light).0[0]];
+            assert!((a / b - 1.0).abs() < 0.03, "{roughness}: {a} {b}");
+        }
+    }
+    // The ends are exact, and so is what lies beyond them.
+    let varied = ready(&metal(varying(0.1, 0.5)), &wavelengths);
+    let same = ready(&metal(0.5.into()), &wavelengths);
+    let of = sighting(40.0, 1.0, 1.5);
+    let light = DVec3::new(-0.4, 0.1, 0.8).normalize();
+    for beyond in [0.5, 0.9] {
+        let painted = [Channels::splat(beyond)];
+        let [a, b] = [varied.response(&Sighting { painted: &painted, ..of }, light), same.response(&of, light)];
+        assert_eq!(a, b);
+    }
+}
+
+#[test]
+fn a_metal_may_be_brushed_as_patterns_tell() {
+    let wavelengths = Wavelengths::bands();
+    let brushed = |roughness| copper(Finish::Brushed { roughness, along: DVec3::X });
+    let varied = ready(&brushed([varying(0.05, 0.2), varying(0.2, 0.6)]), &wavelengths);
+    let same = ready(&brushed([0.1.into(), 0.4.into()]), &wavelengths);
+    let of = sighting(30.0, 1.0, 1.0);
+    // The pattern of the roughness across is the first.
+    let painted = [Channels::splat(0.4), Channels::splat(0.1)];
+    let at = Sighting { painted: &painted, ..of };
+    for light in [DVec3::new(-0.5, 0.0, 0.86), DVec3::new(-0.45, 0.3, 0.8)] {
+        let [a, b] = [varied.response(&at, light.normalize()), same.response(&of, light.normalize())];
+        assert!((a.0[0] / b.0[0] - 1.0).abs() < 0.04, "{a:?} {b:?}");
+    }
+}
+
 #[test]
 fn densities_are_those_with_which_directions_are_drawn() {
     let wavelengths = Wavelengths::bands();
-    let rough_glass = Transparent { index: Index::Constant(1.5), roughness: 0.4, absorption: Color::BLACK };
+    let rough_glass = Transparent { roughness: 0.4.into(), ..Transparent::clear(Index::Constant(1.5)) };
     let materials = [
         copper(rough("GGX", 0.4)),
-        Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.3 }).into(),
+        Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.3.into() }).into(),
         Body::Transparent(rough_glass).into(),
     ];
     for material in materials {
@@ -153,7 +214,7 @@ fn densities_are_those_with_which_directions_are_drawn() {
 #[test]
 fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
     let wavelengths = Wavelengths::bands();
-    let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::BLACK };
+    let glass = Transparent::clear(Index::Constant(1.5));
     let optics = ready(&Body::Transparent(glass).into(), &wavelengths);
     for degrees in [0.0, 30.0, 80.0, 89.9] {
         let sighting = sighting(degrees, 1.0, 1.5);
@@ -221,7 +282,7 @@ fn straight_light_goes_on_and_impossible_materials_are_errors() {
     assert!(refused(loud.into()).contains("diffuse reflectance"));
     assert!(refused(copper(rough("Beckman", 0.3))).contains("there are Lambert, Phong"));
     assert!(refused(copper(rough("Beckmann", -0.3))).contains("roughness"));
-    let hollow = Coated { diffuse: Paint::grey(0.5), index: 0.0, roughness: 0.0 };
+    let hollow = Coated { diffuse: Paint::grey(0.5), index: 0.0, roughness: 0.0.into() };
     assert!(refused(Body::Coated(hollow).into()).contains("index"));
 }
 
@@ -230,9 +291,8 @@ fn nothing_is_infinite_at_the_extremes() {
     let wavelengths = Wavelengths::bands();
     let glass = |index, roughness| {
         Material::from(Body::Transparent(Transparent {
-            index: Index::Constant(index),
-            roughness,
-            absorption: Color::BLACK,
+            roughness: f64::into(roughness),
+            ..Transparent::clear(Index::Constant(index))
         }))
     };
     let mut materials =
@@ -273,7 +333,7 @@ fn absorption_over_the_wavelength_has_its_colour_however_strong_it_is() {
     let combs = wavelengths.combs();
     for scale in [0.1, 1.0, 100.0] {
         let bands = glam::DVec3::new(0.2, 9.0, 7.0) * scale;
-        let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::Bands(bands) };
+        let glass = Transparent { absorption: Color::Bands(bands), ..Transparent::clear(Index::Constant(1.5)) };
         let absorption = ready(&Body::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
         let seen: DVec3 =
             (0..combs).map(|comb| wavelengths.seen(comb, absorption.of(comb) * white.of(comb))).sum::<DVec3>()

@@ -7,6 +7,7 @@
 mod image;
 mod motif;
 mod noise;
+mod number;
 mod place;
 mod texels;
 #[cfg(test)]
@@ -14,6 +15,7 @@ mod tests;
 
 pub use image::{Content, Image};
 pub use motif::Motif;
+pub use number::{Band, Number, Varying};
 pub use place::{Place, Side};
 
 use crate::color::Color;
@@ -124,6 +126,9 @@ pub enum TextureError {
         /// What it must be.
         range: &'static str,
     },
+    /// A number is told by a spectrum, which has no brightness of its own.
+    #[error("a pattern of numbers is of greys or colors, not of spectra")]
+    Spectrum,
     /// Patterns within patterns without end.
     #[error("patterns are nested more than {MAX_NESTING} deep")]
     Nesting,

@@ -154,7 +154,7 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
     let (apex, incidence, below) = (PI / 3.0, 58f64.to_radians(), 10.0);
     let corners = [90.0f64, 210.0, 330.0].map(|angle| DVec2::from_angle(angle.to_radians()) * 0.01);
     let prism = Primitive::Prism { contours: vec![corners.to_vec()], height: 0.02 };
-    let material = Transparent { index: Index::Dispersive(flint.clone()), roughness: 0.0, absorption: Color::BLACK };
+    let material = Transparent::clear(Index::Dispersive(flint.clone()));
     let material = Material::from(Body::Transparent(material));
     // The outside of its left face looks towards 150 degrees. Not at the least deviation: there the base mirrors light
     // to the same place.
@@ -214,7 +214,7 @@ fn a_slab_lets_through_what_fresnel_tells() {
 #[test]
 fn a_ball_of_dark_glass_absorbs_what_fresnel_and_bouguer_tell() {
     let (index, absorption) = (1.5, 0.7);
-    let glass = Transparent { index: Index::Constant(index), roughness: 0.0, absorption: Color::grey(absorption) };
+    let glass = Transparent { absorption: Color::grey(absorption), ..Transparent::clear(Index::Constant(index)) };
     let found = parts(ball(1.0, DVec3::ZERO, Body::Transparent(glass)), DVec3::NEG_Y);
     // Over the disc, evenly by the square of the distance from its middle. Each chord is as long, each reflection as strong.
     let term = |k: u32| {

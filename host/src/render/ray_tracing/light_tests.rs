@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 
 fn glass(index: f64, roughness: f64, absorption: f64) -> Material {
     let (index, absorption) = (Index::Constant(index), Color::grey(absorption));
-    Body::Transparent(Transparent { index, roughness, absorption }).into()
+    Body::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
 }
 
 fn sky(radiance: f64) -> Light {
@@ -55,8 +55,9 @@ fn light_of_a_disc_and_of_a_sphere_on_a_floor_follow_their_closed_forms() {
 fn a_white_furnace_hides_what_loses_nothing() {
     let flat = |value: f64| Spectrum::regular(300.0, 600.0, vec![value; 2], Beyond::Held).expect("a spectrum");
     let perfect = |finish| Body::Metal(Metal { n: flat(0.0), k: flat(3.0), finish });
-    let rough = Finish::Rough { name: "GGX, all".into(), roughness: 0.4 };
-    let coated = |roughness| Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness });
+    let rough = Finish::Rough { name: "GGX, all".into(), roughness: 0.4.into() };
+    let coated =
+        |roughness| Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) });
     let materials: Vec<(Material, f64)> = vec![
         // Of a ball of triangles, some directions above the normal are below a triangle.
         (diffuse(1.0).into(), 5e-3),
@@ -231,7 +232,7 @@ fn a_sphere_far_from_the_origin_is_lit_as_one_at_the_origin() {
 #[test]
 fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
     // Spread and narrow lobes, a lamp with a size and one that emits as an object, with and without a pane between.
-    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.5), index: 1.5, roughness: 0.3 });
+    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.5), index: 1.5, roughness: 0.3.into() });
     let clear = Classic { transparency: Paint::grey(1.0), ..diffuse(0.0) };
     let shining = Material { emission: Color::grey(8.0), ..Material::from(diffuse(0.0)) };
     let patch = Patch::Rectangle { corner: DVec3::new(-1.5, 2.0, -0.5), across: DVec3::X, up: DVec3::Z };
@@ -259,7 +260,7 @@ fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
 fn highlights_that_spread_light_sees_are_cut_off_unless_caustics_count() {
     // A small bright lamp over a smooth coat beside a matt wall: what the wall shows of it comes by chance only.
     let wall = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0)) * DMat4::from_rotation_x(PI / 2.0);
-    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.0), index: 1.5, roughness: 0.03 });
+    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.0), index: 1.5, roughness: 0.03.into() });
     let lamp = Patch::Sphere { center: DVec3::new(0.0, 1.5, 1.0), radius: 0.02 };
     let spots = |caustics: bool| {
         let floor = object(Shape::Ground { size: 4.0 }, DMat4::IDENTITY, coat.clone());

@@ -1,20 +1,58 @@
-//! What a ray goes through: transparent bodies, one within another.
+//! What a ray goes through: transparent bodies, some of them in one place.
 
 use super::world::{Found, Met, World};
 use crate::color::Channels;
-use crate::illumination::optics::Side;
+use crate::illumination::optics::{Interior, Side};
 use crate::numeric::ray::Ray;
 use crate::render::eye::{Cone, Sight};
 use glam::DVec3;
 
-/// Most bodies within one another that a ray keeps in mind.
-const MOST: usize = 6;
+/// Most bodies in one place that a ray keeps in mind.
+const MOST: usize = 8;
 
-/// The bodies that a ray is in, each by its object and material, the innermost last.
+/// A transparent body: its object, and which of its materials.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Body {
+    object: u32,
+    material: u32,
+}
+
+impl Body {
+    fn of(found: &Found<'_>) -> Body {
+        Body { object: found.object, material: found.material }
+    }
+
+    fn interior<'a>(self, world: &'a World<'_>) -> Option<&'a Interior> {
+        world.appearance.interior(self.object, self.material)
+    }
+}
+
+/// The transparent bodies that a ray is in.
+///
+/// Where there are several, that of the greatest priority is there, and of several with the same the smallest: a bubble in
+/// water, and water in a glass into which it reaches a little.
+///
+/// # Source
+/// Schmidt and Budge 2002, simple nested dielectrics in ray traced images.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Media {
-    bodies: [(u32, u32); MOST],
+    bodies: [Body; MOST],
     count: usize,
+}
+
+/// What becomes of what a ray is in at an element.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossing {
+    /// The body before it.
+    before: Option<Body>,
+    /// The body behind it.
+    behind: Option<Body>,
+    /// What a ray is in that goes through.
+    pub(super) media: Media,
+    /// The last of the surfaces that lie in the same place, in lengths of the ray's direction.
+    pub(super) last: f64,
+    /// Whether there is anything: not where a body of a greater priority is on both sides.
+    pub(super) is_interface: bool,
 }
 
 impl Media {
@@ -27,9 +65,8 @@ impl Media {
         let [one, other] =
             [direction, -direction].map(|direction| Media::left(world, Ray { origin: point, direction }));
         let mut around = Media::default();
-        for body in one.bodies[..one.count].iter().filter(|(object, _)| other.holds(*object)) {
-            around.bodies[around.count] = *body;
-            around.count += 1;
+        for body in one.bodies().iter().filter(|body| other.holds(body.object)) {
+            around.enter(*body);
         }
         around
     }
@@ -48,7 +85,7 @@ impl Media {
             sight.t_min = t.next_up();
             if let Some(found) = found {
                 if found.element.outside || entered.holds(found.object) {
-                    entered.cross(&found);
+                    entered.pass(&found);
                 } else {
                     left.notice(&found);
                 }
@@ -56,19 +93,23 @@ impl Media {
         }
     }
 
-    fn holds(&self, object: u32) -> bool {
-        self.bodies[..self.count].iter().any(|(other, _)| *other == object)
+    fn bodies(&self) -> &[Body] {
+        &self.bodies[..self.count]
     }
 
-    fn innermost(&self) -> Option<(u32, u32)> {
-        self.count.checked_sub(1).map(|last| self.bodies[last])
+    fn holds(&self, object: u32) -> bool {
+        self.bodies().iter().any(|body| body.object == object)
+    }
+
+    /// The body that is there.
+    fn present(&self, world: &World<'_>) -> Option<Body> {
+        let rank = |body: &&Body| world.appearance.rank(body.object, body.material);
+        self.bodies().iter().max_by_key(rank).copied()
     }
 
     /// The part of light that comes through a length of what is here.
     pub(super) fn absorbed(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
-        let interior =
-            self.innermost().and_then(|(object, material)| world.appearance.optics(object, material).interior.as_ref());
-        match interior {
+        match self.present(world).and_then(|body| body.interior(world)) {
             Some(interior) if interior.absorption.max() > 0.0 => {
                 interior.absorption.of(comb).map(|absorption| (-absorption * length).exp())
             }
@@ -76,55 +117,67 @@ impl Media {
         }
     }
 
-    /// The refractive indices before and behind an element; 1 where there is no body.
-    pub(super) fn side(&self, world: &World<'_>, found: &Found<'_>, comb: usize) -> Side {
-        let index = |body: Option<(u32, u32)>| {
-            let interior =
-                body.and_then(|(object, material)| world.appearance.optics(object, material).interior.as_ref());
-            interior.map_or(Channels::ONE, |interior| interior.index.of(comb))
-        };
-        let own = Some((found.object, found.material));
+    /// What becomes of it at an element, and at the other surfaces of bodies that lie in the same place.
+    ///
+    /// - `ray`: that met the element.
+    pub(super) fn crossing(&self, world: &World<'_>, found: &Found<'_>, ray: &Ray) -> Crossing {
+        let mut inside = *self;
         if found.optics.interior.is_none() {
-            let before = index(self.innermost());
-            return Side { before, behind: before };
+            let present = inside.present(world);
+            return Crossing { before: present, behind: present, media: inside, last: found.t, is_interface: true };
         }
-        if found.element.outside {
-            return Side { before: index(self.innermost()), behind: index(own) };
-        }
-        // From inside, also where the eye was in the body from the beginning.
-        let mut beyond = *self;
-        beyond.leave(found.object);
-        Side { before: index(own), behind: index(beyond.innermost()) }
+        // The eye or a lamp may have been in the body from the beginning.
+        inside.notice(found);
+        let mut behind = inside;
+        behind.pass(found);
+        let mut last = found.t;
+        world.coincident(ray, found, |t, object, material, outside| {
+            let body = Body { object, material };
+            last = last.max(t);
+            if outside { behind.enter(body) } else { behind.leave(object) }
+        });
+        let [from, to] = [inside, behind].map(|media| media.present(world));
+        Crossing { before: from, behind: to, media: behind, last, is_interface: from != to }
     }
 
     /// Goes through an element, into its body or out of it.
-    pub(super) fn cross(&mut self, found: &Found<'_>) {
+    fn pass(&mut self, found: &Found<'_>) {
         if found.optics.interior.is_none() {
             return;
         }
-        if !found.element.outside {
-            self.leave(found.object);
-        } else if self.count < MOST {
-            self.bodies[self.count] = (found.object, found.material);
-            self.count += 1;
-        }
+        if found.element.outside { self.enter(Body::of(found)) } else { self.leave(found.object) }
     }
 
     /// Takes note of the body of an element that is met from inside, if light began there.
     pub(super) fn notice(&mut self, found: &Found<'_>) {
         let is_inner = found.optics.interior.is_some() && !found.element.outside;
-        if is_inner && self.count < MOST && !self.holds(found.object) {
-            // Around those that it is in.
-            self.bodies.copy_within(0..self.count, 1);
-            self.bodies[0] = (found.object, found.material);
+        if is_inner && !self.holds(found.object) {
+            self.enter(Body::of(found));
+        }
+    }
+
+    fn enter(&mut self, body: Body) {
+        if self.count < MOST {
+            self.bodies[self.count] = body;
             self.count += 1;
         }
     }
 
     fn leave(&mut self, object: u32) {
-        if let Some(place) = self.bodies[..self.count].iter().rposition(|(other, _)| *other == object) {
+        if let Some(place) = self.bodies().iter().rposition(|body| body.object == object) {
             self.bodies.copy_within(place + 1..self.count, place);
             self.count -= 1;
         }
+    }
+}
+
+impl Crossing {
+    /// The refractive indices before and behind the element; 1 where there is no body.
+    pub(super) fn side(&self, world: &World<'_>, comb: usize) -> Side {
+        let [before, behind] = [self.before, self.behind].map(|body| {
+            let interior = body.and_then(|body| body.interior(world));
+            interior.map_or(Channels::ONE, |interior| interior.index.of(comb))
+        });
+        Side { before, behind }
     }
 }

@@ -25,6 +25,8 @@ mod light_tests;
 #[cfg(test)]
 mod motion_tests;
 #[cfg(test)]
+mod nested_tests;
+#[cfg(test)]
 mod shelf_tests;
 #[cfg(test)]
 mod texture_tests;

@@ -270,6 +270,12 @@ impl<'a> Tracer<'a> {
         let optics = found.optics;
         let towards = leg.sight.ray.direction.normalize();
         leg.passed *= leg.media.absorbed(self.world, found.distance - leg.begin, comb);
+        let crossing = leg.media.crossing(self.world, found, &leg.sight.ray);
+        if !crossing.is_interface {
+            let sight = Sight { t_min: crossing.last, ..leg.sight };
+            waiting.push(Leg { sight, begin: found.distance, media: crossing.media, ..leg });
+            return;
+        }
         log.note(|| Note::element(leg.depth, self.world.appearance.prepared, found));
         if let Some((emission, factor)) =
             self.world.emitted(found, towards, comb, |source, density| self.part(&leg, source, density))
@@ -291,7 +297,7 @@ impl<'a> Tracer<'a> {
             _ => None,
         };
         let (lane, alone) = drawn.unwrap_or((leg.lane.unwrap_or(0), leg.passed));
-        let side = leg.media.side(self.world, found, comb);
+        let side = crossing.side(self.world, comb);
         let sighting = Sighting { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
         if leg.for_lights {
             let onward = optics.straight(&sighting);
@@ -316,6 +322,7 @@ impl<'a> Tracer<'a> {
         let highest = self.highest(&leg);
         let encounter = Encounter {
             found,
+            behind: crossing.media,
             frame,
             sighting,
             draws: *draws,
@@ -415,10 +422,7 @@ impl<'a> Tracer<'a> {
             return None;
         }
         let direction = element.righted(direction, !through);
-        let mut media = leg.media;
-        if through {
-            media.cross(found);
-        }
+        let media = if through { encounter.behind } else { leg.media };
         let lamps = match onward.density {
             Some(density) if highest.is_finite() && !onward.is_broad => {
                 (highest * onward.light.z.abs() / (onward.weight.max() * density)).clamp(0.0, 1.0)

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
 pub(super) fn glass(index: f64) -> Material {
-    Body::Transparent(Transparent { index: Index::Constant(index), roughness: 0.0, absorption: Color::BLACK }).into()
+    Body::Transparent(Transparent::clear(Index::Constant(index))).into()
 }
 
 pub(super) fn block(size: DVec3, at: DVec3, material: impl Into<Material>) -> Object {

@@ -2,6 +2,7 @@
 
 use super::draws::Draws;
 use super::light_buffer::{LightBuffer, Way};
+use super::media::Media;
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
 use crate::illumination::light::{Glow, Source};
@@ -18,6 +19,9 @@ use crate::render::ready::Appearance;
 use crate::scene::{Motion, Moved, Prepared, footprint};
 use glam::DVec3;
 use std::collections::HashMap;
+
+/// Most surfaces of transparent bodies in one place.
+const MOST_COINCIDENT: usize = 8;
 
 /// A scene as rays meet it.
 pub(in crate::render) struct World<'a> {
@@ -55,6 +59,8 @@ pub(super) enum Met<'a> {
 /// An element that a ray met, with the frame in which its optics has directions.
 pub(super) struct Encounter<'a> {
     pub(super) found: &'a Found<'a>,
+    /// What a ray is in that goes through it.
+    pub(super) behind: Media,
     pub(super) frame: Frame,
     pub(super) sighting: Sighting<'a>,
     /// The choices of the sample.
@@ -85,8 +91,8 @@ pub(super) struct Found<'a> {
     pub(super) depth: f64,
     /// From where the ray began to the exact surface, in lengths of the ray's direction.
     pub(super) t: f64,
-    /// What the patterns of the material give; none for a material that has none.
-    painting: Option<Box<Painting>>,
+    /// What the patterns of the material give; nothing for a material that has none.
+    painting: Painting,
     /// The direction in which its material is brushed.
     pub(super) along: Option<DVec3>,
 }
@@ -105,7 +111,7 @@ impl Found<'_> {
 
     /// What the patterns of the material give.
     pub(super) fn painted(&self) -> &[Channels] {
-        self.painting.as_ref().map_or(&[], |painting| painting.as_slice())
+        &self.painting
     }
 }
 
@@ -214,7 +220,7 @@ impl<'a> World<'a> {
             None
         };
         let depth = distance + exact.map_or(0.0, |on| on.beyond * length);
-        let painting = optics.is_textured().then(|| {
+        let painting = if optics.is_textured() {
             let towards = ray.direction / length;
             let sides = footprint(element.face, towards, sight.cone.at(distance));
             let mut place = prepared.place(triangle, weights(&hit), sides);
@@ -222,8 +228,10 @@ impl<'a> World<'a> {
                 (place.uv, place.own) = (on.uv, on.own);
             }
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
-            Box::new(optics.paint(&place, comb))
-        });
+            optics.paint(&place, comb)
+        } else {
+            Painting::new()
+        };
         let mut along = optics.along;
         if let Some(moved) = moved {
             element.carry(&moved);
@@ -254,6 +262,36 @@ impl<'a> World<'a> {
             part(source, source.density_on_triangle(found.distance, cosine))
         };
         Some((emission, index.map_or(1.0, counted)))
+    }
+
+    /// Gives the other surfaces of transparent bodies that stand still and lie in the place of an element, within the rounding
+    /// of its coordinates: how far they are in lengths of the ray's direction, object, material, and whether the ray comes
+    /// from outside.
+    pub(super) fn coincident(&self, ray: &Ray, found: &Found<'_>, mut give: impl FnMut(f64, u32, u32, bool)) {
+        let Some(octree) = self.octree.as_ref().filter(|_| self.appearance.has_nested) else { return };
+        let prepared = self.appearance.prepared;
+        let height = ray.direction.dot(found.element.face).abs();
+        let width = found.element.clearance / height;
+        if !width.is_finite() {
+            return;
+        }
+        let mut seen = [(found.object, found.element.outside); MOST_COINCIDENT];
+        let mut count = 1;
+        octree.each_hit(ray, found.t - width, found.t + width, |hit| {
+            let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+            let object = prepared.object_of[triangle as usize];
+            let material = prepared.material_number(triangle);
+            let [a, b, c] = prepared.corners(triangle);
+            let is_outside = (b - a).cross(c - a).dot(ray.direction) < 0.0;
+            // Of triangles that share a side, one counts.
+            let is_known = seen[..count].contains(&(object, is_outside));
+            if !is_known && count < MOST_COINCIDENT && self.appearance.interior(object, material).is_some() {
+                seen[count] = (object, is_outside);
+                count += 1;
+                give(hit.t, object, material, is_outside);
+            }
+            false
+        });
     }
 
     /// Whether any triangle that counts and stands still is met on the first length of a ray's direction.

@@ -294,7 +294,7 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
 
 #[test]
 fn a_highlight_is_the_same_however_many_samples_see_it() {
-    let shiny = Classic { specular: Paint::grey(0.4), exponent: 60.0, ..diffuse(0.1) };
+    let shiny = Classic { specular: Paint::grey(0.4), exponent: 60.0.into(), ..diffuse(0.1) };
     let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, shiny);
     let mut scene = scene(vec![ball], vec![lamp(DVec3::new(2.0, 3.0, 4.0))], camera(DVec3::Z * 6.0, DVec3::ZERO));
     let mut drawn = |samples: u32| {
@@ -350,7 +350,7 @@ fn a_lamp_is_seen_behind_panes_and_before_a_wall() {
 #[test]
 fn mirrors_metals_and_glass_show_the_ambient_light() {
     let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) };
-    let glass = Transparent { index: Index::Constant(1.5), roughness: 0.0, absorption: Color::grey(2.0) };
+    let glass = Transparent { absorption: Color::grey(2.0), ..Transparent::clear(Index::Constant(1.5)) };
     let slab = Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.5) });
     // Of each face of the glass 4 %, of the rest what a way of half a unit leaves.
     let (reflected, left) = (0.04, 0.96 * (-1.0_f64).exp());
@@ -374,7 +374,7 @@ fn glass_that_bends_no_light_is_what_ray_tracing_sees_with_opaque_shadows() {
     // A block and a ball in it that absorbs, and an eye that looks through both at their shadow.
     let glass = |absorption: f64| {
         let (index, absorption) = (Index::Constant(1.0 + 1e-9), Color::grey(absorption));
-        Material::from(Body::Transparent(Transparent { index, roughness: 0.0, absorption }))
+        Material::from(Body::Transparent(Transparent { absorption, ..Transparent::clear(index) }))
     };
     let at = DMat4::from_translation(DVec3::new(0.0, 0.8, 0.0));
     let size = DVec3::splat(1.5);

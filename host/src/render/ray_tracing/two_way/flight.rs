@@ -1,6 +1,6 @@
 //! Light on its way from a lamp: through mirrors and glass to where it is caught.
 
-use super::super::media::Media;
+use super::super::media::{Crossing, Media};
 use super::super::world::{Found, Met, World};
 use super::aim::Ball;
 use super::surfaces::Surfaces;
@@ -271,7 +271,12 @@ impl Flight<'_> {
                     let left = leg.flux * leg.media.absorbed(self.world, length, comb);
                     self.balance.absorbed += self.watts(leg.flux) - self.watts(left);
                     leg.flux = left;
-                    self.arrive(&leg, &found, comb, choices);
+                    let crossing = leg.media.crossing(self.world, &found, &leg.ray);
+                    if crossing.is_interface {
+                        self.arrive(&leg, &found, (comb, crossing), choices);
+                    } else {
+                        self.waiting.push(Leg { t_min: crossing.last, media: crossing.media, ..leg });
+                    }
                 }
             }
         }
@@ -294,7 +299,7 @@ impl Flight<'_> {
     }
 
     /// Catches light on an element, and sends it on.
-    fn arrive(&mut self, leg: &Leg, found: &Found<'_>, comb: usize, choices: &Choices) {
+    fn arrive(&mut self, leg: &Leg, found: &Found<'_>, (comb, crossing): (usize, Crossing), choices: &Choices) {
         let optics = found.optics;
         let incoming = self.watts(leg.flux);
         let towards = -leg.ray.direction.normalize();
@@ -308,7 +313,7 @@ impl Flight<'_> {
                 is_again: leg.is_again,
             });
         }
-        let arrival = Arrival { leg, found, frame: found.frame(), comb, towards, choices };
+        let arrival = Arrival { leg, found, crossing, frame: found.frame(), comb, towards, choices };
         let beam = (optics.throws() || optics.is_passable()).then(|| self.beam(&arrival)).flatten();
         // What does not go on is absorbed, or caught. What is spread was caught, too, and is sent again.
         let (expected, beam) = beam.unwrap_or((0.0, None));
@@ -412,8 +417,8 @@ impl Flight<'_> {
     }
 
     fn sighting<'b>(&self, arrival: &Arrival<'b>, lane: usize) -> Sighting<'b> {
-        let Arrival { leg, found, frame, comb, towards, .. } = arrival;
-        let side = leg.media.side(self.world, found, *comb);
+        let Arrival { found, crossing, frame, comb, towards, .. } = arrival;
+        let side = crossing.side(self.world, *comb);
         Sighting { view: frame.local(*towards), comb: *comb, side, lane, painted: found.painted() }
     }
 }
@@ -422,6 +427,7 @@ impl Flight<'_> {
 struct Arrival<'a> {
     leg: &'a Leg,
     found: &'a Found<'a>,
+    crossing: Crossing,
     frame: Frame,
     comb: usize,
     /// Towards where it came from, unit length.
@@ -454,10 +460,7 @@ impl Arrival<'_> {
             return Leg { t_min: found.t, flux, number, legs, ..**leg };
         }
         let through = drawn.light.z < 0.0;
-        let mut media = leg.media;
-        if through {
-            media.cross(found);
-        }
+        let media = if through { self.crossing.media } else { leg.media };
         let element = &found.element;
         let direction = element.righted(frame.world(drawn.light), !through);
         let origin = if through { element.through } else { element.leave };

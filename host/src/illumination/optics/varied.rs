@@ -1,0 +1,80 @@
+//! A lobe whose roughness, or another number, changes from place to place.
+
+use super::lobe::Lobe;
+use super::shade::Quantity;
+use super::{Onward, Sighting};
+use crate::color::Channels;
+use crate::illumination::texture::Number;
+
+/// The greatest ratio of one node to the one before it, as far as [`MOST_NODES`] allow.
+const RATIO: f64 = 1.2;
+/// Most nodes: some take tenths of a second to be made.
+const MOST_NODES: usize = 24;
+
+/// Lobes for some values of a number, of which the two about the value at a place are mixed.
+///
+/// A mixture of two lobes keeps their energy, is reciprocal if they are, and is drawn as exactly as they are. Of lobes
+/// whose roughness is in a ratio of 1.2 it differs from that of the roughness between them by at most 1 % of its peak.
+#[derive(Clone, Debug)]
+pub(super) struct Varied {
+    quantity: Quantity,
+    /// The values of the number, at even ratios, and the lobe of each.
+    nodes: Vec<(f64, Lobe)>,
+}
+
+/// The values for which lobes are made, at even ratios over the range of a number.
+///
+/// - `least`: the least that is told apart, above 0.
+pub(super) fn nodes(number: &Number, least: f64) -> Vec<f64> {
+    let [from, to] = number.range().map(|value| value.max(least));
+    let steps = ((to / from).ln() / RATIO.ln()).ceil().min((MOST_NODES - 1) as f64);
+    match steps as usize {
+        0 => vec![from],
+        steps => (0..=steps).map(|step| from * (to / from).powf(step as f64 / steps as f64)).collect(),
+    }
+}
+
+impl Varied {
+    /// - `nodes`: values, rising, and the lobe of each; one or more.
+    pub(super) fn new(quantity: Quantity, nodes: Vec<(f64, Lobe)>) -> Varied {
+        Varied { quantity, nodes }
+    }
+
+    /// The two lobes about the value at a place, and how much there is of each; they are the same at the ends.
+    fn parts(&self, sighting: &Sighting<'_>) -> [(&Lobe, f64); 2] {
+        let value = self.quantity.of(sighting);
+        let above = self.nodes.partition_point(|(node, _)| *node <= value).min(self.nodes.len() - 1);
+        let below = above.saturating_sub(1);
+        let [from, to] = [below, above].map(|node| self.nodes[node].0);
+        let part = if to > from { ((value.max(from) / from).ln() / (to / from).ln()).clamp(0.0, 1.0) } else { 1.0 };
+        [(&self.nodes[below].1, 1.0 - part), (&self.nodes[above].1, part)]
+    }
+
+    /// The lobe that stands for all of them where no place is known: that in the middle.
+    pub(super) fn typical(&self) -> &Lobe {
+        &self.nodes[self.nodes.len() / 2].1
+    }
+
+    /// The mixture of what lobes tell.
+    pub(super) fn mixed(&self, sighting: &Sighting<'_>, of: impl Fn(&Lobe) -> Channels) -> Channels {
+        let [(a, less), (b, more)] = self.parts(sighting);
+        if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
+    }
+
+    /// The mixture of a number that lobes tell.
+    pub(super) fn mixed_number(&self, sighting: &Sighting<'_>, of: impl Fn(&Lobe) -> f64) -> f64 {
+        let [(a, less), (b, more)] = self.parts(sighting);
+        if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
+    }
+
+    /// Draws a direction from one of the two lobes.
+    pub(super) fn sample(&self, sighting: &Sighting<'_>, choice: f64, point: [f64; 2]) -> Option<Onward> {
+        let [(a, less), (b, more)] = self.parts(sighting);
+        let rest = |below: f64, part: f64| ((choice - below) / part).clamp(0.0, 1.0_f64.next_down());
+        if choice < less {
+            a.sample(sighting, rest(0.0, less), point)
+        } else {
+            b.sample(sighting, rest(less, more), point)
+        }
+    }
+}
