@@ -118,6 +118,7 @@ fn has_diffuse(material: &Material) -> bool {
     match &material.body {
         Body::Classic(Classic { diffuse, .. }) | Body::Coated(Coated { diffuse, .. }) => !diffuse.is_black(),
         Body::Shaped(Shaped { reflectance, .. }) => !reflectance.is_black(),
+        Body::Principled(principled) => principled.is_diffuse(),
         Body::Metal(_) | Body::Transparent(_) => false,
     }
 }

@@ -7,7 +7,9 @@ use super::function::{Done, Function, Kind, OBJECT, Parameter, parameter};
 use super::lighting::{SPECTRUM, color_of_light};
 use crate::color::{Color, shipped};
 use crate::illumination::Paint;
-use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
+use crate::illumination::material::{
+    Body, Classic, Coated, Finish, Form, Index, Material, Metal, Principled, Shaped, Transparent,
+};
 use crate::illumination::texture::Number;
 use rhai::Dynamic;
 
@@ -18,6 +20,9 @@ const ROUGHNESS: Parameter = parameter(
     Is("0: polished"),
     "roughness m: root mean square slope of its facets, times the root of 2",
 );
+
+/// A part of the whole.
+const PART: Kind = Kind::Amount(0.0, 1.0);
 
 /// What a transparent body absorbs.
 const ABSORPTION: Parameter =
@@ -149,6 +154,54 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
+        name: "principled",
+        summary: "Gives an object the principled material, as many programs have it: metal, opaque ground and transparent body in any mixture, with a coat and a sheen. A white one loses no light. What is transparent and not thin must be closed.",
+        parameters: &[
+            OBJECT,
+            parameter("base_color", Kind::Reflectance, Is("0.8"), "color of the ground, the metal or the glass"),
+            parameter("roughness", PART, Is("0.5"), "0 is polished; the slope of its facets is the square of it"),
+            parameter("metallic", PART, Is("0"), "the part that is a metal"),
+            parameter("specular", PART, Is("1"), "how much its clear surface reflects, of what its index tells"),
+            parameter("index", Kind::Number(1e-6, 1e6), Is("1.5"), "refractive index of surface and body"),
+            parameter("transmission", PART, Is("0"), "the part that is transparent, of what is no metal"),
+            parameter(
+                "thin",
+                Kind::Flag,
+                Is("false"),
+                "whether it is a thin wall, as a pane or a bubble, that bends nothing",
+            ),
+            ABSORPTION,
+            parameter("coat", PART, Is("0"), "the part that has a clear coat"),
+            parameter("coat_roughness", PART, Is("0"), "roughness of the coat"),
+            parameter("coat_index", Kind::Number(1e-6, 1e6), Is("1.5"), "refractive index of the coat"),
+            parameter("sheen", Kind::Reflectance, Is("0"), "the part that is a cloth, with a rim of this color"),
+            parameter("sheen_roughness", PART, Is("0.3"), "how wide that rim is"),
+            priority("0"),
+        ],
+        example: "car.principled(#{ base_color: [0.5, 0.02, 0.02], metallic: 0.6, roughness: 0.4, coat: 1 });",
+        action: |builder, bound| {
+            let default = Principled::default();
+            let amount = |name, default: Number| bound.amount(name).unwrap_or(default);
+            let principled = Principled {
+                base_color: bound.paint("base_color").unwrap_or(default.base_color),
+                metallic: amount("metallic", default.metallic),
+                roughness: amount("roughness", default.roughness),
+                specular: amount("specular", default.specular),
+                index: bound.number("index").unwrap_or(default.index),
+                transmission: amount("transmission", default.transmission),
+                thin: bound.flag("thin").unwrap_or(default.thin),
+                absorption: bound.vector("absorption").map_or(default.absorption, Color::Bands),
+                priority: priority_of(bound).unwrap_or(default.priority),
+                coat: amount("coat", default.coat),
+                coat_roughness: amount("coat_roughness", default.coat_roughness),
+                coat_index: bound.number("coat_index").unwrap_or(default.coat_index),
+                sheen: bound.paint("sheen").unwrap_or(default.sheen),
+                sheen_roughness: amount("sheen_roughness", default.sheen_roughness),
+            };
+            give(builder, bound, Body::Principled(Box::new(principled)))
+        },
+    },
+    Function {
         name: "shaped",
         summary: "Lets an object reflect a fraction, distributed by a member of the family of distributions.",
         parameters: &[
@@ -220,10 +273,13 @@ fn liquid(builder: &mut Builder, bound: &Bound, name: &str) -> Done {
 /// Gives an object what is transparent, with the roughness, the absorption and the priority of a call.
 fn transparent(builder: &mut Builder, bound: &Bound, clear: Transparent) -> Done {
     let absorption = bound.vector("absorption").map_or(clear.absorption, Color::Bands);
-    let priority = bound.integer("priority").and_then(|priority| i32::try_from(priority).ok());
-    let body =
-        Transparent { roughness: roughness(bound), absorption, priority: priority.unwrap_or(clear.priority), ..clear };
+    let priority = priority_of(bound).unwrap_or(clear.priority);
+    let body = Transparent { roughness: roughness(bound), absorption, priority, ..clear };
     give(builder, bound, Body::Transparent(body))
+}
+
+fn priority_of(bound: &Bound) -> Option<i32> {
+    bound.integer("priority").and_then(|priority| i32::try_from(priority).ok())
 }
 
 fn add_metal(builder: &mut Builder, bound: &Bound) -> Done {

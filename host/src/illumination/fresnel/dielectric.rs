@@ -19,6 +19,11 @@ impl Dielectric {
         Ok(Dielectric { outside: checked(outside, 0.0)?.0, inside: checked(inside, 0.0)?.0 })
     }
 
+    /// The index inside over that outside.
+    pub fn index(self) -> f64 {
+        self.inside / self.outside
+    }
+
     /// This interface, seen from behind.
     pub fn inverted(self) -> Dielectric {
         Dielectric { outside: self.inside, inside: self.outside }

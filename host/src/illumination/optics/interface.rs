@@ -36,7 +36,7 @@ fn chance_of(reflected: f64, through: f64) -> f64 {
 }
 
 /// The interface for one lane.
-fn interface(sighting: &Sighting, lane: usize) -> Option<Dielectric> {
+pub(super) fn interface(sighting: &Sighting, lane: usize) -> Option<Dielectric> {
     Dielectric::new(sighting.side.before.0[lane], sighting.side.behind.0[lane]).ok()
 }
 
@@ -192,6 +192,6 @@ impl Rough {
 }
 
 /// Euler's beta function.
-fn beta(a: f64, b: f64) -> f64 {
+pub(super) fn beta(a: f64, b: f64) -> f64 {
     (libm::lgamma(a) + libm::lgamma(b) - libm::lgamma(a + b)).exp()
 }

@@ -4,15 +4,16 @@ use super::coat::{Coat, Ground};
 use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth};
 use super::lobe::Lobe;
-use super::shade::{Changing, Painted, Shade};
+use super::principled::{Make, Part, Surface};
+use super::shade::{Changing, Painted, Quantity, Shade};
 use super::varied::{Varied, nodes};
-use super::{Interior, Interreflection, Optics};
+use super::{Interior, Interreflection, Optics, Passing};
 use crate::color::{LANES, Wavelengths};
 use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Facets, Microfacet, Phong};
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
 use crate::illumination::material::{
-    Body, Classic, Coated, Finish, Form, Index, LEAST_VARYING_ROUGHNESS, Material, MaterialError, Metal, Shaped,
-    Transparent,
+    Body, Classic, Coated, Finish, Form, Index, LEAST_VARYING_ROUGHNESS, Material, MaterialError, Metal, Principled,
+    Shaped, Transparent,
 };
 use crate::illumination::texture::{Number, Paint};
 use glam::DVec2;
@@ -50,7 +51,7 @@ impl<'a> Library<'a> {
             takes: false,
             passes: false,
             spreads: false,
-            ambient: Shade::Plain(self.wavelengths.constant(0.0)),
+            ambient: Some(Shade::Plain(self.wavelengths.constant(0.0))),
             patterns: Vec::new(),
             relief: material.relief.clone(),
             emission: (!material.emission.is_black()).then(|| self.wavelengths.light(&material.emission)),
@@ -62,7 +63,7 @@ impl<'a> Library<'a> {
             Body::Classic(classic) => self.classic(classic, diffuse, &mut optics)?,
             Body::Shaped(Shaped { reflectance, form }) => {
                 let fraction = self.shade(reflectance, &mut optics);
-                optics.ambient = fraction.clone();
+                optics.ambient = Some(fraction.clone());
                 let lobe = match form {
                     Form::Member { name, roughness } => self.rough(roughness, &mut optics, |library, m| {
                         let distribution: Arc<dyn Distribution> = match library.shape(name, m)? {
@@ -79,6 +80,7 @@ impl<'a> Library<'a> {
             Body::Metal(metal) => self.metal(metal, &mut optics)?,
             Body::Transparent(transparent) => self.transparent(transparent, &mut optics)?,
             Body::Coated(coated) => self.coated(coated, diffuse, &mut optics)?,
+            Body::Principled(principled) => self.principled(principled, diffuse, &mut optics)?,
         }
         Ok(optics)
     }
@@ -90,7 +92,7 @@ impl<'a> Library<'a> {
         optics: &mut Optics,
     ) -> Result<(), MaterialError> {
         if let Some(shade) = self.needed(&classic.diffuse, optics) {
-            optics.ambient = shade.clone();
+            optics.ambient = Some(shade.clone());
             optics.add(Lobe::Diffuse(shade), carried);
         }
         if let Some(shade) = self.needed(&classic.specular, optics) {
@@ -102,7 +104,7 @@ impl<'a> Library<'a> {
             optics.add(Lobe::Mirror(shade), Interreflection::Followed);
         }
         if let Some(shade) = self.needed(&classic.transparency, optics) {
-            optics.passing = Some(shade.clone());
+            optics.passing = Some(Passing::Shade(shade.clone()));
             optics.add(Lobe::Straight(shade), Interreflection::Followed);
         }
         Ok(())
@@ -186,8 +188,71 @@ impl<'a> Library<'a> {
                 roughness => self.rough(roughness, optics, ground)?,
             };
             optics.add(ground, carried);
-            optics.ambient = shade;
+            optics.ambient = Some(shade);
         }
+        Ok(())
+    }
+
+    fn principled(
+        &mut self,
+        principled: &Principled,
+        carried: Interreflection,
+        optics: &mut Optics,
+    ) -> Result<(), MaterialError> {
+        let Principled { index, coat_index, thin, .. } = *principled;
+        let none = Number::Constant(0.0);
+        let (has_coat, transmits) = (principled.coat != none, principled.transmission != none);
+        if transmits && !thin {
+            optics.interior = Some(Interior {
+                index: self.wavelengths.constant(index),
+                absorption: self.wavelengths.filter(&principled.absorption),
+                disperses: false,
+                priority: principled.priority,
+            });
+        }
+        let colors = [&principled.base_color, &principled.sheen].map(|paint| self.shade(paint, optics));
+        let Principled { metallic, specular, transmission, coat, sheen_roughness, .. } = principled;
+        let numbers = [metallic, specular, transmission, coat, sheen_roughness].map(|number| optics.quantity(number));
+        // Facets of the slope m, the square of the roughness; what varies has a row of them.
+        let slopes = |roughness: &Number| match roughness {
+            Number::Constant(0.0) => vec![(0.0, None)],
+            Number::Constant(roughness) => vec![(*roughness, Some(roughness * roughness))],
+            varying => nodes(varying, LEAST_VARYING_ROUGHNESS.sqrt()).into_iter().map(|r| (r, Some(r * r))).collect(),
+        };
+        let coats = if has_coat { slopes(&principled.coat_roughness) } else { vec![(0.0, None)] };
+        let along = optics.quantity(&principled.roughness);
+        let across = if has_coat { optics.quantity(&principled.coat_roughness) } else { Quantity::Constant(0.0) };
+        let surface = |slope: Option<f64>, coat_slope: Option<f64>| {
+            let (roughness, coat_roughness) = (slope, coat_slope);
+            let make = Make { index, coat_index, roughness, coat_roughness, thin, has_coat, transmits };
+            Surface::new(&make, colors.clone(), numbers).map(Arc::new)
+        };
+        let row = |slope| -> Result<Vec<(f64, Arc<Surface>)>, MaterialError> {
+            coats.iter().map(|(roughness, coat)| Ok((*roughness, surface(slope, *coat)?))).collect()
+        };
+        let rows = slopes(&principled.roughness).into_iter().map(|(roughness, slope)| Ok((roughness, row(slope)?)));
+        let rows = rows.collect::<Result<Vec<_>, MaterialError>>()?;
+        let lobe = |part: Part| {
+            let of_row = |(r, row): &(f64, Vec<(f64, Arc<Surface>)>)| {
+                let lobes = row.iter().map(|(r, surface)| (*r, Lobe::Principled(part, surface.clone())));
+                (*r, Lobe::varied(across, lobes.collect()))
+            };
+            Lobe::varied(along, rows.iter().map(of_row).collect())
+        };
+        if thin && let Some(surface) = rows.first().and_then(|(_, row)| row.first()).filter(|(_, s)| s.is_pane()) {
+            optics.passing = Some(Passing::Pane(surface.1.clone()));
+        }
+        if !principled.sheen.is_black() {
+            optics.add(lobe(Part::Sheen), Interreflection::Followed);
+        }
+        if has_coat {
+            optics.add(lobe(Part::Coat), Interreflection::Followed);
+        }
+        if *metallic != none || *specular != none || transmits {
+            optics.add(lobe(Part::Facets), Interreflection::Followed);
+        }
+        optics.add(lobe(Part::Spread), if transmits { Interreflection::Followed } else { carried });
+        optics.ambient = None;
         Ok(())
     }
 

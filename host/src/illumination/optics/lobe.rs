@@ -3,7 +3,8 @@
 use super::coat::{Coat, Ground};
 use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth, reflected};
-use super::shade::Shade;
+use super::principled::{Part, Surface};
+use super::shade::{Quantity, Shade};
 use super::varied::Varied;
 use super::{Onward, Sighting};
 use crate::color::Channels;
@@ -21,6 +22,13 @@ pub struct Side {
     pub before: Channels,
     /// Behind.
     pub behind: Channels,
+    /// Whether the viewer is inside the body of the element.
+    pub inside: bool,
+}
+
+impl Side {
+    /// Air on both sides.
+    pub const AIR: Side = Side { before: Channels::ONE, behind: Channels::ONE, inside: false };
 }
 
 /// A part of what a surface scatters.
@@ -48,6 +56,8 @@ pub(super) enum Lobe {
     Smooth(Smooth),
     /// A rough one.
     Rough(Rough),
+    /// A part of a principled material.
+    Principled(Part, Arc<Surface>),
     /// One whose roughness changes from place to place.
     Varied(Box<Varied>),
 }
@@ -56,6 +66,16 @@ pub(super) enum Lobe {
 const NARROW: f64 = 1.5;
 
 impl Lobe {
+    /// A lobe for each of several values of a number, or the only one.
+    ///
+    /// - `nodes`: values, rising; one or more.
+    pub(super) fn varied(quantity: Quantity, mut nodes: Vec<(f64, Lobe)>) -> Lobe {
+        match nodes.len() {
+            1 => nodes.remove(0).1,
+            _ => Lobe::Varied(Box::new(Varied::new(quantity, nodes))),
+        }
+    }
+
     /// Whether it spreads light about everywhere, and does not pass it on as a beam.
     pub(super) fn is_broad(&self) -> bool {
         let density = match self {
@@ -68,6 +88,7 @@ impl Lobe {
             Lobe::Coat(coat) => coat.density(DVec3::Z, DVec3::Z),
             // Of facets that all are seen, a quarter of the density of their normals.
             Lobe::Rough(rough) => 0.25 * rough.facets.area(DVec3::Z, rough.roughness),
+            Lobe::Principled(part, surface) => return surface.is_broad(*part, NARROW),
             Lobe::Varied(varied) => return varied.typical().is_broad(),
         };
         density < NARROW
@@ -76,6 +97,7 @@ impl Lobe {
     /// Whether it reflects light alike to everywhere.
     pub(super) fn is_diffuse(&self) -> bool {
         match self {
+            Lobe::Principled(part, surface) => *part == Part::Spread && !surface.transmits(),
             Lobe::Varied(varied) => varied.typical().is_diffuse(),
             _ => matches!(self, Lobe::Diffuse(_) | Lobe::Ground(_)),
         }
@@ -100,6 +122,8 @@ impl Lobe {
         match self {
             Lobe::Mirror(_) | Lobe::Straight(_) | Lobe::Polished(_) | Lobe::Smooth(_) => true,
             Lobe::Coat(coat) => coat.is_polished(),
+            Lobe::Principled(part, surface) => surface.is_mirror(*part),
+            Lobe::Varied(varied) => varied.typical().is_mirror(),
             _ => false,
         }
     }
@@ -109,6 +133,7 @@ impl Lobe {
         let view = sighting.view;
         match self {
             Lobe::Rough(rough) => return rough.value(sighting, light),
+            Lobe::Principled(part, surface) => return surface.value(*part, sighting, light),
             Lobe::Varied(varied) => return varied.mixed(sighting, |lobe| lobe.value(sighting, light)),
             _ => {}
         }
@@ -131,6 +156,7 @@ impl Lobe {
         match self {
             Lobe::Diffuse(fraction) => fraction.of(sighting),
             Lobe::Ground(ground) => ground.mean(sighting),
+            Lobe::Principled(part, surface) => surface.diffuse(*part, sighting),
             Lobe::Varied(varied) => varied.mixed(sighting, |lobe| lobe.diffuse(sighting)),
             _ => Channels::ZERO,
         }
@@ -146,6 +172,7 @@ impl Lobe {
             Lobe::Metallic(metal) => metal.reflected(view.z, comb),
             Lobe::Coat(coat) => Channels::splat(coat.reflected(view.z)),
             Lobe::Smooth(_) | Lobe::Rough(_) => reflected(sighting, view.z),
+            Lobe::Principled(part, surface) => surface.shown(*part, sighting),
             Lobe::Varied(varied) => varied.mixed(sighting, |lobe| lobe.shown(sighting)),
             _ => Channels::ZERO,
         }
@@ -156,6 +183,7 @@ impl Lobe {
         let view = sighting.view;
         match self {
             Lobe::Rough(rough) => return rough.density(sighting, light),
+            Lobe::Principled(part, surface) => return surface.density(*part, sighting, light),
             Lobe::Varied(varied) => return varied.mixed_number(sighting, |lobe| lobe.density(sighting, light)),
             _ => {}
         }
@@ -192,6 +220,10 @@ impl Lobe {
             Lobe::Coat(coat) if !coat.is_polished() => coat.sample(view, point).map(spread),
             Lobe::Rough(rough) => rough.sample(sighting, choice, point).map(spread),
             Lobe::Smooth(smooth) => smooth.sample(sighting, choice),
+            Lobe::Principled(part, surface) if surface.is_mirror(*part) => {
+                surface.mirrored_sample(*part, sighting, choice)
+            }
+            Lobe::Principled(part, surface) => surface.sample(*part, sighting, choice, point).map(spread),
             Lobe::Varied(varied) => varied.sample(sighting, choice, point),
             _ => self.mirrored(sighting).into_iter().flatten().next(),
         }
@@ -213,6 +245,7 @@ impl Lobe {
                 [Some(Onward::single(reflected, Channels::splat(coat.reflected(view.z)))), None]
             }
             Lobe::Smooth(smooth) => smooth.mirrored(sighting),
+            Lobe::Principled(part, surface) => surface.mirrored(*part, sighting),
             _ => [None, None],
         }
     }
@@ -230,6 +263,7 @@ impl Lobe {
             // Where Fresnel's term vanishes, so does what is reflected; a rough coat may still show tilted facets.
             Lobe::Coat(coat) => coat.reflected(view.z).max(if coat.is_polished() { 0.0 } else { 0.02 }),
             Lobe::Ground(ground) => ground.strength(sighting),
+            Lobe::Principled(part, surface) => surface.strength(*part, sighting),
             Lobe::Varied(varied) => varied.mixed_number(sighting, |lobe| lobe.strength(sighting)),
         }
     }

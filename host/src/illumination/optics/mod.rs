@@ -11,6 +11,7 @@ mod facets;
 mod interface;
 mod library;
 mod lobe;
+mod principled;
 mod shade;
 #[cfg(test)]
 mod tests;
@@ -23,7 +24,9 @@ use super::texture::{Number, Place, Relief};
 use crate::color::{Channels, Curve};
 use glam::DVec3;
 use lobe::Lobe;
+use principled::{Part, Surface};
 use shade::{Changing, Quantity, Shade};
+use std::sync::Arc;
 
 /// Most lobes of a material.
 const MOST_LOBES: usize = 4;
@@ -120,19 +123,37 @@ pub struct Optics {
     takes: bool,
     passes: bool,
     spreads: bool,
-    /// What the ambient term reflects.
-    ambient: Shade,
+    /// What the ambient term reflects; none if it is what is reflected alike to everywhere.
+    ambient: Option<Shade>,
     /// What changes from place to place.
     patterns: Vec<Changing>,
     relief: Option<Relief>,
     /// The part of light that goes straight through; none if none does.
-    passing: Option<Shade>,
+    passing: Option<Passing>,
     /// Radiance that it emits; none if it does not.
     pub emission: Option<Curve>,
     /// What is inside, where it is transparent.
     pub interior: Option<Interior>,
     /// The direction along which it is brushed.
     pub along: Option<DVec3>,
+}
+
+/// The part of light that goes straight through.
+#[derive(Clone, Debug)]
+enum Passing {
+    /// The same from everywhere.
+    Shade(Shade),
+    /// Through a polished pane.
+    Pane(Arc<Surface>),
+}
+
+impl Passing {
+    fn of(&self, sighting: &Sighting) -> Channels {
+        match self {
+            Passing::Shade(shade) => shade.of(sighting),
+            Passing::Pane(surface) => surface.straight(sighting),
+        }
+    }
 }
 
 /// What is behind the surface of a transparent body.
@@ -262,7 +283,7 @@ impl Optics {
 
     /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
     pub fn ambient(&self, sighting: &Sighting) -> Channels {
-        self.ambient.of(sighting)
+        self.ambient.as_ref().map_or_else(|| self.diffuse(sighting), |ambient| ambient.of(sighting))
     }
 
     /// About what ambient light adds by what mirrors, metals, coats and glass reflect, where that is not followed.
@@ -319,15 +340,12 @@ impl Optics {
 
     /// The part of light that goes straight through.
     ///
-    /// - `place`: asked for only if a pattern has to be looked up.
-    pub fn passing(&self, comb: usize, place: impl FnOnce() -> Place) -> Channels {
-        match &self.passing {
-            None => Channels::ZERO,
-            Some(Shade::Plain(curve)) => curve.of(comb),
-            Some(Shade::Painted(pattern)) => {
-                self.patterns.get(*pattern).map_or(Channels::ZERO, |pattern| pattern.at(&place(), comb))
-            }
-        }
+    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
+    pub fn passing(&self, comb: usize, cosine: f64, place: impl FnOnce() -> Place) -> Channels {
+        let Some(passing) = &self.passing else { return Channels::ZERO };
+        let painted = if self.patterns.is_empty() { Painting::new() } else { self.paint(&place(), comb) };
+        let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+        passing.of(&Sighting { view, comb, side: Side::AIR, lane: 0, painted: &painted })
     }
 
     /// Whether some lobe of a kind answers lights.
@@ -392,6 +410,9 @@ impl Optics {
         match (which, &lobe) {
             _ if lobe.is_black() => {}
             (Which::Narrow, Lobe::Straight(_)) => self.passes = true,
+            (Which::Narrow, Lobe::Principled(Part::Facets, surface)) if surface.is_pane() => {
+                (self.passes, self.throws) = (true, true);
+            }
             (Which::Narrow, _) => self.throws = true,
             _ => self.takes = true,
         }
@@ -402,6 +423,14 @@ impl Optics {
     fn varying(&mut self, number: &Number) -> Quantity {
         self.patterns.push(Changing::Number(number.clone()));
         Quantity::Varying(self.patterns.len() - 1)
+    }
+
+    /// A number, which may change from place to place.
+    fn quantity(&mut self, number: &Number) -> Quantity {
+        match number {
+            Number::Constant(value) => Quantity::Constant(*value),
+            varying => self.varying(varying),
+        }
     }
 
     fn of(&self, which: Which) -> impl Iterator<Item = &Lobe> {

@@ -16,6 +16,8 @@ pub(super) enum Shade {
 /// A number, ready.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Quantity {
+    /// One, everywhere.
+    Constant(f64),
     /// What the pattern of a number gives at the place that is looked at.
     Varying(usize),
 }
@@ -90,6 +92,7 @@ impl Quantity {
     #[inline]
     pub(super) fn of(self, sighting: &Sighting<'_>) -> f64 {
         match self {
+            Quantity::Constant(value) => value,
             Quantity::Varying(number) => sighting.painted.get(number).map_or(0.0, |channels| channels.0[0]),
         }
     }

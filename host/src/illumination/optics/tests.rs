@@ -16,7 +16,7 @@ fn ready(material: &Material, wavelengths: &Wavelengths) -> Optics {
 
 fn sighting(degrees: f64, before: f64, behind: f64) -> Sighting<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let side = Side { before: Channels::splat(before), behind: Channels::splat(behind) };
+    let side = Side { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
     Sighting { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &[] }
 }
 

@@ -14,7 +14,7 @@ const MOST_NODES: usize = 24;
 /// Lobes for some values of a number, of which the two about the value at a place are mixed.
 ///
 /// A mixture of two lobes keeps their energy, is reciprocal if they are, and is drawn as exactly as they are. Of lobes
-/// whose roughness is in a ratio of 1.2 it differs from that of the roughness between them by at most 1 % of its peak.
+/// whose roughness is in a ratio of 1.2 it differs from that of the roughness between them by at most 2 % of its peak.
 #[derive(Clone, Debug)]
 pub(super) struct Varied {
     quantity: Quantity,

@@ -202,6 +202,5 @@ pub(in crate::render) fn mean_diffuse(optics: &Optics, place: Option<&Place>, co
 
 /// The part of light that a material reflects diffusely.
 pub(in crate::render) fn diffuse(optics: &Optics, comb: usize, painted: &[Channels]) -> Channels {
-    let side = Side { before: Channels::ONE, behind: Channels::ONE };
-    optics.diffuse(&Sighting { view: DVec3::Z, comb, side, lane: 0, painted })
+    optics.diffuse(&Sighting { view: DVec3::Z, comb, side: Side::AIR, lane: 0, painted })
 }

@@ -51,6 +51,8 @@ pub(super) struct Crossing {
     pub(super) media: Media,
     /// The last of the surfaces that lie in the same place, in lengths of the ray's direction.
     pub(super) last: f64,
+    /// Whether the ray comes from inside the body of the element.
+    inside: bool,
     /// Whether there is anything: not where a body of a greater priority is on both sides.
     pub(super) is_interface: bool,
 }
@@ -124,7 +126,14 @@ impl Media {
         let mut inside = *self;
         if found.optics.interior.is_none() {
             let present = inside.present(world);
-            return Crossing { before: present, behind: present, media: inside, last: found.t, is_interface: true };
+            return Crossing {
+                before: present,
+                behind: present,
+                media: inside,
+                last: found.t,
+                inside: false,
+                is_interface: true,
+            };
         }
         // The eye or a lamp may have been in the body from the beginning.
         inside.notice(found);
@@ -137,7 +146,8 @@ impl Media {
             if outside { behind.enter(body) } else { behind.leave(object) }
         });
         let [from, to] = [inside, behind].map(|media| media.present(world));
-        Crossing { before: from, behind: to, media: behind, last, is_interface: from != to }
+        let is_inside = !found.element.outside;
+        Crossing { before: from, behind: to, media: behind, last, inside: is_inside, is_interface: from != to }
     }
 
     /// Goes through an element, into its body or out of it.
@@ -178,6 +188,6 @@ impl Crossing {
             let interior = body.and_then(|body| body.interior(world));
             interior.map_or(Channels::ONE, |interior| interior.index.of(comb))
         });
-        Side { before, behind }
+        Side { before, behind, inside: self.inside }
     }
 }

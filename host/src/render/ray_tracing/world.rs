@@ -391,7 +391,9 @@ impl<'a> World<'a> {
         hits.dedup_by(|next, hit| next.t == hit.t);
         let passing = |hit: &Hit| {
             let triangle = of(hit);
-            optics(triangle).passing(comb, || prepared.place(triangle, weights(hit), Default::default()))
+            let [a, b, c] = prepared.corners(triangle);
+            let cosine = (b - a).cross(c - a).normalize_or_zero().dot(ray.direction.normalize_or_zero()).abs();
+            optics(triangle).passing(comb, cosine, || prepared.place(triangle, weights(hit), Default::default()))
         };
         hits.iter().fold(Channels::ONE, |part, hit| part * passing(hit))
     }

@@ -368,7 +368,7 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
         groups[triangle as usize] = group.unwrap_or_else(|| {
             let optics = appearance.optics(key.0, key.1);
             let place = || prepared.place(triangle, [1.0 / 3.0; 3], Default::default());
-            let passes: Vec<Channels> = combs.clone().map(|comb| optics.passing(comb, place)).collect();
+            let passes: Vec<Channels> = combs.clone().map(|comb| optics.passing(comb, 1.0, place)).collect();
             let is_opaque = !optics.is_passable() || passes.iter().all(|part| part.max() <= 0.0);
             let same = passing.iter().skip(1).position(|other| *other == passes);
             let group = match same {

@@ -391,8 +391,8 @@ impl<'a> Shader<'a> {
     fn sighting<'p>(&self, found: &Found<'_>, comb: usize, painted: &'p [Channels]) -> Sighting<'p> {
         let index = found.optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
         let side = match found.element.outside {
-            true => Side { before: Channels::ONE, behind: index },
-            false => Side { before: index, behind: Channels::ONE },
+            true => Side { before: Channels::ONE, behind: index, inside: false },
+            false => Side { before: index, behind: Channels::ONE, inside: found.optics.interior.is_some() },
         };
         Sighting { view: found.frame.local(-found.towards), comb, side, lane: 0, painted }
     }
@@ -460,7 +460,9 @@ fn through(found: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
 fn from_outside<'p>(found: &Found<'_>, sighting: &Sighting<'p>) -> Sighting<'p> {
     match (found.element.outside, sighting.side) {
         (true, _) => *sighting,
-        (false, Side { before, behind }) => Sighting { side: Side { before: behind, behind: before }, ..*sighting },
+        (false, Side { before, behind, .. }) => {
+            Sighting { side: Side { before: behind, behind: before, inside: false }, ..*sighting }
+        }
     }
 }
 
