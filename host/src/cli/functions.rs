@@ -2,6 +2,7 @@
 
 use super::{Exit, Failure, Row};
 use crate::script::{self, functions};
+use crate::spelling;
 use clap::{Args, FromArgMatches};
 
 pub(super) const ROW: Row = Row {
@@ -25,8 +26,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         say_on!("{}", script::reference());
     } else if let Some(name) = &arguments.name {
         let function = functions().find(|f| f.name == name);
-        let function =
-            function.ok_or_else(|| Failure::new(Exit::Usage, anyhow::anyhow!("there is no function {name}")))?;
+        let unknown = || {
+            let known: Vec<&str> = functions().map(|function| function.name).collect();
+            let question =
+                spelling::question(name, &known).map_or_else(String::new, |question| format!("; {question}"));
+            Failure::new(Exit::Usage, anyhow::anyhow!("there is no function {name}{question}"))
+        };
+        let function = function.ok_or_else(unknown)?;
         say!("{}", function.help());
     } else {
         let width = functions().map(|f| f.name.len()).max().unwrap_or(0);

@@ -52,14 +52,14 @@ pub enum ColorError {
     #[error("the colour {0} is not finite")]
     Color(glam::DVec3),
     /// Nothing of this name ships with the program.
-    #[error("no {kind} is called \"{name}\"; there are {known}")]
+    #[error("no {kind} is called \"{name}\"; {advice}")]
     Unknown {
         /// What was looked for.
         kind: &'static str,
         /// Its name.
         name: String,
-        /// The names that there are.
-        known: String,
+        /// What it may have meant, or the names that there are.
+        advice: String,
     },
     /// A line of a table cannot be read.
     #[error("line {line}: {problem}")]

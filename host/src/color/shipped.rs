@@ -3,6 +3,7 @@
 //! The files lie in `data/color`; each states its source and its terms in its head.
 
 use super::{Beyond, ColorError, Glass, Origin, Spectrum, columns};
+use crate::spelling;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
@@ -195,7 +196,7 @@ pub fn origin(name: &str) -> Option<Origin> {
 }
 
 fn unknown(kind: &'static str, name: &str, known: &[&str]) -> ColorError {
-    ColorError::Unknown { kind, name: name.into(), known: known.join(", ") }
+    ColorError::Unknown { kind, name: name.into(), advice: spelling::advice(name, known) }
 }
 
 /// The three columns of a file that ships with the program and is read again and again.

@@ -64,14 +64,14 @@ pub enum DatabaseError {
         known: u64,
     },
     /// No such record.
-    #[error("no {kind} is called \"{name}\"; there are {known}")]
+    #[error("no {kind} is called \"{name}\"; {advice}")]
     Unknown {
         /// What was looked for.
         kind: String,
         /// Its name.
         name: String,
-        /// The names that there are.
-        known: String,
+        /// What it may have meant, or the names that there are.
+        advice: String,
     },
     /// There is such a record already.
     #[error("there is a {kind} \"{name}\" already")]

@@ -1,6 +1,7 @@
 //! The file: transactions, many readers beside one writer, and what happens when it is damaged.
 
 use super::{DatabaseError, Entry, Kind, Record};
+use crate::spelling;
 use files::Destination;
 use redb::backends::FileBackend;
 use redb::{
@@ -337,8 +338,7 @@ impl Store {
 /// The error that names what there is.
 pub(super) fn unknown<T: AsRef<str>>(kind: &str, name: &str, known: &[T]) -> DatabaseError {
     let known: Vec<&str> = known.iter().map(AsRef::as_ref).collect();
-    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-    DatabaseError::Unknown { kind: kind.into(), name: name.into(), known }
+    DatabaseError::Unknown { kind: kind.into(), name: name.into(), advice: spelling::advice(name, &known) }
 }
 
 fn builder() -> Builder {

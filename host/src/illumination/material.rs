@@ -4,6 +4,7 @@ use super::distribution::{DistributionError, FAMILY, FacetTable, Tabulated, chec
 use super::fresnel::{Conductor, Dielectric, IndexError};
 use super::texture::{Number, Paint, Relief, TextureError};
 use crate::color::{Color, ColorError, Glass, Spectrum};
+use crate::spelling;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -381,12 +382,12 @@ pub enum MaterialError {
     #[error("priority {0} is not within -{most} to {most}", most = Material::MOST_PRIORITY)]
     Priority(i32),
     /// No such distribution.
-    #[error("no distribution is called \"{name}\"; there are {known}")]
+    #[error("no distribution is called \"{name}\"; {advice}")]
     Unknown {
         /// What was looked for.
         name: String,
-        /// The names that there are.
-        known: String,
+        /// What it may have meant, or the names that there are.
+        advice: String,
     },
     /// A distribution cannot be made.
     #[error(transparent)]
@@ -618,7 +619,7 @@ fn rough(roughness: &Number) -> Result<(), MaterialError> {
 fn member(name: &str, roughness: &Number) -> Result<(), MaterialError> {
     if !FAMILY.iter().any(|row| row.name == name) {
         let names: Vec<&str> = FAMILY.iter().map(|row| row.name).collect();
-        return Err(MaterialError::Unknown { name: name.into(), known: names.join(", ") });
+        return Err(MaterialError::Unknown { name: name.into(), advice: spelling::advice(name, &names) });
     }
     rough(roughness)
 }

@@ -44,8 +44,7 @@ impl Element {
         let outside = (b - a).cross(c - a).try_normalize().or_else(|| scaled_normal(corners))?;
         let side = if outside.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
         let face = outside * side;
-        let largest = corners.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
-        let distance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
+        let distance = clearance(corners);
         let clearance = face * distance;
         let leave = position + clearance;
         let through = position - clearance;
@@ -134,6 +133,12 @@ impl Element {
     pub(super) fn plane(&self, above: bool) -> DVec3 {
         if above { self.horizon } else { self.face }
     }
+}
+
+/// How far from a triangle rays begin that leave it or go through, scene units.
+pub(super) fn clearance(corners: [DVec3; 3]) -> f64 {
+    let largest = corners.iter().fold(0.0f64, |most, corner| most.max(corner.abs().max_element()));
+    (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE)
 }
 
 /// The normal of a triangle whose sides are too short to be multiplied.

@@ -34,6 +34,8 @@ pub(super) struct Appearance<'a> {
     pub(super) exact: bool,
     /// Whether something lets light straight through.
     pub(super) passing: bool,
+    /// Whether light of lamps goes through polished bodies as if they did not bend it: where what they throw is left out.
+    pub(super) clears: bool,
     /// The place of each object among all of them, the largest first; empty where less than two are transparent.
     by_size: Vec<u32>,
     /// Whether two or more objects are transparent: one may be in another.
@@ -58,6 +60,7 @@ impl<'a> Appearance<'a> {
             curved: plan.needs(Stage::Normals),
             exact: plan.needs(Stage::ExactSurfaces),
             passing: false,
+            clears: false,
             by_size: Vec::new(),
             has_nested: false,
             wavelengths,
@@ -68,6 +71,8 @@ impl<'a> Appearance<'a> {
         }
         appearance.add_emitters(plan);
         appearance.passing = appearance.optics.iter().any(Optics::is_passable);
+        let is_followed = plan.needs(Stage::CaughtLight) || prepared.settings.caustics;
+        appearance.clears = !is_followed && appearance.optics.iter().any(Optics::is_clear);
         let is_transparent =
             |numbers: &&Vec<u32>| numbers.iter().any(|number| appearance.optics[*number as usize].interior.is_some());
         appearance.has_nested = appearance.optics_of.iter().filter(is_transparent).nth(1).is_some();

@@ -119,7 +119,8 @@ pub struct Settings {
     pub patch_tolerance: f64,
     /// Whether light counts that a mirror or glass throws from a lamp on what is neither. Rays from the eye find it by
     /// chance only: such pictures take very many samples. Without it, too, highlights of lamps are cut off on what is seen
-    /// by spread light. Light of a sky always counts.
+    /// by spread light; light goes through polished bodies as if they did not bend it, and light of a sky that mirrors and
+    /// glass throw counts.
     pub caustics: bool,
     /// Whether light is followed from lamps through mirrors and glass and caught where it arrives, so that caustics come
     /// out well: two-way ray tracing.

@@ -2,7 +2,7 @@
 
 use super::{MAX_OBJECTS, Made, Object, Scene, SceneError, Shape};
 use crate::illumination::Material;
-use crate::illumination::material::Appearance;
+use crate::illumination::material::{Appearance, Body};
 use crate::mesh::{Grouped, Look, Mesh};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
@@ -69,12 +69,17 @@ impl Scene {
     }
 }
 
-/// A material in the terms of glTF, which has one colour: what is mirrored counts to it, as a metal.
+/// A material in the terms of glTF, which has one colour: what is mirrored counts to it, as a metal. Those terms are a part of
+/// the principled material's.
 ///
 /// # Source
 /// The exponent n of a highlight belongs to facets of the roughness a with n = 2 / a^2 - 2 (Walter et al. 2007), and a is the
 /// square of the number that glTF wants.
 fn look(material: &Material) -> Look {
+    if let Body::Principled(principled) = &material.body {
+        let base = principled.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
+        return Look { base, metallic: principled.metallic.mean(), roughness: principled.roughness.mean() };
+    }
     let sum = |bands: DVec3| bands.element_sum();
     let Appearance { diffuse, specular, exponent, mirror } = material.appearance();
     // The highlight of a body without another color is its color.

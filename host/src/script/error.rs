@@ -3,6 +3,7 @@
 use super::functions;
 use crate::memory;
 use crate::scene::SceneError;
+use crate::spelling;
 use rhai::{EvalAltResult, ParseErrorType, Position};
 use std::fmt;
 use std::path::PathBuf;
@@ -17,6 +18,20 @@ pub enum ScriptError {
         path: PathBuf,
         /// Why.
         source: std::io::Error,
+    },
+    /// There is neither a file nor a scene that ships of a name.
+    #[error("there is no file {name}, and no scene of that name; {advice}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// What it may have meant, or the scenes that there are.
+        advice: String,
+    },
+    /// The file is a picture.
+    #[error("{} is a picture; a scene is a script (.rhai) or a mesh. peris convert and peris diff take pictures", path.display())]
+    Picture {
+        /// The file.
+        path: PathBuf,
     },
     /// The script is wrong at a place.
     #[error("{0}")]
@@ -135,25 +150,9 @@ fn unknown_function(signature: &str) -> String {
     if let Some(function) = functions().find(|f| f.name == name) {
         return format!("{name}: these values do not fit; use {}", function.usage());
     }
-    let nearest = functions().map(|f| (distance(name, f.name), f.name)).min();
-    match nearest {
-        Some((d, known)) if d <= 1 + name.len() / 4 => {
-            format!("unknown function {signature}; did you mean {known}?")
-        }
-        _ => format!("unknown function {signature}"),
+    let known: Vec<&str> = functions().map(|function| function.name).collect();
+    match spelling::question(name, &known) {
+        None => format!("unknown function {signature}"),
+        Some(question) => format!("unknown function {signature}; {question}"),
     }
-}
-
-/// Number of letters to insert, delete or replace to get from one word to the other (Levenshtein).
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().take(64).enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.iter().enumerate() {
-            let cost = (diagonal + usize::from(x != *y)).min(row[j] + 1).min(row[j + 1] + 1);
-            diagonal = std::mem::replace(&mut row[j + 1], cost);
-        }
-    }
-    row[b.len()]
 }

@@ -37,6 +37,7 @@ pub use error::ScriptError;
 pub use function::{Function, Kind, Parameter};
 
 use crate::scene::Scene;
+use crate::spelling;
 use std::path::{Path, PathBuf};
 
 /// Every function that a script may call: those that make and combine objects, then the others.
@@ -198,6 +199,9 @@ pub struct Evaluated {
     pub printed: Vec<String>,
 }
 
+/// Endings of the names of pictures.
+const PICTURES: [&str; 6] = ["png", "exr", "hdr", "jpg", "jpeg", "tif"];
+
 /// Runs the embedded scene of this name, or else the script in the file of this name.
 ///
 /// - `inputs`: what it is given.
@@ -207,7 +211,12 @@ pub struct Evaluated {
 pub fn load(name: &str, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
     match EMBEDDED.iter().find(|e| e.name == name) {
         Some(embedded) => evaluate(embedded.text, embedded.name, Path::new(""), inputs),
-        None => load_file(Path::new(name), inputs),
+        None => load_file(Path::new(name), inputs).map_err(|error| match error {
+            ScriptError::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+                ScriptError::Unknown { name: name.into(), advice: spelling::advice(name, &EMBEDDED.map(|e| e.name)) }
+            }
+            other => other,
+        }),
     }
 }
 
@@ -216,6 +225,10 @@ pub fn load(name: &str, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
 /// # Errors
 /// As [`load`].
 pub fn load_file(path: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    if PICTURES.iter().any(|picture| extension.eq_ignore_ascii_case(picture)) {
+        return Err(ScriptError::Picture { path: path.into() });
+    }
     let text = engine::read(path)?;
     evaluate(&text, &path.display().to_string(), path.parent().unwrap_or(Path::new("")), inputs)
 }

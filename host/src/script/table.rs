@@ -324,7 +324,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     Function {
         name: "caustics",
-        summary: "Lets light count that mirrors and glass throw from lamps; rays from the eye find it by chance only, and need very many samples.",
+        summary: "Lets light count that mirrors and glass throw from lamps; rays from the eye find it by chance only, and need very many samples. Without it, light goes through polished glass as if that did not bend it, less what it reflects and absorbs.",
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does")],
         example: "caustics();",
         action: |builder, bound| {

@@ -8,6 +8,7 @@ use crate::database::{
     self, Content, DatabaseError, Entry, Kind, Library, Quantity, Record, Report, Store, check_name, shipped,
 };
 use crate::scene::{Object, Scene, Shape};
+use crate::spelling;
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use files::{Destination, Folder};
 use std::path::{Path, PathBuf};
@@ -209,10 +210,13 @@ fn kind_of(place: &Place) -> Result<Kind, Failure> {
     }
     known.sort_unstable();
     known.dedup();
-    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
     match kinds[..] {
         [kind] => Ok(kind),
-        [] => Err(DatabaseError::Unknown { kind: "record".into(), name: place.name.clone(), known }.into()),
+        [] => {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let advice = spelling::advice(&place.name, &known);
+            Err(DatabaseError::Unknown { kind: "record".into(), name: place.name.clone(), advice }.into())
+        }
         _ => {
             let kinds: Vec<String> = kinds.iter().map(|kind| format!("--kind {kind}")).collect();
             let message = format!("there are several records \"{}\"; say {}", place.name, kinds.join(" or "));

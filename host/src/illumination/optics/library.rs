@@ -329,7 +329,7 @@ impl<'a> Library<'a> {
             Some(row) if row.name == "Beckmann, all" => all(Facets::Beckmann)?,
             Some(row) if row.name == "GGX, all" => all(Facets::Ggx)?,
             Some(row) => Shape::Once(Arc::from((row.make)(roughness)?)),
-            None => return Err(MaterialError::Unknown { name: name.into(), known: String::new() }),
+            None => return Err(MaterialError::Unknown { name: name.into(), advice: String::new() }),
         };
         self.forms.push((name.into(), roughness, shape.clone()));
         Ok(shape)

@@ -128,6 +128,24 @@ impl Lobe {
         }
     }
 
+    /// Whether it is a polished interface, through which light goes in one direction.
+    pub(super) fn refracts_once(&self) -> bool {
+        match self {
+            Lobe::Smooth(_) => true,
+            Lobe::Principled(part, surface) => *part == Part::Facets && surface.is_mirror(*part) && surface.transmits(),
+            _ => false,
+        }
+    }
+
+    /// The part of light that goes through a polished interface.
+    pub(super) fn cleared(&self, sighting: &Sighting) -> Channels {
+        match self {
+            Lobe::Smooth(_) => Channels::ONE - reflected(sighting, sighting.view.z),
+            Lobe::Principled(_, surface) if self.refracts_once() => surface.straight(sighting),
+            _ => Channels::ZERO,
+        }
+    }
+
     /// Radiance towards the viewer for a unit of flux density, 1/sr; 0 for what only knows single directions.
     pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
         let view = sighting.view;

@@ -348,6 +348,23 @@ impl Optics {
         passing.of(&Sighting { view, comb, side: Side::AIR, lane: 0, painted: &painted })
     }
 
+    /// Whether it is a polished interface: what goes through has one direction.
+    pub fn is_clear(&self) -> bool {
+        self.interior.is_some() && self.of(Which::Narrow).any(Lobe::refracts_once)
+    }
+
+    /// The part of light that a polished interface lets through, as if it were not bent.
+    ///
+    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
+    pub fn cleared(&self, comb: usize, cosine: f64, place: impl FnOnce() -> Place) -> Channels {
+        let Some(interior) = &self.interior else { return Channels::ZERO };
+        let painted = if self.patterns.is_empty() { Painting::new() } else { self.paint(&place(), comb) };
+        let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+        let side = Side { behind: interior.index.of(comb), ..Side::AIR };
+        let sighting = Sighting { view, comb, side, lane: 0, painted: &painted };
+        self.of(Which::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.cleared(&sighting))
+    }
+
     /// Whether some lobe of a kind answers lights.
     pub fn answers_lights(&self) -> bool {
         self.lobes.iter().any(|(_, lobe)| !lobe.is_mirror())

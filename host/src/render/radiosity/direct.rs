@@ -180,9 +180,9 @@ impl Sight<'_> {
                 for comb in 0..combs {
                     let passed = match (shadows, comb) {
                         (false, _) => Channels::ONE,
-                        (true, 0) => self.world.passed(&ray, t_max, (index, None), (0, 0.0)),
+                        (true, 0) => self.world.passed(&ray, t_max, (index, None), (0, 0.0)).0,
                         (true, _) if !appearance.passing => Channels::ONE,
-                        (true, comb) => self.world.passed(&ray, t_max, (index, None), (comb, 0.0)),
+                        (true, comb) => self.world.passed(&ray, t_max, (index, None), (comb, 0.0)).0,
                     };
                     if passed == Channels::ZERO {
                         break;

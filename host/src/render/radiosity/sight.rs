@@ -59,7 +59,7 @@ impl<'a> Sight<'a> {
     pub(super) fn between(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
         let origin = from + from_normal * self.clearance;
         let direction = to + to_normal * self.clearance - origin;
-        let passed = self.world.passed(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0));
+        let passed = self.world.passed(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0)).0;
         let lanes = self.world.appearance.wavelengths.lanes();
         passed.0[..lanes].iter().sum::<f64>() / lanes as f64
     }

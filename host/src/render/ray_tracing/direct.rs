@@ -86,6 +86,8 @@ impl<'a> Direct<'a> {
         let source = &self.world.appearance.sources[index].1;
         let ended = [Which::Solved, Which::Ended].map(|which| optics.value(which, sighting, light));
         let mut values = [ended[0] + ended[1], Channels::ZERO];
+        // Without what a further leg brings.
+        let mut whole = values;
         for (which, value) in Which::CONTINUED.into_iter().zip(&mut values) {
             let mut continued = optics.value(which, sighting, light);
             let most = continued.max();
@@ -93,6 +95,7 @@ impl<'a> Direct<'a> {
             if which == Which::Narrow && most > *highest && is_cut {
                 continued *= highest / most;
             }
+            whole[usize::from(which == Which::Narrow)] += continued;
             if let Some(density) = beam.density
                 && continued != Channels::ZERO
             {
@@ -109,8 +112,12 @@ impl<'a> Direct<'a> {
         counts.shadow += 1;
         let (ray, t_max) = self.ray(encounter, index, beam, light.z > 0.0);
         let way = self.world.way(ray.origin, index);
-        let passed = self.world.passed(&ray, t_max, (index, way), (sighting.comb, encounter.draws.time));
-        radiance.map(|radiance| radiance * passed)
+        let (passed, is_cleared) = self.world.passed(&ray, t_max, (index, way), (sighting.comb, encounter.draws.time));
+        match is_cleared {
+            // A further leg would be bent, and brings nothing.
+            true => whole.map(|value| value * beam.irradiance * light.z.abs() * passed),
+            false => radiance.map(|radiance| radiance * passed),
+        }
     }
 
     /// Whether nothing comes from a light to an element, as far as the light buffer knows.

@@ -17,6 +17,8 @@ pub(super) mod world;
 #[cfg(test)]
 mod caustic_tests;
 #[cfg(test)]
+mod cleared_tests;
+#[cfg(test)]
 mod exact_tests;
 #[cfg(test)]
 mod combined_tests;
@@ -26,6 +28,8 @@ mod light_tests;
 mod motion_tests;
 #[cfg(test)]
 mod nested_tests;
+#[cfg(test)]
+mod principled_tests;
 #[cfg(test)]
 mod shelf_tests;
 #[cfg(test)]

@@ -54,6 +54,8 @@ struct Leg {
     for_lights: bool,
     /// Which turns its light takes from here to the eye.
     course: Course,
+    /// What its last turn was.
+    turn: Turn,
     /// Whether light that was followed from lamps counts nothing on it: it was caught where narrow turns bring it to a
     /// broad one.
     is_known: bool,
@@ -92,6 +94,17 @@ impl Course {
             Course::Carried => Class::Indirect,
         }
     }
+}
+
+/// What the turns of a leg were since light was spread last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    /// None: it was spread.
+    Spread,
+    /// It went through polished interfaces only.
+    Through,
+    /// Others.
+    Other,
 }
 
 /// What a sample found.
@@ -212,6 +225,7 @@ impl<'a> Tracer<'a> {
             lane: None,
             for_lights: false,
             course: Course::Seen,
+            turn: Turn::Other,
             is_known: false,
         };
         let Work { counts, waiting } = work;
@@ -379,6 +393,8 @@ impl<'a> Tracer<'a> {
             // What is not followed from lamps counts wherever it is met.
             Caustics::Caught if !source.is_caught() => counted(leg.density, density),
             Caustics::Caught if leg.is_known => 0.0,
+            // A shadow ray has gone through what is polished.
+            Caustics::LeftOut if leg.turn == Turn::Through && self.world.appearance.clears => 0.0,
             Caustics::LeftOut if source.is_sky() => counted(leg.density, density),
             Caustics::Caught | Caustics::LeftOut if is_caustic => 0.0,
             _ => leg.lamps * counted(leg.density, density),
@@ -430,6 +446,11 @@ impl<'a> Tracer<'a> {
             _ => 1.0,
         };
         let origin = if through { element.through } else { element.leave };
+        let turn = match (onward.density, leg.turn) {
+            (Some(_), _) => Turn::Spread,
+            (None, Turn::Spread | Turn::Through) if through => Turn::Through,
+            _ => Turn::Other,
+        };
         Some(Leg {
             sight: Sight {
                 ray: Ray { origin, direction },
@@ -449,6 +470,7 @@ impl<'a> Tracer<'a> {
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,
             course: leg.course.after(onward.is_broad),
+            turn,
             is_known,
         })
     }

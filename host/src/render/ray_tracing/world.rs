@@ -12,7 +12,7 @@ use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::render::element::Element;
+use crate::render::element::{Element, clearance};
 use crate::render::eye::Sight;
 use crate::render::radiosity::{Part, Radiosity, diffuse};
 use crate::render::ready::Appearance;
@@ -129,9 +129,12 @@ impl<'a> World<'a> {
                 [] => Box::new(0..prepared.triangles.len() as u32) as Box<dyn Iterator<Item = u32>>,
                 kept => Box::new(kept.iter().copied()),
             };
-            let is_opaque =
-                |t: u32| !appearance.optics(prepared.object_of[t as usize], prepared.material_number(t)).is_passable();
-            let opaque = appearance.passing.then(|| triangles().map(is_opaque).collect());
+            let is_opaque = |t: u32| {
+                let optics = appearance.optics(prepared.object_of[t as usize], prepared.material_number(t));
+                !(optics.is_passable() || appearance.clears && optics.is_clear())
+            };
+            let has_open = appearance.passing || appearance.clears;
+            let opaque = has_open.then(|| triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
         let points = octree.as_ref().filter(|_| plan.needs(Stage::SurfacePoints)).map(|octree| {
@@ -199,6 +202,9 @@ impl<'a> World<'a> {
         }
         let Some((hit, triangle, moved)) = first else { return Met::Nothing };
         let prepared = self.appearance.prepared;
+        let contact =
+            if moved.is_none() && self.points.is_none() { self.contact(&sight.ray, triangle, &hit) } else { None };
+        let (hit, triangle) = contact.unwrap_or((hit, triangle));
         // What moves is looked at as if it stood still, up to the element.
         let ray = match (moved, &self.points) {
             (Some(moved), _) => moved.still(&sight.ray),
@@ -264,6 +270,31 @@ impl<'a> World<'a> {
         Some((emission, index.map_or(1.0, counted)))
     }
 
+    /// What a transparent body stands on, where a ray meets its surface: something opaque in the same place, within the rounding
+    /// of its coordinates. There is no air between the two.
+    fn contact(&self, ray: &Ray, triangle: u32, hit: &Hit) -> Option<(Hit, u32)> {
+        let prepared = self.appearance.prepared;
+        let optics = |triangle: u32| {
+            self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle))
+        };
+        let octree = self.octree.as_ref().filter(|_| optics(triangle).interior.is_some())?;
+        let width = clearance(prepared.corners(triangle)) / slope(prepared.corners(triangle), ray.direction).abs();
+        if !width.is_finite() {
+            return None;
+        }
+        let mut contact = None;
+        octree.each_hit(ray, hit.t - width, hit.t + width, |other| {
+            let triangle = self.triangle_of.get(other.triangle as usize).copied().unwrap_or(other.triangle);
+            let optics = optics(triangle);
+            let is_opaque = optics.interior.is_none() && !optics.is_passable();
+            if is_opaque {
+                contact = Some((other, triangle));
+            }
+            is_opaque
+        });
+        contact
+    }
+
     /// Gives the other surfaces of transparent bodies that stand still and lie in the place of an element, within the rounding
     /// of its coordinates: how far they are in lengths of the ray's direction, object, material, and whether the ray comes
     /// from outside.
@@ -281,8 +312,7 @@ impl<'a> World<'a> {
             let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
             let object = prepared.object_of[triangle as usize];
             let material = prepared.material_number(triangle);
-            let [a, b, c] = prepared.corners(triangle);
-            let is_outside = (b - a).cross(c - a).dot(ray.direction) < 0.0;
+            let is_outside = slope(prepared.corners(triangle), ray.direction) < 0.0;
             // Of triangles that share a side, one counts.
             let is_known = seen[..count].contains(&(object, is_outside));
             if !is_known && count < MOST_COINCIDENT && self.appearance.interior(object, material).is_some() {
@@ -318,7 +348,8 @@ impl<'a> World<'a> {
             && self.octree.as_ref().is_none_or(|octree| octree.is_clear(from, to, |triangle| counts(of(triangle))))
     }
 
-    /// The part of light that comes along a way: nothing, if something opaque is in between.
+    /// The part of light that comes along a way: nothing, if something opaque is in between; and whether it went through
+    /// polished bodies that would have bent it.
     ///
     /// - `index`: of the light that the way leads to, which is not in the way of itself. `way`: what is known of what stands
     ///   still there. `time`: when.
@@ -328,27 +359,31 @@ impl<'a> World<'a> {
         t_max: f64,
         (index, way): (usize, Option<&Way>),
         (comb, time): (usize, f64),
-    ) -> Channels {
+    ) -> (Channels, bool) {
         let blocks = |(other, (_, source)): (usize, &(usize, Source))| {
             other != index && source.is_surface() && source.glow(ray, 0.0, t_max, comb).is_some()
         };
         if self.appearance.sources.iter().enumerate().any(blocks) {
-            return Channels::ZERO;
+            return (Channels::ZERO, false);
         }
         let shaft = match way {
-            Some(Way::Dark) => return Channels::ZERO,
+            Some(Way::Dark) => return (Channels::ZERO, false),
             Some(Way::Few(shaft)) => Some(&**shaft),
             _ => None,
         };
         let still = self.octree.as_ref();
-        let mut part =
-            still.map_or(Channels::ONE, |octree| self.passed_by((octree, &self.triangle_of, shaft), ray, t_max, comb));
+        let (mut part, mut is_cleared) = still.map_or((Channels::ONE, false), |octree| {
+            self.passed_by((octree, &self.triangle_of, shaft), ray, t_max, comb)
+        });
         for Moving { motion, octree, triangle_of } in &self.moving {
             if part != Channels::ZERO {
-                part *= self.passed_by((octree, triangle_of, None), &motion.at(time).still(ray), t_max, comb);
+                let (passed, cleared) =
+                    self.passed_by((octree, triangle_of, None), &motion.at(time).still(ray), t_max, comb);
+                part *= passed;
+                is_cleared |= cleared;
             }
         }
-        part
+        (part, is_cleared)
     }
 
     /// The part of light that the triangles of an octree let pass, or those of a shaft.
@@ -358,13 +393,13 @@ impl<'a> World<'a> {
         ray: &Ray,
         t_max: f64,
         comb: usize,
-    ) -> Channels {
-        if !self.appearance.passing {
+    ) -> (Channels, bool) {
+        if !(self.appearance.passing || self.appearance.clears) {
             let occluded = match shaft {
                 Some(shaft) => octree.occluded_in(shaft, ray, 0.0, t_max),
                 None => octree.occluded(ray, 0.0, t_max),
             };
-            return if occluded { Channels::ZERO } else { Channels::ONE };
+            return (if occluded { Channels::ZERO } else { Channels::ONE }, false);
         }
         let prepared = self.appearance.prepared;
         let of = |hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
@@ -372,8 +407,10 @@ impl<'a> World<'a> {
             self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
         let mut hits: Vec<Hit> = Vec::new();
+        let clears = self.appearance.clears;
         let enough = |hit: Hit| {
-            let passable = optics(of(&hit)).is_passable();
+            let optics = optics(of(&hit));
+            let passable = optics.is_passable() || clears && optics.is_clear();
             if passable {
                 hits.push(hit);
             }
@@ -384,19 +421,44 @@ impl<'a> World<'a> {
             None => octree.each_hit(ray, 0.0, t_max, enough),
         };
         if stopped {
-            return Channels::ZERO;
+            return (Channels::ZERO, false);
         }
         // The nearest first; where triangles share a side, what they stand for is passed once.
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         hits.dedup_by(|next, hit| next.t == hit.t);
-        let passing = |hit: &Hit| {
+        // Where the ray is in which body, since when.
+        let mut inside: Vec<(u32, f64)> = Vec::new();
+        let length = ray.direction.length();
+        let mut is_cleared = false;
+        let part = hits.iter().fold(Channels::ONE, |part, hit| {
             let triangle = of(hit);
-            let [a, b, c] = prepared.corners(triangle);
-            let cosine = (b - a).cross(c - a).normalize_or_zero().dot(ray.direction.normalize_or_zero()).abs();
-            optics(triangle).passing(comb, cosine, || prepared.place(triangle, weights(hit), Default::default()))
-        };
-        hits.iter().fold(Channels::ONE, |part, hit| part * passing(hit))
+            let optics = optics(triangle);
+            let slope = slope(prepared.corners(triangle), ray.direction) / length;
+            let place = || prepared.place(triangle, weights(hit), Default::default());
+            let Some(interior) = optics.interior.as_ref().filter(|_| !optics.is_passable()) else {
+                return part * optics.passing(comb, slope.abs(), place);
+            };
+            is_cleared = true;
+            let object = prepared.object_of[triangle as usize];
+            let mut part = part * optics.cleared(comb, slope.abs(), place);
+            match (slope > 0.0, inside.iter().rposition(|(other, _)| *other == object)) {
+                // It began within the body, if it did not come into it.
+                (true, entered) => {
+                    let since = entered.map_or(0.0, |place| inside.swap_remove(place).1);
+                    let way = (hit.t - since) * length;
+                    part *= interior.absorption.of(comb).map(|absorption| (-absorption * way).exp());
+                }
+                (false, _) => inside.push((object, hit.t)),
+            }
+            part
+        });
+        (part, is_cleared)
     }
+}
+
+/// How far a direction goes along the outer normal of a triangle; 0 for one without area.
+fn slope([a, b, c]: [DVec3; 3], direction: DVec3) -> f64 {
+    (b - a).cross(c - a).normalize_or_zero().dot(direction)
 }
 
 /// How much of each corner is in a hit.

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::ops::{Add, Mul};
 
 /// Intervals of a table.
-const STEPS: usize = 112;
+const STEPS: usize = 136;
 /// Error of the cubature of an entry, and the most evaluations for it.
 const TOLERANCE: f64 = 3e-5;
 const MOST_EVALUATIONS: u32 = 12_000;
@@ -83,7 +83,7 @@ struct Table<T> {
 
 impl<T: Copy + Send + Sync + Add<Output = T> + Mul<f64, Output = T>> Table<T> {
     fn new(roughness: f64, of: impl Fn(f64) -> T + Sync) -> Table<T> {
-        let mut table = Table { scale: 0.02 * roughness.clamp(1e-6, 1.0), values: Vec::new() };
+        let mut table = Table { scale: 5e-4 * roughness.clamp(1e-6, 1.0), values: Vec::new() };
         let entry = |step: usize| of(table.cosine(step as f64 / STEPS as f64).max(LEAST_COSINE));
         let values = (0..=STEPS).into_par_iter().map(entry).collect();
         table.values = values;

@@ -531,7 +531,7 @@ impl Surface {
         [reflection, refraction.filter(|onward| onward.weight.max() > 0.0)]
     }
 
-    /// What comes straight through a polished pane.
+    /// What comes through a polished surface, as if it were not bent.
     pub(super) fn straight(&self, sighting: &Sighting) -> Channels {
         let at = self.at(sighting);
         self.fresnel(&at, sighting, sighting.view.z).through * self.under(&at, sighting.view.z)

@@ -243,7 +243,7 @@ fn samples_follow_their_density_by_chi_squared() {
             }
             let (mut chi, mut degrees) = (0.0, 0);
             let (mut rare, mut rare_found) = (0.0, 0.0);
-            for cell in 0..ROWS * COLUMNS {
+            for (cell, found) in found.into_iter().enumerate() {
                 let (row, column) = ((cell / COLUMNS) as f64, (cell % COLUMNS) as f64);
                 let term = |[x, y]: [f64; 2]| {
                     let z = 2.0 * (row + x) / ROWS as f64 - 1.0;
@@ -254,10 +254,10 @@ fn samples_follow_their_density_by_chi_squared() {
                 let angle = 4.0 * PI / (ROWS * COLUMNS) as f64;
                 let expected = unit_square(term, 1e-6, 8_000).value * angle * f64::from(count);
                 if expected < 5.0 {
-                    (rare, rare_found) = (rare + expected, rare_found + found[cell]);
+                    (rare, rare_found) = (rare + expected, rare_found + found);
                     continue;
                 }
-                chi += (found[cell] - expected).powi(2) / expected;
+                chi += (found - expected).powi(2) / expected;
                 degrees += 1;
             }
             if rare >= 5.0 {
