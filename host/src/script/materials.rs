@@ -178,7 +178,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             parameter("sheen_roughness", PART, Is("0.3"), "how wide that rim is"),
             priority("0"),
         ],
-        example: "car.principled(#{ base_color: [0.5, 0.02, 0.02], metallic: 0.6, roughness: 0.4, coat: 1 });",
+        example: "pot.principled(#{ base_color: [0.5, 0.02, 0.02], metallic: 0.6, roughness: 0.4, coat: 1 });",
         action: |builder, bound| {
             let default = Principled::default();
             let amount = |name, default: Number| bound.amount(name).unwrap_or(default);

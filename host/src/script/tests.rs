@@ -240,7 +240,7 @@ fn a_script_finds_meshes_beside_itself() {
     std::fs::write(&script, "mesh(\"a.obj\");").expect("written");
     let made = load_file(&script, &Inputs::default()).expect("a scene");
     assert_eq!(made.scene.objects[0].shape, Shape::Mesh { path: folder.path().join("a.obj") });
-    assert!(matches!(load("no such file.rhai", &Inputs::default()), Err(ScriptError::Read { .. })));
+    assert!(matches!(load("no such file.rhai", &Inputs::default()), Err(ScriptError::Unknown { .. })));
 }
 
 #[test]

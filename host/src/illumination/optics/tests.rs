@@ -280,7 +280,7 @@ fn straight_light_goes_on_and_impossible_materials_are_errors() {
         |material: Material| library.optics(&material, Interreflection::Followed).unwrap_err().to_string();
     let loud = Classic { diffuse: Paint::grey(1.5), ..Classic::default() };
     assert!(refused(loud.into()).contains("diffuse reflectance"));
-    assert!(refused(copper(rough("Beckman", 0.3))).contains("there are Lambert, Phong"));
+    assert!(refused(copper(rough("Beckman", 0.3))).contains("did you mean Beckmann?"));
     assert!(refused(copper(rough("Beckmann", -0.3))).contains("roughness"));
     let hollow = Coated { diffuse: Paint::grey(0.5), index: 0.0, roughness: 0.0.into() };
     assert!(refused(Body::Coated(hollow).into()).contains("index"));

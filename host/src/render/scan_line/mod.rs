@@ -339,7 +339,7 @@ impl<'a> Work<'a> {
 }
 
 /// For each triangle, whether something is seen straight through it; nothing where that is so for none. Glass, which bends
-/// light, is seen through, but throws the shadow of an opaque body: what comes through it are caustics.
+/// light, is seen through; rough glass throws the shadow of an opaque body.
 fn seen_through(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
     let prepared = appearance.prepared;
     let is_glass = |triangle: u32| {
@@ -353,11 +353,13 @@ fn seen_through(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
 }
 
 /// For each triangle, which group of casters it is of, and what each group lets through; no groups where all are opaque.
+///
+/// A polished body lets through what its two surfaces do at right angles, less what is absorbed on its mean chord.
 fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
     let prepared = appearance.prepared;
     let combs = 0..appearance.wavelengths.combs();
     let mut passing: Vec<Vec<Channels>> = vec![combs.clone().map(|_| Channels::ZERO).collect()];
-    if !appearance.passing {
+    if !(appearance.passing || appearance.clears) {
         return (Vec::new(), passing);
     }
     let mut groups = vec![0; prepared.triangles.len()];
@@ -368,8 +370,17 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
         groups[triangle as usize] = group.unwrap_or_else(|| {
             let optics = appearance.optics(key.0, key.1);
             let place = || prepared.place(triangle, [1.0 / 3.0; 3], Default::default());
-            let passes: Vec<Channels> = combs.clone().map(|comb| optics.passing(comb, 1.0, place)).collect();
-            let is_opaque = !optics.is_passable() || passes.iter().all(|part| part.max() <= 0.0);
+            let body = optics.interior.as_ref().filter(|_| appearance.clears && optics.is_clear());
+            let chord = body.map(|_| mean_chord(prepared, key.0));
+            let passes = |comb: usize| match body.zip(chord) {
+                Some((interior, chord)) => {
+                    let surface = optics.cleared(comb, 1.0, place);
+                    surface * surface * interior.absorption.of(comb).map(|absorption| (-absorption * chord).exp())
+                }
+                None => optics.passing(comb, 1.0, place),
+            };
+            let passes: Vec<Channels> = combs.clone().map(passes).collect();
+            let is_opaque = passes.iter().all(|part| part.max() <= 0.0);
             let same = passing.iter().skip(1).position(|other| *other == passes);
             let group = match same {
                 _ if is_opaque => 0,
@@ -386,6 +397,22 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
     }
     passing.truncate(MOST_GROUPS + 1);
     (groups, passing)
+}
+
+/// The mean length of straight ways through a closed object, four times its volume over its area.
+///
+/// # Source
+/// Cauchy's formula for convex bodies.
+fn mean_chord(prepared: &Prepared, object: u32) -> f64 {
+    let object = &prepared.objects[object as usize];
+    let middle = 0.5 * (object.bounds.min + object.bounds.max);
+    let (mut volume, mut area) = (0.0, 0.0);
+    for triangle in object.first..object.first + object.count {
+        let [a, b, c] = prepared.corners(triangle).map(|corner| corner - middle);
+        volume += a.dot(b.cross(c)) / 6.0;
+        area += 0.5 * (b - a).cross(c - a).length();
+    }
+    if area > 0.0 { 4.0 * volume.abs() / area } else { 0.0 }
 }
 
 impl Renderer for ScanLine<'_> {
