@@ -57,7 +57,7 @@ fn numbers_may_be_patterns() {
     let [metal, brushed, glass, classic, principled] = &bodies(
         "let clouds = noise(0.05, 0.4, 0.2);
          sphere(1).metal(\"brass\", clouds);
-         sphere(1).metal(#{ name: \"steel\".len() > 0 ? \"iron\" : \"\", roughness: 0.1, along: [1, 0, 0], across: clouds });
+         sphere(1).metal(#{ name: \"iron\", roughness: 0.1, along: [1, 0, 0], across: clouds });
          sphere(1).glass(#{ roughness: clouds });
          sphere(1).material(#{ specular: 0.5, exponent: between(10, 500, checker(0, 1)) });
          sphere(1).principled(#{ metallic: checker(0, 1), roughness: between(0.5, 0.1, clouds, \"green\") });",

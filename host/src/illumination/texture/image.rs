@@ -10,7 +10,7 @@ use protocol::raster::light_of_srgb;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Most looks at an image for one mean, side by side along the longer side of the part.
 const MOST_LOOKS: f64 = 16.0;
@@ -25,6 +25,8 @@ const MOST_LOOKS: f64 = 16.0;
 pub struct Image {
     name: String,
     levels: Arc<Vec<Level>>,
+    /// The least and the greatest of each band, found when they are first asked for.
+    range: Arc<OnceLock<[DVec3; 2]>>,
 }
 
 #[derive(Clone, Debug)]
@@ -133,7 +135,7 @@ impl Image {
         while let Some(last) = levels.last().filter(|level| level.width > 1 || level.height > 1) {
             levels.push(last.halved());
         }
-        Image { name, levels: Arc::new(levels) }
+        Image { name, levels: Arc::new(levels), range: Arc::default() }
     }
 
     /// What it is called: the name of its file.
@@ -149,6 +151,17 @@ impl Image {
     /// The mean of all of it.
     pub fn mean(&self) -> DVec3 {
         self.levels.last().map_or(DVec3::ZERO, |level| level.texel(0, 0))
+    }
+
+    /// The least and the greatest of each band.
+    pub fn range(&self) -> [DVec3; 2] {
+        *self.range.get_or_init(|| {
+            let finest = &self.levels[0];
+            let texels = (0..finest.width * finest.height).map(|at| finest.texels.at(at));
+            texels.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[least, most], texel| {
+                [least.min(texel), most.max(texel)]
+            })
+        })
     }
 
     /// Whether every pixel is the same in sixteen bits.

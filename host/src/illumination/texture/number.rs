@@ -1,6 +1,6 @@
 //! Numbers of a surface that may change from place to place: roughness, metalness, weights.
 
-use super::{Paint, Pattern, Place, TextureError};
+use super::{Motif, Paint, Pattern, Place, TextureError};
 use crate::color::Color;
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -153,9 +153,10 @@ fn range(pattern: &Pattern, band: Band) -> [f64; 2] {
         Paint::Plain(color) => [band.of(color_bands(color)); 2],
         Paint::Pattern(pattern) => range(pattern, band),
     };
-    // An image has no paints.
-    let ranges = pattern.paints.iter().map(of);
-    ranges.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([0.0, 1.0])
+    match &pattern.motif {
+        Motif::Image { image } => image.range().map(|bands| band.of(bands)),
+        _ => pattern.paints.iter().map(of).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([0.0, 1.0]),
+    }
 }
 
 fn color_bands(color: &Color) -> DVec3 {
@@ -210,7 +211,7 @@ impl<'de> Deserialize<'de> for Number {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Laying, Motif};
+    use super::super::Laying;
     use super::*;
     use glam::{DVec2, DVec3};
 

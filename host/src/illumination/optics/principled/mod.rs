@@ -18,6 +18,7 @@
 //! 2017, Turquin 2019; its use under a coat, the tables and the cloth are ours.
 
 mod albedo;
+mod missing;
 mod sheen;
 #[cfg(test)]
 mod tests;
@@ -30,7 +31,7 @@ use crate::illumination::distribution::{Distribution, Facets, Microfacet};
 use crate::illumination::fresnel::Dielectric;
 use crate::illumination::material::MaterialError;
 use crate::numeric::sampling::cosine_hemisphere;
-use albedo::{Albedo, CoatAlbedo, Interface, Seen, Shares, pane};
+use albedo::{Albedo, CoatAlbedo, Interface, Seen, pane};
 use glam::{DVec2, DVec3};
 use sheen::Sheen;
 use std::f64::consts::FRAC_1_PI;
@@ -94,15 +95,6 @@ struct Fresnel {
     clear: Channels,
     /// Let through.
     through: Channels,
-}
-
-/// The part of all light that surfaces miss when facets have reflected and refracted once.
-#[derive(Clone, Copy)]
-struct Missing {
-    opaque: f64,
-    metal: f64,
-    /// A transparent one, on the side that is meant.
-    clear: f64,
 }
 
 /// What a principled surface is made of, beside what may change from place to place.
@@ -220,45 +212,6 @@ impl Surface {
     /// Whether light may go straight through.
     pub(super) fn is_pane(&self) -> bool {
         self.thin && self.facets.is_none() && self.transmits()
-    }
-
-    /// What is missing at a cosine on a side.
-    fn missing(&self, at: &At, seen: Seen, cosine: f64) -> Missing {
-        let [outside, side] = match seen {
-            Seen::Outside => [self.albedo.at(seen, cosine); 2],
-            Seen::Inside => [Seen::Outside, seen].map(|seen| self.albedo.at(seen, cosine)),
-        };
-        self.missing_of(at, seen, &outside, &side)
-    }
-
-    /// The mean of [`Surface::missing`] over all directions, weighted with the cosine.
-    fn mean_missing(&self, at: &At, seen: Seen) -> Missing {
-        self.missing_of(at, seen, self.albedo.mean(Seen::Outside), self.albedo.mean(seen))
-    }
-
-    /// - `outside`: shares from outside. `side`: those on the side that is meant.
-    fn missing_of(&self, at: &At, seen: Seen, outside: &Shares, side: &Shares) -> Missing {
-        let s = at.specular;
-        // From inside, what is no transparent body has no coat.
-        let c = if seen == Seen::Outside { at.coat } else { 0.0 };
-        let metal = 1.0 - outside.all - c * (outside.coat - outside.all_coat);
-        let opaque = 1.0 - s * outside.reflected - c * (outside.coat - s * outside.reflected_coat);
-        let under_coat = match seen {
-            Seen::Outside => side.coat - side.sent_coat,
-            Seen::Inside => -side.sent_coat,
-        };
-        let clear = if self.thin { metal } else { 1.0 - side.sent - at.coat * under_coat };
-        Missing { opaque: opaque.max(0.0), metal: metal.max(0.0), clear: clear.max(0.0) }
-    }
-
-    /// Whether the media on both sides are those for which the tables were made.
-    fn is_alone(&self, sighting: &Sighting, seen: Seen) -> bool {
-        let [before, behind] = [sighting.side.before.0[0], sighting.side.behind.0[0]];
-        match seen {
-            _ if self.thin => true,
-            Seen::Outside => before == 1.0 && behind == self.index,
-            Seen::Inside => before == self.index && behind == 1.0,
-        }
     }
 
     /// What a facet sends on at a cosine.
@@ -406,27 +359,6 @@ impl Surface {
         let to = self.missing(at, beyond, -light.z).clear;
         let part = at.clear() * goes * over(from * to, self.mean_missing(at, beyond).clear);
         if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * thinned(sighting)) }
-    }
-
-    /// The other side.
-    fn beyond(&self, at: &At) -> Seen {
-        match at.seen {
-            Seen::Outside if !self.thin => Seen::Inside,
-            _ => Seen::Outside,
-        }
-    }
-
-    /// How what a transparent surface misses is divided: what stays on the side of the viewer, and what goes through.
-    ///
-    /// Of the mean parts a and b that are missing on the two sides, (1 − F) min(a, b) / a goes through from the one with the
-    /// mean F of Fresnel's term: with it, light that goes to and fro is the same but for the square of the index.
-    ///
-    /// - `own`: the mean of what is missing on the side of the viewer.
-    fn division(&self, at: &At, own: f64) -> [f64; 2] {
-        let fresnel = self.albedo.fresnel(at.seen, self.thin);
-        let other = self.mean_missing(at, self.beyond(at)).clear;
-        let goes = if own > 0.0 { (1.0 - fresnel) * (other / own).min(1.0) } else { 0.0 };
-        [1.0 - goes, goes]
     }
 
     /// The density of samples, 1/sr.
