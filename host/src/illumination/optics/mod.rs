@@ -141,7 +141,7 @@ pub struct Optics {
 /// The part of light that goes straight through.
 #[derive(Clone, Debug)]
 enum Passing {
-    /// The same from everywhere.
+    /// One fraction for light from everywhere.
     Shade(Shade),
     /// Through a polished pane.
     Pane(Arc<Surface>),

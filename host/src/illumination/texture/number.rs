@@ -8,9 +8,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// A number of a surface: the same everywhere, or as a pattern has it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
-    /// The same everywhere.
+    /// One everywhere.
     Constant(f64),
-    /// As a pattern tells.
+    /// What a pattern tells at each place.
     Varying(Box<Varying>),
 }
 

@@ -33,11 +33,11 @@ pub(super) struct Shares {
     pub(super) sent: f64,
     /// By a coat.
     pub(super) coat: f64,
-    /// As `all`, times the greater part that the coat reflects, of viewer and light.
+    /// By facets that reflect everything, times the greater part that the coat reflects, of viewer and light.
     pub(super) all_coat: f64,
-    /// As `reflected`, times the greater part that the coat reflects, of viewer and light.
+    /// Reflected by Fresnel's equations, times the greater part that the coat reflects, of viewer and light.
     pub(super) reflected_coat: f64,
-    /// As `sent`, times that part: from inside, of what is refracted alone, for the light, which is outside.
+    /// Reflected and refracted, times the part that the coat reflects, of whichever is outside; from inside, refracted alone.
     pub(super) sent_coat: f64,
 }
 
