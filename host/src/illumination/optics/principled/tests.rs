@@ -132,7 +132,7 @@ fn a_white_one_returns_all_light_whatever_its_numbers_are() {
         };
         ends[0] + (ends[1] - ends[0]) * at
     };
-    let count = if std::env::var_os("PERIS_LONG").is_some() { 2000 } else { 40 };
+    let count = if std::env::var_os("PERIS_LONG").is_some() { 2000 } else { 16 };
     let mut all: Vec<(Numbers, f64)> = Vec::new();
     for _ in 0..count {
         let numbers = Numbers {
@@ -211,16 +211,15 @@ fn light_to_and_fro_is_the_same() {
 
 #[test]
 fn samples_follow_their_density_by_chi_squared() {
-    // Directions in 8 by 16 parts of equal solid angle of the whole sphere.
-    const ROWS: usize = 8;
-    const COLUMNS: usize = 16;
+    // Directions in 6 by 12 parts of equal solid angle of the whole sphere.
+    const ROWS: usize = 6;
+    const COLUMNS: usize = 12;
     let place = |light: DVec3| {
         let row = ((light.z * 0.5 + 0.5) * ROWS as f64).min(ROWS as f64 - 1.0) as usize;
         let turn = (light.y.atan2(light.x) / (2.0 * PI)).rem_euclid(1.0);
         row * COLUMNS + ((turn * COLUMNS as f64) as usize).min(COLUMNS - 1)
     };
     for (numbers, inside) in [
-        (Numbers { roughness: 0.6, ..PLAIN }, false),
         (Numbers { metallic: 0.5, roughness: 0.7, coat: 1.0, coat_roughness: 0.6, ..PLAIN }, false),
         (Numbers { transmission: 0.8, roughness: 0.7, ..PLAIN }, false),
         (Numbers { transmission: 1.0, roughness: 0.8, ..PLAIN }, true),
@@ -233,7 +232,7 @@ fn samples_follow_their_density_by_chi_squared() {
             if surface.is_mirror(part) || surface.strength(part, &of) <= 0.0 {
                 continue;
             }
-            let count = 60_000;
+            let count = 30_000;
             let mut found = [0.0; ROWS * COLUMNS];
             let mut stream = Stream::new(17, part as u64);
             for _ in 0..count {
@@ -252,7 +251,7 @@ fn samples_follow_their_density_by_chi_squared() {
                     surface.density(part, &of, DVec3::new(sine * cos, sine * sin, z))
                 };
                 let angle = 4.0 * PI / (ROWS * COLUMNS) as f64;
-                let expected = unit_square(term, 1e-6, 8_000).value * angle * f64::from(count);
+                let expected = unit_square(term, 1e-5, 5_200).value * angle * f64::from(count);
                 if expected < 5.0 {
                     (rare, rare_found) = (rare + expected, rare_found + found);
                     continue;
