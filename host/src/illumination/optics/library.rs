@@ -6,7 +6,7 @@ use super::interface::{Rough, Smooth};
 use super::lobe::Lobe;
 use super::principled::{Make, Part, Surface};
 use super::shade::{Changing, Painted, Quantity, Shade};
-use super::varied::{Varied, nodes};
+use super::varied::nodes;
 use super::{Interior, Interreflection, Optics, Passing};
 use crate::color::{LANES, Wavelengths};
 use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Facets, Microfacet, Phong};
@@ -142,8 +142,7 @@ impl<'a> Library<'a> {
                         (None, across) => brushed(across.mean()),
                         (Some(quantity), _) => {
                             let lobes = across_nodes.iter().map(|m| Ok((*m, brushed(*m)?)));
-                            let lobes = lobes.collect::<Result<_, MaterialError>>()?;
-                            Ok(Lobe::Varied(Box::new(Varied::new(quantity, lobes))))
+                            Ok(Lobe::varied(quantity, lobes.collect::<Result<_, MaterialError>>()?))
                         }
                     }
                 })?
@@ -161,32 +160,23 @@ impl<'a> Library<'a> {
             disperses: matches!(index, Index::Dispersive(_)),
             priority: *priority,
         });
-        let lobe = match roughness {
-            Number::Constant(0.0) => Lobe::Smooth(Smooth),
-            roughness => self.rough(roughness, optics, |_, m| {
-                Ok(Lobe::Rough(Rough { facets: Facets::Ggx, roughness: DVec2::splat(m) }))
-            })?,
-        };
+        let lobe = self.rough(roughness, optics, |_, m| match m {
+            0.0 => Ok(Lobe::Smooth(Smooth)),
+            m => Ok(Lobe::Rough(Rough { facets: Facets::Ggx, roughness: DVec2::splat(m) })),
+        })?;
         optics.add(lobe, Interreflection::Followed);
         Ok(())
     }
 
     fn coated(&mut self, coated: &Coated, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
         let Coated { diffuse, index, roughness } = coated;
-        let coat = match roughness {
-            Number::Constant(0.0) => Lobe::Coat(self.coat(*index, 0.0)?),
-            roughness => self.rough(roughness, optics, |library, m| Ok(Lobe::Coat(library.coat(*index, m)?)))?,
-        };
+        let coat = self.rough(roughness, optics, |library, m| Ok(Lobe::Coat(library.coat(*index, m)?)))?;
         optics.add(coat, Interreflection::Followed);
         if let Some(shade) = self.needed(diffuse, optics) {
             let combs = self.wavelengths.combs();
-            let ground = |library: &mut Library<'a>, m: f64| {
+            let ground = self.rough(roughness, optics, |library, m| {
                 Ok(Lobe::Ground(Ground::new(library.coat(*index, m)?, *index, &shade, combs)))
-            };
-            let ground = match roughness {
-                Number::Constant(0.0) => ground(self, 0.0)?,
-                roughness => self.rough(roughness, optics, ground)?,
-            };
+            })?;
             optics.add(ground, carried);
             optics.ambient = Some(shade);
         }
@@ -222,8 +212,7 @@ impl<'a> Library<'a> {
         let coats = if has_coat { slopes(&principled.coat_roughness) } else { vec![(0.0, None)] };
         let along = optics.quantity(&principled.roughness);
         let across = if has_coat { optics.quantity(&principled.coat_roughness) } else { Quantity::Constant(0.0) };
-        let surface = |slope: Option<f64>, coat_slope: Option<f64>| {
-            let (roughness, coat_roughness) = (slope, coat_slope);
+        let surface = |roughness: Option<f64>, coat_roughness: Option<f64>| {
             let make = Make { index, coat_index, roughness, coat_roughness, thin, has_coat, transmits };
             Surface::new(&make, colors.clone(), numbers).map(Arc::new)
         };
@@ -281,7 +270,7 @@ impl<'a> Library<'a> {
         }
         let lobes = nodes(number, least).into_iter().map(|value| Ok((value, made(self, value)?)));
         let lobes = lobes.collect::<Result<_, MaterialError>>()?;
-        Ok(Lobe::Varied(Box::new(Varied::new(optics.varying(number), lobes))))
+        Ok(Lobe::varied(optics.varying(number), lobes))
     }
 
     /// A coat of a refractive index and a roughness.

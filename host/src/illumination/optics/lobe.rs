@@ -133,6 +133,16 @@ impl Lobe {
         match self {
             Lobe::Smooth(_) => true,
             Lobe::Principled(part, surface) => *part == Part::Facets && surface.is_mirror(*part) && surface.transmits(),
+            Lobe::Varied(varied) => varied.typical().refracts_once(),
+            _ => false,
+        }
+    }
+
+    /// Whether it reflects, and lets light straight through, as a polished pane does.
+    pub(super) fn is_pane(&self) -> bool {
+        match self {
+            Lobe::Principled(part, surface) => *part == Part::Facets && surface.is_pane(),
+            Lobe::Varied(varied) => varied.typical().is_pane(),
             _ => false,
         }
     }
@@ -142,6 +152,7 @@ impl Lobe {
         match self {
             Lobe::Smooth(_) => Channels::ONE - reflected(sighting, sighting.view.z),
             Lobe::Principled(_, surface) if self.refracts_once() => surface.straight(sighting),
+            Lobe::Varied(varied) => varied.mixed(sighting, |lobe| lobe.cleared(sighting)),
             _ => Channels::ZERO,
         }
     }
@@ -264,6 +275,7 @@ impl Lobe {
             }
             Lobe::Smooth(smooth) => smooth.mirrored(sighting),
             Lobe::Principled(part, surface) => surface.mirrored(*part, sighting),
+            Lobe::Varied(varied) => varied.mirrored(sighting),
             _ => [None, None],
         }
     }

@@ -24,7 +24,7 @@ use super::texture::{Number, Place, Relief};
 use crate::color::{Channels, Curve};
 use glam::DVec3;
 use lobe::Lobe;
-use principled::{Part, Surface};
+use principled::Surface;
 use shade::{Changing, Quantity, Shade};
 use std::sync::Arc;
 
@@ -427,9 +427,7 @@ impl Optics {
         match (which, &lobe) {
             _ if lobe.is_black() => {}
             (Which::Narrow, Lobe::Straight(_)) => self.passes = true,
-            (Which::Narrow, Lobe::Principled(Part::Facets, surface)) if surface.is_pane() => {
-                (self.passes, self.throws) = (true, true);
-            }
+            (Which::Narrow, lobe) if lobe.is_pane() => (self.passes, self.throws) = (true, true),
             (Which::Narrow, _) => self.throws = true,
             _ => self.takes = true,
         }

@@ -67,6 +67,20 @@ impl Varied {
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
 
+    /// The single directions of lobes that are polished alike, and differ in what lies on them.
+    pub(super) fn mirrored(&self, sighting: &Sighting<'_>) -> [Option<Onward>; 2] {
+        let [(a, less), (b, more)] = self.parts(sighting);
+        let [one, other] = [a, b].map(|lobe| lobe.mirrored(sighting));
+        let mixed = |(a, b): (Option<Onward>, Option<Onward>)| match (a, b) {
+            (Some(a), Some(b)) => Some(Onward { weight: a.weight * less + b.weight * more, ..b }),
+            (a, b) => a
+                .map(|a| Onward { weight: a.weight * less, ..a })
+                .or(b.map(|b| Onward { weight: b.weight * more, ..b })),
+        };
+        let [[a, c], [b, d]] = [one, other];
+        [mixed((a, b)), mixed((c, d))]
+    }
+
     /// Draws a direction from one of the two lobes.
     pub(super) fn sample(&self, sighting: &Sighting<'_>, choice: f64, point: [f64; 2]) -> Option<Onward> {
         let [(a, less), (b, more)] = self.parts(sighting);

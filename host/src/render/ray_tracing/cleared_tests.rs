@@ -111,3 +111,18 @@ fn what_glass_stands_on_is_seen_through_it() {
         assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
     }
 }
+
+#[test]
+fn bodies_that_touch_absorb_on_their_own_ways_alone() {
+    let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) };
+    let index = 1.0 + 1e-9;
+    for [low, high] in [[0.3, 0.0], [0.0, 0.3]] {
+        let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, diffuse(0.8));
+        let slabs = [slab([4.0, 5.0], glass(index, low)), slab([5.0, 6.0], glass(index, high))];
+        let mut scene = scene([vec![floor], slabs.into()].concat(), vec![light.clone()], 1);
+        scene.settings.samples = 4;
+        let found = red(&trace(&scene, Some(near()), false, 1), 0, 0);
+        let expected = 0.8 / PI * f64::exp(-0.3);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{low} {high}: {found} {expected}");
+    }
+}

@@ -14,6 +14,11 @@ fn white() -> Principled {
     Principled { base_color: Paint::grey(1.0), ..Principled::default() }
 }
 
+/// A white one under a coat whose roughness varies.
+fn coated() -> Principled {
+    Principled { coat: 1.0.into(), coat_roughness: cells(0.1, 0.6), ..white() }
+}
+
 fn of(principled: Principled) -> Material {
     Body::Principled(Box::new(principled)).into()
 }
@@ -39,6 +44,8 @@ fn a_white_furnace_hides_it_with_whatever_numbers() {
         Principled { transmission: 1.0.into(), roughness: 0.6.into(), ..white() },
         Principled { transmission: 1.0.into(), roughness: 0.0.into(), coat: 0.5.into(), ..white() },
         Principled { transmission: cells(0.0, 1.0), roughness: 0.4.into(), thin: true, ..white() },
+        Principled { transmission: 1.0.into(), roughness: 0.0.into(), thin: true, ..coated() },
+        Principled { metallic: 1.0.into(), roughness: 0.0.into(), ..coated() },
         Principled { sheen: Paint::grey(0.7), coat: cells(0.0, 1.0), roughness: 0.9.into(), ..white() },
     ];
     for principled in materials {

@@ -423,9 +423,10 @@ impl<'a> World<'a> {
         if stopped {
             return (Channels::ZERO, false);
         }
-        // The nearest first; where triangles share a side, what they stand for is passed once.
+        // The nearest first; where triangles of an object share a side, what they stand for is passed once.
+        let object = |hit: &Hit| prepared.object_of[of(hit) as usize];
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        hits.dedup_by(|next, hit| next.t == hit.t);
+        hits.dedup_by(|next, hit| next.t == hit.t && object(next) == object(hit));
         // Where the ray is in which body, since when.
         let mut inside: Vec<(u32, f64)> = Vec::new();
         let length = ray.direction.length();
