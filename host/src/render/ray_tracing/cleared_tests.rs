@@ -126,3 +126,14 @@ fn bodies_that_touch_absorb_on_their_own_ways_alone() {
         assert!((found / expected - 1.0).abs() < 1e-6, "{low} {high}: {found} {expected}");
     }
 }
+
+#[test]
+fn a_lamp_within_a_body_is_dimmed_on_the_way_through_it() {
+    let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, diffuse(0.8));
+    let lamp = Light::Point { at: DVec3::Y * 5.0, intensity: Color::grey(25.0) };
+    let mut scene = scene(vec![floor, slab([3.0, 9.0], glass(1.0 + 1e-9, 0.2))], vec![lamp], 1);
+    scene.settings.samples = 4;
+    let found = red(&trace(&scene, Some(near()), false, 1), 0, 0);
+    let expected = 0.8 / PI * f64::exp(-0.4);
+    assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+}

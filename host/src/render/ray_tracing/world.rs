@@ -6,7 +6,7 @@ use super::media::Media;
 use crate::color::Channels;
 use crate::illumination::distribution::Frame;
 use crate::illumination::light::{Glow, Source};
-use crate::illumination::optics::{Among, Optics, Painting, Sighting};
+use crate::illumination::optics::{Among, Interior, Optics, Painting, Sighting};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft, SurfacePoints};
@@ -428,7 +428,9 @@ impl<'a> World<'a> {
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         hits.dedup_by(|next, hit| next.t == hit.t && object(next) == object(hit));
         // Where the ray is in which body, since when.
-        let mut inside: Vec<(u32, f64)> = Vec::new();
+        let mut inside: Vec<(u32, f64, &Interior)> = Vec::new();
+        let left =
+            |interior: &Interior, way: f64| interior.absorption.of(comb).map(|absorption| (-absorption * way).exp());
         let length = ray.direction.length();
         let mut is_cleared = false;
         let part = hits.iter().fold(Channels::ONE, |part, hit| {
@@ -442,17 +444,19 @@ impl<'a> World<'a> {
             is_cleared = true;
             let object = prepared.object_of[triangle as usize];
             let mut part = part * optics.cleared(comb, slope.abs(), place);
-            match (slope > 0.0, inside.iter().rposition(|(other, _)| *other == object)) {
+            match (slope > 0.0, inside.iter().rposition(|(other, ..)| *other == object)) {
                 // It began within the body, if it did not come into it.
                 (true, entered) => {
                     let since = entered.map_or(0.0, |place| inside.swap_remove(place).1);
-                    let way = (hit.t - since) * length;
-                    part *= interior.absorption.of(comb).map(|absorption| (-absorption * way).exp());
+                    part *= left(interior, (hit.t - since) * length);
                 }
-                (false, _) => inside.push((object, hit.t)),
+                (false, _) => inside.push((object, hit.t, interior)),
             }
             part
         });
+        // The light may be within a body.
+        let inside = inside.into_iter().filter(|_| t_max.is_finite());
+        let part = inside.fold(part, |part, (_, since, interior)| part * left(interior, (t_max - since) * length));
         (part, is_cleared)
     }
 }
