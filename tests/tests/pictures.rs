@@ -148,3 +148,45 @@ fn several_views_share_caught_light_which_a_database_keeps_for_the_next_run() {
     let wrong = peris(&["render", "a.rhai", "--renderer", "scan-line", "--light", "a.redb"], folder);
     assert_eq!(wrong.code, Some(2), "{}", wrong.errors);
 }
+
+#[test]
+fn a_denoised_picture_is_nearer_to_that_of_many_samples_and_can_be_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let script = SCENE.replace("image(48, 32)", "image(144, 96); light_samples(1)");
+    let script = script
+        .replace("[-1, 5, -1], across: [2, 0, 0], up: [0, 0, 2]", "[-3, 5, -3], across: [6, 0, 0], up: [0, 0, 6]");
+    fs::write(folder.join("a.rhai"), script).unwrap();
+    let render = |rest: &str| {
+        let arguments: Vec<&str> = "render a.rhai --exposure 0".split(' ').chain(rest.split(' ')).collect();
+        let ended = peris(&arguments, folder);
+        assert_eq!(ended.code, Some(0), "{rest}: {}", ended.errors);
+    };
+    render("--samples 256 --seed 9 -o many.exr");
+    render("--samples 4 -o few.exr");
+    render("--samples 4 --denoise -o a.exr");
+    let error = |picture: &str| {
+        json(&["diff", picture, "many.exr", "--json"], folder)["relative_mse"].as_f64().expect("a number")
+    };
+    let (few, denoised) = (error("few.exr"), error("a.exr"));
+    assert!(denoised < 0.5 * few, "{denoised} of {few}");
+    render("--samples 2 --denoise -o b.exr --resume b.state --threads 1");
+    render("--samples 4 --denoise -o b.exr --resume b.state");
+    assert!(fs::read(folder.join("a.exr")).unwrap() == fs::read(folder.join("b.exr")).unwrap());
+    render("--samples 4 --denoise --layers -o c.exr");
+    let layers = fs::read(folder.join("c.exr")).unwrap();
+    assert!(
+        ["albedo.R", "direct.R", "Denoiser"]
+            .iter()
+            .all(|name| { layers.windows(name.len()).any(|bytes| bytes == name.as_bytes()) })
+    );
+    render("--samples 4 -o d.exr --resume d.state");
+    for (rest, word) in [
+        ("--samples 8 --denoise --resume d.state", "begun without --denoise"),
+        ("--samples 1 --denoise", "2 samples"),
+        ("--renderer scan-line --denoise", "has no --denoise"),
+    ] {
+        let ended = peris(&["render", "a.rhai"].into_iter().chain(rest.split(' ')).collect::<Vec<_>>(), folder);
+        assert!(ended.code == Some(2) && ended.errors.contains(word), "{rest}: {}", ended.errors);
+    }
+}

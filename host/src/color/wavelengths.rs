@@ -112,6 +112,16 @@ impl Wavelengths {
         (0..LANES).map(|lane| weights[lane] * light.0[lane]).sum()
     }
 
+    /// About how much there is of long, middle and short wavelengths: no color, but nearly the same for all combs.
+    pub fn broad(&self, light: Channels) -> DVec3 {
+        let light = light.0;
+        match self.spectral {
+            // The lanes from 419 to 477, 477 to 595 and 595 to 712 nm.
+            true => DVec3::new(0.5 * (light[4] + light[5]), 0.5 * (light[2] + light[3]), light[1]),
+            false => DVec3::new(light[0], light[1], light[2]),
+        }
+    }
+
     /// How much is seen of light of 1 in each lane: the greater of what it adds to or takes from red, green and blue.
     pub fn visibility(&self, comb: usize) -> [f64; LANES] {
         self.seen[comb.min(self.seen.len() - 1)].map(|seen| seen.abs().max_element())

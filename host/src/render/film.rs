@@ -1,5 +1,6 @@
 //! What the samples of all pixels add up to.
 
+use super::guide::Guide;
 use crate::color::srgb::LUMINANCE;
 use crate::memory::prefer_large_pages;
 use crate::picture::{Picture, PictureError, Pixel};
@@ -21,6 +22,8 @@ pub struct Film {
     tallies: Vec<Tally>,
     /// Sums of each class of light; none unless they are asked for.
     classes: Vec<ByClass>,
+    /// What guides a denoiser; none unless it is asked for.
+    guides: Vec<Guide>,
     /// Whether the samples of a pixel come one by one, so that halves of them tell the error of all.
     in_turn: bool,
     /// How far pixels have come that get as many samples as their errors ask for.
@@ -129,6 +132,11 @@ pub struct Sample {
     pub covered: bool,
     /// The first element that it saw: distance, normal, object and material.
     pub first: Option<(f64, DVec3, [u32; 2])>,
+    /// The albedo that it saw, straight or by mirrors and smooth interfaces, as [`broad`](crate::color::Wavelengths::broad)
+    /// bands; 0 unless a denoiser needs it.
+    pub albedo: DVec3,
+    /// The normals there, each times how much of the light comes to the eye; 0 unless a denoiser needs them.
+    pub normal: DVec3,
     /// Standard error of its luminance by what it shares with the samples before and after it: light that was caught for
     /// all of them.
     pub shared: f64,
@@ -136,7 +144,8 @@ pub struct Sample {
 
 impl Default for Sample {
     fn default() -> Sample {
-        Sample { radiance: DVec3::ZERO, weight: 1.0, covered: false, first: None, shared: 0.0 }
+        let (radiance, albedo, normal) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        Sample { radiance, weight: 1.0, covered: false, first: None, albedo, normal, shared: 0.0 }
     }
 }
 
@@ -223,6 +232,32 @@ impl Tally {
     }
 }
 
+/// A row of a film.
+pub(super) struct Row<'a> {
+    /// Its pixels.
+    pub(super) tallies: &'a mut [Tally],
+    /// The sums of each class of light, if they are kept.
+    classes: Option<&'a mut [ByClass]>,
+    /// What guides a denoiser, if it is kept.
+    guides: Option<&'a mut [Guide]>,
+}
+
+impl Row<'_> {
+    /// Adds a sample to the pixel in a column.
+    ///
+    /// - `classes`: its radiance by class.
+    pub(super) fn add(&mut self, x: usize, sample: &Sample, classes: &ByClass) {
+        if let Some(guides) = &mut self.guides {
+            guides[x].add(sample, &self.tallies[x]);
+        }
+        self.tallies[x].add(sample);
+        if let Some(sums) = &mut self.classes {
+            let finite = sums[x].iter_mut().zip(classes).filter(|(_, light)| light.is_finite());
+            finite.for_each(|(sum, light)| *sum += *light);
+        }
+    }
+}
+
 impl Film {
     /// A film without samples, to which they are added one by one.
     ///
@@ -240,7 +275,7 @@ impl Film {
     pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
         let mut tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
         prefer_large_pages(&mut tallies);
-        Ok(Film { width, height, tallies, classes: Vec::new(), in_turn: false, adaptive: None })
+        Ok(Film { width, height, tallies, classes: Vec::new(), guides: Vec::new(), in_turn: false, adaptive: None })
     }
 
     /// This film, which keeps the classes of light apart from now on.
@@ -249,10 +284,18 @@ impl Film {
         self
     }
 
+    /// This film, which keeps what a denoiser needs from now on; it has to be asked for before the first sample.
+    pub fn with_guides(mut self) -> Film {
+        self.guides = bytemuck::zeroed_vec(self.tallies.len());
+        self
+    }
+
     /// A film of pixels that are known; none if there are not as many as that.
-    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>) -> Option<Film> {
+    ///
+    /// - `guides`: of a denoiser, for each of them; none if they are not kept.
+    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>, guides: Vec<Guide>) -> Option<Film> {
         let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
-        possible.then_some(Film { width, height, tallies, classes: Vec::new(), in_turn: true, adaptive: None })
+        possible.then_some(Film { width, height, tallies, classes: Vec::new(), guides, in_turn: true, adaptive: None })
     }
 
     /// How far adaptive sampling has come that goes on towards a target: where it stopped, if that was the target before.
@@ -303,11 +346,18 @@ impl Film {
         &self.classes
     }
 
-    /// All rows: their pixels, and the sums of each class if these are kept.
-    pub(super) fn rows_mut(&mut self) -> Vec<(&mut [Tally], Option<&mut [ByClass]>)> {
+    /// What guides a denoiser, pixel by pixel; none unless it is kept.
+    pub fn guides(&self) -> &[Guide] {
+        &self.guides
+    }
+
+    /// All rows.
+    pub(super) fn rows_mut(&mut self) -> Vec<Row<'_>> {
         let width = self.width as usize;
         let mut classes = self.classes.chunks_exact_mut(width);
-        self.tallies.chunks_exact_mut(width).map(|row| (row, classes.next())).collect()
+        let mut guides = self.guides.chunks_exact_mut(width);
+        let row = |tallies| Row { tallies, classes: classes.next(), guides: guides.next() };
+        self.tallies.chunks_exact_mut(width).map(row).collect()
     }
 
     /// The picture so far; pixels without samples are black and uncovered.

@@ -1,7 +1,8 @@
 //! Films as EXR files with layers: what is known of each pixel beside its radiance.
 
 use super::film::{Class, Film, Tally};
-use crate::picture::{PictureError, Provenance, encoder};
+use super::guide::Guide;
+use crate::picture::{Picture, PictureError, Pixel, Provenance, encoder};
 use crate::scene::Prepared;
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, WritableImage};
 use files::Destination;
@@ -9,20 +10,20 @@ use files::Destination;
 /// A layer: its name, and its value of a pixel.
 struct Layer {
     name: &'static str,
-    value: fn(&Tally) -> f64,
+    value: fn(&Pixel, &Tally) -> f64,
 }
 
 /// Layers of numbers. What no sample saw is at infinite depth, and has no normal.
 const LAYERS: &[Layer] = &[
-    Layer { name: "R", value: |tally| tally.mean().x },
-    Layer { name: "G", value: |tally| tally.mean().y },
-    Layer { name: "B", value: |tally| tally.mean().z },
-    Layer { name: "A", value: Tally::coverage },
-    Layer { name: "Z", value: |tally| seen(tally, tally.distances).unwrap_or(f64::INFINITY) },
-    Layer { name: "N.X", value: |tally| seen(tally, tally.normals.x).unwrap_or(0.0) },
-    Layer { name: "N.Y", value: |tally| seen(tally, tally.normals.y).unwrap_or(0.0) },
-    Layer { name: "N.Z", value: |tally| seen(tally, tally.normals.z).unwrap_or(0.0) },
-    Layer { name: "variance.Y", value: Tally::variance },
+    Layer { name: "R", value: |pixel, _| pixel.radiance[0].into() },
+    Layer { name: "G", value: |pixel, _| pixel.radiance[1].into() },
+    Layer { name: "B", value: |pixel, _| pixel.radiance[2].into() },
+    Layer { name: "A", value: |pixel, _| pixel.coverage.into() },
+    Layer { name: "Z", value: |_, tally| seen(tally, tally.distances).unwrap_or(f64::INFINITY) },
+    Layer { name: "N.X", value: |_, tally| seen(tally, tally.normals.x).unwrap_or(0.0) },
+    Layer { name: "N.Y", value: |_, tally| seen(tally, tally.normals.y).unwrap_or(0.0) },
+    Layer { name: "N.Z", value: |_, tally| seen(tally, tally.normals.z).unwrap_or(0.0) },
+    Layer { name: "variance.Y", value: |_, tally| tally.variance() },
 ];
 
 /// The mean over the samples that saw an element.
@@ -33,21 +34,31 @@ fn seen(tally: &Tally, sum: f64) -> Option<f64> {
 impl Film {
     /// Writes an EXR file with layers: R, G, B and A; the distance Z of what is seen first, its normal, its object and
     /// material, counted from 1; the number of samples, and the variance of the mean luminance; and the radiance of each
-    /// [`Class`] of light, if these were kept apart: together they are R, G and B.
+    /// [`Class`] of light, if these were kept apart: together they are R, G and B, as long as these are not denoised; and
+    /// the albedo, if it guided a denoiser.
+    ///
+    /// - `picture`: that of the film, denoised or not, for R, G, B and A.
     ///
     /// # Errors
     /// [`PictureError::Write`]; the file may be kept elsewhere then.
     pub fn write_layers(
         &self,
+        picture: &Picture,
         destination: &Destination,
         prepared: &Prepared,
         provenance: &Provenance,
     ) -> Result<(), PictureError> {
         let tallies = self.tallies();
         let floats = LAYERS.iter().map(|layer| {
-            let values = tallies.iter().map(|tally| (layer.value)(tally) as f32).collect();
-            AnyChannel::new(layer.name, FlatSamples::F32(values))
+            let values = picture.pixels().iter().zip(tallies).map(|(pixel, tally)| (layer.value)(pixel, tally) as f32);
+            AnyChannel::new(layer.name, FlatSamples::F32(values.collect()))
         });
+        let of_albedo = |(name, band): (&'static str, usize)| {
+            let value = |(guide, tally): (&Guide, &Tally)| guide.albedo[band] / tally.count.max(1) as f32;
+            AnyChannel::new(name, FlatSamples::F32(self.guides().iter().zip(tallies).map(value).collect()))
+        };
+        let albedo = [("albedo.R", 0), ("albedo.G", 1), ("albedo.B", 2)].into_iter();
+        let albedo = albedo.filter(|_| !self.guides().is_empty()).map(of_albedo);
         let of_class = |class: Class| {
             let value = move |axis: usize| {
                 let pixels = self.classes().iter().zip(tallies);
@@ -83,7 +94,7 @@ impl Film {
             ),
             AnyChannel::new("samples.count", FlatSamples::U32(tallies.iter().map(|tally| tally.count).collect())),
         ];
-        let channels = AnyChannels::sort(floats.chain(classes).chain(numbers).collect());
+        let channels = AnyChannels::sort(floats.chain(classes).chain(albedo).chain(numbers).collect());
         let size = [self.width(), self.height()];
         let image = encoder::exr(size, channels, provenance);
         Ok(destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
@@ -111,8 +122,13 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");
         let prepared = Prepared::new(&Scene::default()).expect("nothing");
-        film.write_layers(&Destination::of(&path).expect("a destination"), &prepared, &Provenance::default())
-            .expect("written");
+        film.write_layers(
+            &film.picture().expect("small"),
+            &Destination::of(&path).expect("a destination"),
+            &prepared,
+            &Provenance::default(),
+        )
+        .expect("written");
         let read = read_first_flat_layer_from_file(&path).expect("layers");
         let value = |name: &str, pixel: usize| {
             let channel = read.layer_data.channel_data.list.iter().find(|c| c.name.to_string() == name).expect("there");

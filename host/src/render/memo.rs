@@ -62,7 +62,7 @@ impl Memo {
         Read::by_ref(&mut file).take(HEAD).read_to_end(&mut found).map_err(failed)?;
         // One that was begun and not more is begun again.
         if !head.starts_with(&found) {
-            return Err(other(if found.starts_with(&MAGIC) { "what it computed" } else { "its kind" }));
+            return Err(other(if found.starts_with(&MAGIC) { "what it computed differs" } else { "its kind differs" }));
         }
         let stand = match found.len() == head.len() {
             true => Stand::Reading(BufReader::new(file), HEAD),

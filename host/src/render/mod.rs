@@ -1,10 +1,12 @@
 //! Renderers: from a prepared scene and a view to a picture.
 
+mod denoising;
 mod element;
 #[cfg(test)]
 mod extreme_tests;
 mod eye;
 mod film;
+mod guide;
 mod layers;
 mod memo;
 pub mod metering;
@@ -63,6 +65,8 @@ pub struct Order {
     /// Whether samples that meet nothing are black: a picture whose radiance is premultiplied by its coverage. The
     /// background behind glass and in mirrors stays.
     pub matte: bool,
+    /// Whether the picture is denoised, by ray tracing; scan line has no noise.
+    pub denoise: bool,
     /// Seed of the sample positions.
     pub seed: u64,
     /// Threads; every core without a number.
@@ -82,6 +86,7 @@ impl Order {
             target: None,
             seconds: None,
             matte: false,
+            denoise: false,
             seed,
             threads: None,
         }

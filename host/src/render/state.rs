@@ -1,10 +1,12 @@
 //! The state of a rendering in a file, so that an interrupted one goes on where it stopped.
 //!
-//! Layout: eight bytes of name and version; a [`Head`]; the [`Tally`] of each pixel; where adaptive sampling is in the middle
-//! of a pass, the goal of each pixel (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
+//! Layout: eight bytes of name and version; a [`Head`]; the [`Tally`] of each pixel; in version 5, which is that of a film to
+//! be denoised, the [`Guide`] of each pixel; where adaptive sampling is in the middle of a pass, the goal of each pixel
+//! (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
 use super::Order;
 use super::film::{Adaptive, Film, Tally};
+use super::guide::Guide;
 use crate::picture::PictureError;
 use crate::picture::display::DisplayTransform;
 use crate::scene::{Prepared, Scene};
@@ -17,8 +19,11 @@ use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// What such a file begins with; the last byte is the version.
-const MAGIC: [u8; 8] = *b"PERISF\x00\x04";
+/// What such a file begins with; the version follows.
+const MAGIC: [u8; 7] = *b"PERISF\x00";
+/// The versions of films without and with guides of a denoiser.
+const PLAIN: u8 = 4;
+const GUIDED: u8 = 5;
 const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
 
 /// Bytes that are written at a time.
@@ -55,11 +60,11 @@ pub enum StateError {
         problem: String,
     },
     /// It is of another scene or order.
-    #[error("{path} is the state of other work: {what} differs; remove the file to begin anew")]
+    #[error("{path} is the state of other work: {what}; remove the file to begin anew")]
     Other {
         /// The file.
         path: PathBuf,
-        /// What differs.
+        /// What is other.
         what: &'static str,
     },
     /// It cannot be written.
@@ -124,9 +129,9 @@ impl Fingerprint {
     /// What of it differs from another.
     fn difference(&self, other: &Fingerprint) -> Option<&'static str> {
         let parts = [
-            (self.order != other.order, "its size, seed or background"),
-            (self.geometry != other.geometry, "its geometry"),
-            (self.scene != other.scene, "its scene"),
+            (self.order != other.order, "its size, seed or background differs"),
+            (self.geometry != other.geometry, "its geometry differs"),
+            (self.scene != other.scene, "its scene differs"),
         ];
         parts.into_iter().find(|(differs, _)| *differs).map(|(_, what)| what)
     }
@@ -190,8 +195,10 @@ impl Film {
             // Checksums of large pieces are found many times faster than those of small ones.
             let mut pieces = BufWriter::with_capacity(PIECE, Summed::new(file));
             pieces.write_all(&MAGIC)?;
+            pieces.write_all(&[if self.guides().is_empty() { PLAIN } else { GUIDED }])?;
             encode(&head, &mut pieces)?;
             self.tallies().iter().try_for_each(|tally| encode(tally, &mut pieces))?;
+            self.guides().iter().try_for_each(|guide| encode(guide, &mut pieces))?;
             goals.iter().try_for_each(|goal| encode(goal, &mut pieces))?;
             let Summed { inner, sum } = pieces.into_inner().map_err(io::IntoInnerError::into_error)?;
             inner.write_all(&sum.finalize().to_le_bytes())
@@ -211,10 +218,16 @@ impl State {
         let mut file = Summed::new(BufReader::new(file));
         let mut magic = [0; 8];
         file.read_exact(&mut magic).map_err(|_| damaged("it is no state of a rendering"))?;
-        match magic.strip_prefix(&MAGIC[..7]) {
-            Some([version]) if *version == MAGIC[7] => {}
-            Some([version]) => return Err(damaged(&format!("version {version} is not known; {} is", MAGIC[7]))),
+        let is_guided = match magic.strip_prefix(&MAGIC) {
+            Some([PLAIN]) => false,
+            Some([GUIDED]) => true,
+            Some([version]) => {
+                return Err(damaged(&format!("version {version} is not known; {PLAIN} and {GUIDED} are")));
+            }
             _ => return Err(damaged("it is no state of a rendering")),
+        };
+        if order.denoise && !is_guided {
+            return Err(StateError::Other { path: path.into(), what: "it was begun without --denoise" });
         }
         let head: Head = decode(&mut file).map_err(|problem| damaged(&problem))?;
         if let Some(what) = head.fingerprint.difference(&fingerprint) {
@@ -226,7 +239,9 @@ impl State {
         let pixels = head.width as usize * head.height as usize;
         let mut all = || -> Result<Film, String> {
             let tallies = (0..pixels).map(|_| decode(&mut file)).collect::<Result<Vec<Tally>, _>>()?;
-            let mut film = Film::of_tallies(head.width, head.height, tallies).ok_or("its size is wrong")?;
+            let guides = (0..if is_guided { pixels } else { 0 }).map(|_| decode(&mut file));
+            let guides = guides.collect::<Result<Vec<Guide>, _>>()?;
+            let mut film = Film::of_tallies(head.width, head.height, tallies, guides).ok_or("its size is wrong")?;
             if let Some((target, passed, has_goals)) = head.adaptive {
                 let goals = (0..if has_goals { pixels } else { 0 }).map(|_| decode(&mut file));
                 let goals = goals.collect::<Result<Vec<u32>, _>>()?;
@@ -260,6 +275,7 @@ fn decode<T: DeserializeOwned>(file: &mut impl Read) -> Result<T, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Sample;
     use glam::DVec3;
     use std::fs;
 
@@ -276,7 +292,7 @@ mod tests {
 
     fn film() -> Film {
         let tally = |k: u32| Tally { sum: DVec3::new(0.1, 1.0 / 3.0, f64::from(k)), count: k, ..Tally::default() };
-        let mut film = Film::of_tallies(3, 2, (0..6).map(tally).collect()).expect("six pixels");
+        let mut film = Film::of_tallies(3, 2, (0..6).map(tally).collect(), Vec::new()).expect("six pixels");
         film.set_adaptive(Some(Adaptive { target: 0.01, passed: 8, goals: (8..14).collect() }));
         film
     }
@@ -294,6 +310,24 @@ mod tests {
             assert!(error.contains(what), "{error}");
         }
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left beside it");
+    }
+
+    #[test]
+    fn what_guides_a_denoiser_comes_back_and_is_asked_for() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let destination = Destination::of(folder.path().join("a.state")).expect("a destination");
+        let own = fingerprint(16, 1, 0.5);
+        let mut guided = Film::new(3, 2).expect("small").with_guides();
+        let sample = Sample { radiance: DVec3::ONE, albedo: DVec3::X, normal: DVec3::Y, ..Sample::default() };
+        guided.rows_mut()[1].add(2, &sample, &Default::default());
+        guided.write_state(&destination, own, 0).expect("written");
+        for denoise in [false, true] {
+            let state = State::read(destination.path(), &Order { denoise, ..order() }, own).expect("read");
+            assert_eq!((state.film.guides(), state.film.guides()[5].albedo[0]), (guided.guides(), 1.0));
+        }
+        film().write_state(&destination, own, 0).expect("written");
+        let error = State::read(destination.path(), &Order { denoise: true, ..order() }, own).expect_err("no guides");
+        assert!(error.to_string().contains("--denoise"), "{error}");
     }
 
     #[test]

@@ -1,4 +1,7 @@
-//! What both programs ask of the system about themselves: signals, parents, memory.
+//! What both programs ask of the system about themselves: signals, parents, memory; and the widest instructions of the
+//! processor.
+
+pub mod widest;
 
 use std::io;
 

@@ -2,8 +2,8 @@
 
 use super::light::{TILE_HEIGHT, TILE_WIDTH};
 use super::optics::Optics;
-use super::widest::{self, Work};
 use crate::traversal::Stroke;
+use processes::widest::{self, Work};
 use rayon::prelude::*;
 
 /// Strokes that one task sorts. It has no influence on the light.

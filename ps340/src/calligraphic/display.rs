@@ -18,10 +18,10 @@ use super::drawer::Drawer;
 use super::exposure::Exposure;
 use super::light::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile};
 use super::phosphor::Emission;
-use super::widest::{self, Work};
 use super::{Controls, Light, Refresh};
 use crate::picture::Picture;
 use crate::traversal::Stroke;
+use processes::widest::{self, Work};
 use protocol::raster::srgb_from_linear_each;
 use rayon::prelude::*;
 

@@ -3,8 +3,8 @@
 use super::bins::Bins;
 use super::optics::Optics;
 use super::track::{LANES, Room, Track};
-use super::widest::{self, Work};
 use crate::traversal::Stroke;
+use processes::widest::{self, Work};
 use rayon::prelude::*;
 
 /// Width of a tile in pixels.

@@ -49,7 +49,6 @@ mod refresh;
 mod screen;
 mod spot;
 mod track;
-mod widest;
 
 pub use controls::{Controls, KNOBS, Knob, SCREENS};
 pub use display::Display;

@@ -1,6 +1,7 @@
 //! The beam against closed forms, conservation laws and an independent integration.
 
 use super::*;
+use processes::widest;
 
 const WHITE: [f32; 3] = [1.0; 3];
 

@@ -64,7 +64,9 @@ impl Saved<'_> {
 
     /// Keeps that a view is the next one, and not begun.
     pub(super) fn write_next(&self, number: usize, before: &Film) -> Result<(), StateError> {
-        Film::new(before.width(), before.height())?.write_state(self.destination, self.fingerprint, number as u32)
+        let film = Film::new(before.width(), before.height())?;
+        let film = if before.guides().is_empty() { film } else { film.with_guides() };
+        film.write_state(self.destination, self.fingerprint, number as u32)
     }
 }
 

@@ -141,7 +141,7 @@ impl Views<'_> {
             false => Picture::new(1, 1)?,
         };
         let write = |file: &Destination| match (Picture::is_exr(file.path()), self.arguments.layers) {
-            (true, true) => film.write_layers(file, self.prepared, &provenance),
+            (true, true) => film.write_layers(picture, file, self.prepared, &provenance),
             (true, false) => picture.write_with(file, &provenance),
             (false, _) => shown.write_with(file, &provenance),
         };
@@ -162,6 +162,10 @@ impl Views<'_> {
             .with("Seed", self.prepared.settings.seed)
             .with("Exposure", format!("{:.4} stops, in PNG files only", self.stops))
             .with("Tone", self.display.tone.word());
+        let provenance = match self.arguments.denoise {
+            true => provenance.with("Denoiser", "first-order regression"),
+            false => provenance,
+        };
         let error = rendering.film.standard_error();
         if error.is_finite() {
             provenance.with("Error", format!("{error:.3e}, standard error of luminance"))
@@ -189,6 +193,7 @@ impl Views<'_> {
             "caught_light": rendering.balance,
             "spans": rendering.spans,
             "radiosity": self.radiosity,
+            "denoised": self.arguments.denoise,
             "complete": rendering.complete,
             "pixels_over_error": self.arguments.error.map(|target| rendering.film.missing(target)),
         })

@@ -297,6 +297,13 @@ impl Optics {
         self.lobes.iter().fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.diffuse(sighting))
     }
 
+    /// About the part of light from all around that is reflected to the viewer, but for what a mirror or a smooth interface
+    /// passes on.
+    pub fn spread_albedo(&self, sighting: &Sighting) -> Channels {
+        let spread = self.lobes.iter().filter(|(_, lobe)| !lobe.is_mirror());
+        spread.fold(Channels::ZERO, |sum, (_, lobe)| sum + lobe.diffuse(sighting) + lobe.shown(sighting))
+    }
+
     /// Whether some light is reflected alike to everywhere.
     pub fn is_diffuse(&self) -> bool {
         self.lobes.iter().any(|(_, lobe)| lobe.is_diffuse())

@@ -1,13 +1,16 @@
 //! Accumulation of samples on a film: passes over all pixels, each of which adds samples, that can be stopped and taken up
 //! again anywhere.
 
-use super::tracer::{Tracer, Work};
+use super::tracer::Work;
 use super::two_way::{Balance, CaughtLight};
-use super::{Eye, Log, RayTracer};
-use crate::render::film::{ByClass, Film, SHARING, Tally};
-use crate::render::{Order, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch};
+use super::{Log, RayTracer};
+use crate::memory;
+use crate::picture::PictureError;
+use crate::render::film::{Film, Row, SHARING};
+use crate::render::{Order, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch, denoising};
 use crate::scene::View;
 use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -29,6 +32,11 @@ pub struct Checkpoints<'a> {
 pub(super) fn after(every: Duration, begin: Instant) -> Instant {
     let now = Instant::now();
     now + every.max((now - begin) * LEAST_WORK)
+}
+
+/// The threads that an order asks for.
+fn pool(order: &Order) -> Result<ThreadPool, RenderError> {
+    Ok(ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?)
 }
 
 /// What accumulating samples took.
@@ -66,7 +74,7 @@ impl RayTracer<'_> {
     ) -> Result<Accumulated, RenderError> {
         let start = Instant::now();
         let eye = self.eye(view, order)?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
+        let pool = pool(order)?;
         let is_late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
         let mut due = checkpoints.as_ref().map(|checkpoints| start + checkpoints.every);
         let mut adaptive = film.adaptive(order.target);
@@ -102,30 +110,23 @@ impl RayTracer<'_> {
                 _ => None,
             };
             balance = balance.or(caught.as_ref().map(CaughtLight::balance));
-            let tracer = self.tracer(caught.as_ref(), &eye);
+            let tracer = self.tracer(caught.as_ref(), &eye, !film.guides().is_empty());
             loop {
                 let done = AtomicU64::new(number as u64 * u64::from(order.height));
                 let is_due = || due.is_some_and(|due| Instant::now() >= due);
                 let pauses = || watch.is_cancelled() || is_due() || is_late();
-                let row = |(y, (row, mut classes)): (usize, (&mut [Tally], Option<&mut [ByClass]>))| {
+                let row = |(y, mut row): (usize, Row<'_>)| {
                     let mut work = Work::default();
-                    for (x, tally) in row.iter_mut().enumerate() {
+                    for x in 0..row.tallies.len() {
                         let goal = goal(y * order.width as usize + x);
-                        if tally.count < goal {
-                            let classes = classes.as_mut().map(|row| &mut row[x]);
-                            let pixel = [x as u32, y as u32];
-                            if pauses()
-                                || !self.sample_to(
-                                    goal,
-                                    (&tracer, &eye, order),
-                                    pixel,
-                                    (tally, classes),
-                                    watch,
-                                    &mut work,
-                                )
-                            {
+                        while row.tallies[x].count < goal {
+                            if pauses() {
                                 return (work.counts, false);
                             }
+                            let (pixel, index) = ([x as u32, y as u32], row.tallies[x].count);
+                            let (sample, classes, _) =
+                                self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::SILENT);
+                            row.add(x, &sample, &classes);
                         }
                     }
                     (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all_rows);
@@ -181,10 +182,29 @@ impl RayTracer<'_> {
         watch: &Watch<'_>,
         checkpoints: Option<Checkpoints<'_>>,
     ) -> Result<Rendering, RenderError> {
+        if order.denoise {
+            let pixels = u64::from(order.width) * u64::from(order.height);
+            memory::ask(denoising::BYTES * pixels, || "denoising".into()).map_err(PictureError::from)?;
+            if film.guides().is_empty() && film.samples() == [0, 0] {
+                film = film.with_guides();
+            }
+        }
         (watch.stage)("while rendering");
-        let Accumulated { rays, balance, complete, seconds, threads } =
+        let Accumulated { rays, balance, mut complete, mut seconds, threads } =
             self.accumulate(&mut film, view, order, watch, checkpoints)?;
-        let (picture, spans) = (film.picture()?, SpanCounts::default());
+        let spans = SpanCounts::default();
+        let picture = match order.denoise && complete {
+            true => {
+                let start = Instant::now();
+                (watch.stage)("while denoising");
+                let pool = pool(order)?;
+                let denoised = pool.install(|| denoising::denoised(&film, &|| watch.is_cancelled()))?;
+                complete = denoised.is_some();
+                seconds += start.elapsed().as_secs_f64();
+                denoised.map_or_else(|| film.picture(), Ok)?
+            }
+            false => film.picture()?,
+        };
         Ok(Rendering { picture, film, complete, rays, spans, balance, seconds, threads })
     }
 
@@ -200,29 +220,5 @@ impl RayTracer<'_> {
         passes.sort_unstable();
         passes.dedup();
         passes
-    }
-
-    /// Adds samples to a pixel until it has `samples`; whether that was not cancelled.
-    fn sample_to(
-        &self,
-        samples: u32,
-        (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
-        pixel: [u32; 2],
-        (tally, mut sums): (&mut Tally, Option<&mut ByClass>),
-        watch: &Watch<'_>,
-        work: &mut Work,
-    ) -> bool {
-        while tally.count < samples && !watch.is_cancelled() {
-            let index = tally.count;
-            let (sample, classes, _) = self.sample((tracer, eye, order), pixel, index, work, Log::SILENT);
-            tally.add(&sample);
-            if let Some(sums) = &mut sums {
-                sums.iter_mut()
-                    .zip(classes)
-                    .filter(|(_, light)| light.is_finite())
-                    .for_each(|(sum, light)| *sum += light);
-            }
-        }
-        tally.count >= samples
     }
 }

@@ -137,11 +137,18 @@ impl<'a> RayTracer<'a> {
         self.world.octree.as_ref()
     }
 
-    fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>, eye: &Eye) -> Tracer<'b> {
+    fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>, eye: &Eye, guides: bool) -> Tracer<'b> {
         let depth = self.world.appearance.prepared.settings.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
         let around = eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default();
-        Tracer::new(&self.world, depth, self.plan.needs(Stage::Shadows), (self.two_way.is_some(), caught), around)
+        Tracer::new(
+            &self.world,
+            depth,
+            self.plan.needs(Stage::Shadows),
+            (self.two_way.is_some(), caught),
+            around,
+            guides,
+        )
     }
 
     fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
@@ -175,7 +182,7 @@ impl<'a> RayTracer<'a> {
             let background = self.world.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0);
             let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.seen(comb, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
-            return (Sample { radiance, weight, ..Sample::default() }, classes, comb);
+            return (Sample { radiance, weight, albedo: DVec3::splat(weight), ..Sample::default() }, classes, comb);
         };
         let seen = tracer.radiance(&sight, comb, &draws, work, log);
         let first =
@@ -184,7 +191,16 @@ impl<'a> RayTracer<'a> {
         let light = |class: usize| weight * (wavelengths.seen(comb, seen.radiance[class]) + seen.other[class]);
         let classes = if left_out { ByClass::default() } else { [0, 1, 2, 3].map(light) };
         let shared = if left_out { 0.0 } else { weight.abs() * seen.shared.sqrt() };
-        (Sample { radiance: classes.into_iter().sum(), weight, covered: seen.covered, first, shared }, classes, comb)
+        let sample = Sample {
+            radiance: classes.into_iter().sum(),
+            weight,
+            covered: seen.covered,
+            first,
+            albedo: weight * wavelengths.broad(seen.albedo),
+            normal: weight * seen.normal,
+            shared,
+        };
+        (sample, classes, comb)
     }
 
     /// Tells how the samples of a pixel come to their radiance.
@@ -205,7 +221,7 @@ impl<'a> RayTracer<'a> {
             let pass = index / SHARING;
             let two_way = self.two_way.as_ref();
             let caught = two_way.and_then(|two_way| two_way.caught(&self.world, pass, &Watch::NOBODY));
-            let tracer = self.tracer(caught.as_ref(), &eye);
+            let tracer = self.tracer(caught.as_ref(), &eye, false);
             let (mut notes, mut work) = (Vec::new(), Work::default());
             let (sample, _, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;

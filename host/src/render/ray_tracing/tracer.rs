@@ -59,6 +59,8 @@ struct Leg {
     /// Whether light that was followed from lamps counts nothing on it: it was caught where narrow turns bring it to a
     /// broad one.
     is_known: bool,
+    /// Whether a denoiser is guided by what it meets: it comes from the eye, by mirrors and smooth interfaces alone.
+    guides: bool,
 }
 
 /// Which turns light takes to the eye, by the lobes that it goes on from.
@@ -120,11 +122,22 @@ pub(super) struct Seen {
     pub(super) first: Option<First>,
     /// Variance of its luminance by the chance in caught light that is seen, which other samples share.
     pub(super) shared: f64,
+    /// The albedo that is seen, straight or by mirrors and smooth interfaces; a light counts as 1.
+    pub(super) albedo: Channels,
+    /// The normals there, each times the part of the light that comes to the eye.
+    pub(super) normal: DVec3,
 }
 
 impl Seen {
     fn add(&mut self, class: Class, radiance: Channels) {
         self.radiance[class as usize] += radiance;
+    }
+
+    /// A light that a leg meets.
+    fn guide_by_light(&mut self, leg: &Leg) {
+        if leg.guides {
+            self.albedo += leg.passed;
+        }
     }
 }
 
@@ -166,6 +179,8 @@ pub(super) struct Tracer<'a> {
     has_others: bool,
     /// What the eye is in.
     around: Media,
+    /// Whether a denoiser is to be guided.
+    guides: bool,
 }
 
 /// What becomes of light of a lamp that narrow lobes throw on a broad one.
@@ -182,12 +197,14 @@ enum Caustics {
 impl<'a> Tracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
     /// - `catches`: whether light of lamps was followed; `caught` is what was caught. `around`: what the eye is in.
+    /// - `guides`: whether samples tell what guides a denoiser.
     pub(super) fn new(
         world: &'a World<'a>,
         depth: u32,
         shadows: bool,
         (catches, caught): (bool, Option<&'a CaughtLight<'a>>),
         around: Media,
+        guides: bool,
     ) -> Tracer<'a> {
         let settings = &world.appearance.prepared.settings;
         let caustics = match (catches, settings.caustics) {
@@ -199,7 +216,7 @@ impl<'a> Tracer<'a> {
         let has_others =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.is_caught());
         let direct = Direct::new(world, shadows, settings.light_samples.max(1));
-        Tracer { world, direct, depth, caustics, caught, has_others, around }
+        Tracer { world, direct, depth, caustics, caught, has_others, around, guides }
     }
 
     /// The radiance that arrives along a line of sight.
@@ -227,6 +244,7 @@ impl<'a> Tracer<'a> {
             course: Course::Seen,
             turn: Turn::Other,
             is_known: false,
+            guides: self.guides,
         };
         let Work { counts, waiting } = work;
         waiting.push(first);
@@ -247,6 +265,7 @@ impl<'a> Tracer<'a> {
                         }
                     };
                     seen.add(leg.course.of_lamps(), leg.passed * radiance);
+                    seen.guide_by_light(&leg);
                     seen.covered |= leg.depth > 0;
                     log.note(|| Note::term(leg.depth, "meets nothing", leg.passed * radiance));
                 }
@@ -255,6 +274,7 @@ impl<'a> Tracer<'a> {
                     let (number, source) = &self.world.appearance.sources[index];
                     let radiance = absorbed * glow.radiance * self.part(&leg, source, glow.density);
                     seen.add(leg.course.of_lamps(), leg.passed * radiance);
+                    seen.guide_by_light(&leg);
                     seen.covered = true;
                     log.note(|| Note::light(leg.depth, *number, leg.passed * radiance));
                 }
@@ -296,6 +316,7 @@ impl<'a> Tracer<'a> {
         {
             let radiance = leg.passed * emission * factor;
             seen.add(leg.course.of_lamps(), radiance);
+            seen.guide_by_light(&leg);
             log.note(|| Note::term(leg.depth, "emits", radiance));
         }
         if leg.for_lights && !optics.is_passable() {
@@ -317,6 +338,11 @@ impl<'a> Tracer<'a> {
             let onward = optics.straight(&sighting);
             waiting.extend(onward.and_then(|onward| self.straight(&leg, found, (onward, 0), draws)));
             return;
+        }
+        if leg.guides {
+            let passed = self.world.appearance.wavelengths.broad(leg.passed).element_sum() / 3.0;
+            seen.albedo += leg.passed * optics.spread_albedo(&sighting);
+            seen.normal += found.element.normal * passed;
         }
         if let Some(ambient) = &self.world.appearance.ambient {
             let radiance = leg.passed * optics.ambient(&sighting) * ambient.of(comb);
@@ -472,6 +498,7 @@ impl<'a> Tracer<'a> {
             course: leg.course.after(onward.is_broad),
             turn,
             is_known,
+            guides: leg.guides && onward.density.is_none(),
         })
     }
 

@@ -95,6 +95,20 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         set: |setup, value| setup.target = (value > 0.0).then_some(value),
     },
     RenderKnob {
+        name: "denoise",
+        sets: "whether pictures are denoised (1) or not (0); the reference never is",
+        techniques: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: |base| {
+            (base.settings().samples < 2).then_some("the scene has one sample in each pixel, and a denoiser needs two")
+        },
+        values: |_| vec![0.0, 1.0],
+        best: |_, _| 0.0,
+        get: |setup| f64::from(u8::from(setup.denoise)),
+        set: |setup, value| setup.denoise = value > 0.0,
+    },
+    RenderKnob {
         name: "depth",
         sets: "how often a ray may be reflected or refracted",
         techniques: RAYS,

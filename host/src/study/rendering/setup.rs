@@ -67,6 +67,8 @@ pub(super) struct Setup {
     pub(super) settings: Settings,
     /// Relative error at which a pixel has samples enough.
     pub(super) target: Option<f64>,
+    /// Whether pictures are denoised.
+    pub(super) denoise: bool,
     /// Whether tolerances of single objects count.
     pub(super) own_tolerances: bool,
 }
@@ -136,7 +138,7 @@ impl Base {
         settings.spectral = Some(settings.spectral.unwrap_or(self.plan.needs(Stage::Spectra)));
         settings.two_way = technique == Technique::TwoWay;
         settings.photon_radius = Some(settings.photon_radius.unwrap_or_else(|| widest_disc(&self.prepared)));
-        Setup { technique, settings, target: None, own_tolerances: true }
+        Setup { technique, settings, target: None, denoise: false, own_tolerances: true }
     }
 
     /// Every knob at its best, but those that say which light counts: of these only the one that is studied.
@@ -213,8 +215,13 @@ impl Base {
             Some(_) => setup.settings.samples.max(self.options.samples / 2),
             None => setup.settings.samples,
         };
-        let order =
-            Order { samples, target: setup.target, threads: self.options.threads, ..Order::of(&setup.settings) };
+        let order = Order {
+            samples,
+            target: setup.target,
+            denoise: setup.denoise,
+            threads: self.options.threads,
+            ..Order::of(&setup.settings)
+        };
         let varied = |shots: &[Shot]| {
             let mut order = order;
             vary(shots.len() as u64, &mut order);

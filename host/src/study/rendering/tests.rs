@@ -199,6 +199,7 @@ fn every_knob_changes_the_picture_or_says_why_not() {
         let idle = study.name == "angle";
         assert!(idle || !study.verdict.contains("changes nothing"), "{}", study.table());
         // What says which light counts may bring more chance, but no more bias; what says how well it is found, no more error.
+        // In a picture of few pixels, a denoiser may find no better one than what it was given.
         let (first, last) = (measured[0], measured[measured.len() - 1]);
         let doubt = 4.0 * last.bias_squared_error.hypot(first.bias_squared_error);
         let least = measured.iter().fold(f64::INFINITY, |least, m| least.min(m.rmse));
@@ -215,7 +216,7 @@ fn every_knob_changes_the_picture_or_says_why_not() {
     let eye = camera(DVec3::new(0.0, 2.0, 3.0), DVec3::ZERO, DVec3::Y, 30.0);
     let plain = scene(vec![object(Shape::Ground { size: 1.0 }, DMat4::IDENTITY, diffuse(0.5))], vec![light], eye);
     for study in study(&plain, &names, options) {
-        let works = ["samples", "error"].contains(&study.name);
+        let works = ["samples", "error", "denoise"].contains(&study.name);
         assert_eq!(works, !study.verdict.contains("changes nothing: "), "{}", study.table());
     }
 }

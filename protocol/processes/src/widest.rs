@@ -4,14 +4,14 @@
 ///
 /// The bits of the result are the same, because no operation is reordered, and what is fused is fused in all: where
 /// the processor cannot fuse, the mathematical library computes the same bits, some twenty times slower.
-pub(super) trait Work {
+pub trait Work {
     /// Does the work; to be marked `#[inline(always)]`, as all that it calls.
     fn run(self);
 }
 
 /// Does the work with AVX-512 if the processor has it, else with AVX2 and fused multiply-adds, else with plain
 /// instructions.
-pub(super) fn run(work: impl Work) {
+pub fn run(work: impl Work) {
     #[cfg(target_arch = "x86_64")]
     {
         if has_avx512() {
@@ -52,9 +52,8 @@ fn run_avx2(work: impl Work) {
     work.run();
 }
 
-/// Every way that this processor has, the widest first.
-#[cfg(test)]
-pub(super) fn ways<W: Work>() -> Vec<fn(W)> {
+/// Every way that this processor has, the widest first; for tests that they agree.
+pub fn ways<W: Work>() -> Vec<fn(W)> {
     let mut ways: Vec<fn(W)> = vec![run];
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {

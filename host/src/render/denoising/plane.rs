@@ -1,0 +1,162 @@
+//! Planes of numbers, one for each pixel, with room around them for what looks beyond an edge.
+
+use crate::memory::prefer_large_pages;
+use rayon::prelude::*;
+
+/// Pixels of a row that are worked on at once.
+pub(super) const LANES: usize = 16;
+
+/// One number for each pixel. Beyond its edges the nearest pixel is repeated.
+#[derive(Clone, Debug)]
+pub(super) struct Plane {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// How far it goes beyond each edge, pixels; on the right and below at least so far.
+    margin: usize,
+    stride: usize,
+    values: Vec<f32>,
+}
+
+impl Plane {
+    /// A plane of numbers that are found pixel by pixel.
+    ///
+    /// - `size`: columns and rows. `margin`: how far it goes beyond each edge, pixels; without one, lanes cannot be read.
+    /// - `value`: of the pixel of a number, counted row by row.
+    pub(super) fn new([width, height]: [usize; 2], margin: usize, value: impl Fn(usize) -> f32 + Sync) -> Plane {
+        let stride = if margin == 0 { width } else { margin + width.next_multiple_of(LANES) + margin };
+        let rows = margin + height + margin;
+        let mut values = zeros(stride * rows);
+        values.par_chunks_exact_mut(stride).enumerate().for_each(|(row, values)| {
+            let y = row.saturating_sub(margin).min(height - 1);
+            for (x, place) in values[margin..margin + width].iter_mut().enumerate() {
+                *place = value(y * width + x);
+            }
+            let (first, last) = (values[margin], values[margin + width - 1]);
+            values[..margin].fill(first);
+            values[margin + width..].fill(last);
+        });
+        Plane { width, height, margin, stride, values }
+    }
+
+    /// The number of a pixel, counted row by row.
+    pub(super) fn of(&self, pixel: usize) -> f32 {
+        if self.margin == 0 {
+            return self.values[pixel];
+        }
+        self.values[self.place((pixel % self.width) as isize, (pixel / self.width) as isize)]
+    }
+
+    /// The numbers of a row from a column on; both may be beyond an edge.
+    #[inline(always)]
+    pub(super) fn from(&self, x: isize, y: isize) -> &[f32] {
+        &self.values[self.place(x, y)..]
+    }
+
+    /// All numbers, row by row, those beyond the edges included: see [`Plane::place`].
+    #[inline(always)]
+    pub(super) fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// Where among all numbers that of a column and a row is; both may be beyond an edge.
+    #[inline(always)]
+    pub(super) fn place(&self, x: isize, y: isize) -> usize {
+        let margin = self.margin as isize;
+        ((y + margin) * self.stride as isize + x + margin) as usize
+    }
+
+    /// How far apart places of neighbors are.
+    ///
+    /// - `x`, `y`: columns and rows from one to the other.
+    #[inline(always)]
+    pub(super) fn step(&self, x: isize, y: isize) -> isize {
+        y * self.stride as isize + x
+    }
+
+    /// The plane that is a sum over the surroundings of each pixel, without a margin.
+    ///
+    /// - `kernel`: how much a pixel counts in rows and in columns by its distance from the middle, the first at 0.
+    pub(super) fn convolved(&self, kernel: &[f32]) -> Plane {
+        let (width, height) = (self.width, self.height);
+        let along = |values: &dyn Fn(isize) -> f32, at: usize| {
+            let at = at as isize;
+            let pairs = kernel.iter().enumerate().skip(1);
+            kernel[0] * values(at)
+                + pairs.map(|(far, part)| part * (values(at - far as isize) + values(at + far as isize))).sum::<f32>()
+        };
+        let mut across = zeros(width * height);
+        across.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| {
+            let own = &self.from(0, y as isize)[..width];
+            let value = |x: isize| own[x.clamp(0, width as isize - 1) as usize];
+            row.iter_mut().enumerate().for_each(|(x, place)| *place = along(&value, x));
+        });
+        let mut sums = zeros(width * height);
+        sums.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| {
+            for (far, part) in kernel.iter().enumerate() {
+                let rows = [y.saturating_sub(far), (y + far).min(height - 1)];
+                for other in &rows[..if far == 0 { 1 } else { 2 }] {
+                    let other = &across[other * width..][..width];
+                    row.iter_mut().zip(other).for_each(|(sum, value)| *sum += part * value);
+                }
+            }
+        });
+        Plane { margin: 0, stride: width, values: sums, ..*self }
+    }
+}
+
+/// Memory for a plane.
+fn zeros(count: usize) -> Vec<f32> {
+    let mut values = vec![0.0; count];
+    prefer_large_pages(&mut values);
+    values
+}
+
+/// A bell to sum with, which is 1 in all, up to three standard deviations.
+///
+/// - `deviation`: standard deviation, pixels.
+pub(super) fn bell(deviation: f32) -> Vec<f32> {
+    let far = (3.0 * deviation).ceil() as usize;
+    let bell: Vec<f32> = (0..=far).map(|far| (-0.5 * (far as f32 / deviation).powi(2)).exp()).collect();
+    normalised(bell)
+}
+
+/// The mean over a square.
+///
+/// - `far`: how far it goes to each side, pixels.
+pub(super) fn square(far: usize) -> Vec<f32> {
+    normalised(vec![1.0; far + 1])
+}
+
+fn normalised(kernel: Vec<f32>) -> Vec<f32> {
+    let sum = kernel[0] + 2.0 * kernel[1..].iter().sum::<f32>();
+    kernel.into_iter().map(|part| part / sum).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_becomes_the_kernel_and_an_even_plane_stays() {
+        let point = Plane::new([9, 7], 2, |pixel| f32::from(u8::from(pixel == 3 * 9 + 4)));
+        let kernel = bell(0.7);
+        let spread = point.convolved(&kernel);
+        for (x, y) in [(4, 3), (5, 3), (4, 1), (6, 4)] {
+            let expected = kernel[4usize.abs_diff(x)] * kernel[3usize.abs_diff(y)];
+            assert!((spread.of(y * 9 + x) - expected).abs() < 1e-6);
+        }
+        let even = Plane::new([20, 3], 0, |_| 2.0);
+        for kernel in [bell(4.0), square(10)] {
+            let smooth = even.convolved(&kernel);
+            assert!((0..60).all(|pixel| (smooth.of(pixel) - 2.0).abs() < 1e-5));
+        }
+    }
+
+    #[test]
+    fn beyond_an_edge_the_nearest_pixel_is_repeated() {
+        let plane = Plane::new([3, 2], 4, |pixel| pixel as f32);
+        assert_eq!([[-4, -4], [-1, 1], [2, 0]].map(|[x, y]| plane.from(x, y)[0]), [0.0, 3.0, 2.0]);
+        assert_eq!(plane.from(2, 5)[..4], [5.0; 4]);
+        assert_eq!(plane.place(1, -2) as isize + plane.step(-3, 4), plane.place(-2, 2) as isize);
+    }
+}
