@@ -258,15 +258,20 @@ fn killing_the_workstation_leaves_the_host_with_a_clear_message() {
 }
 
 #[test]
-fn a_key_of_the_workstation_makes_the_host_render_and_another_ends_it() {
+fn keys_of_the_workstation_make_the_host_render_tell_the_view_and_end() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.rhai"), SCENE.replace("512, 512", "64, 48")).unwrap();
+    let script = SCENE.replace("512, 512", "64, 48");
+    fs::write(folder.path().join("small.rhai"), &script).unwrap();
     let mut machine = Machine::start(PS340, &[]);
     let line = format!("tcp:{}", machine.line);
     let path = folder.path().to_path_buf();
-    let shown = std::thread::spawn(move || peris(&["show", "small.rhai", "--to", &line], &path));
+    let arguments = ["show", "small.rhai", "--camera", "camera.txt", "--to"];
+    let shown = std::thread::spawn(move || peris(&[&arguments[..], &[&line]].concat(), &path));
     while !machine.order("panel").contains("key 1: RENDER") {
         std::thread::sleep(Duration::from_millis(20));
+    }
+    for order in ["dial 1 0.1", "dial 2 -0.2", "dial 3 0.05", "dial 4 -0.2", "dial 5 0.1", "dial 7 -0.2"] {
+        machine.order(order);
     }
     let file = folder.path().join("raster.png");
     let lit = |machine: &mut Machine| {
@@ -280,9 +285,31 @@ fn a_key_of_the_workstation_makes_the_host_render_and_another_ends_it() {
         assert!(std::time::Instant::now() < end, "nothing appears on the raster screen");
         std::thread::sleep(Duration::from_millis(20));
     }
+    machine.order("key 3");
+    while !folder.path().join("camera.txt").exists() {
+        assert!(std::time::Instant::now() < end, "nobody tells the view");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    machine.order("dial 2 0.2");
     machine.order("key 12");
-    assert_eq!(shown.join().unwrap().code, Some(0));
+    let ended = shown.join().unwrap();
+    assert_eq!(ended.code, Some(0), "{}", ended.errors);
     assert!(machine.runs(), "the workstation outlives its host");
+    // The view that was rendered was told first, then, in the end, the one that was set after it.
+    let told: Vec<&str> = ended.out.lines().filter(|line| line.starts_with("camera(")).collect();
+    assert!(told.len() == 2 && told[0] != told[1], "{}{}", ended.out, ended.errors);
+    assert_eq!(fs::read_to_string(folder.path().join("camera.txt")).unwrap().trim_end(), told[1]);
+    let own = script.lines().find(|line| line.trim_start().starts_with("camera(")).unwrap();
+    fs::write(folder.path().join("again.rhai"), script.replace(own, told[0])).unwrap();
+    let ended = peris(&["render", "again.rhai", "-o", "again.png"], folder.path());
+    assert_eq!(ended.code, Some(0), "{}", ended.errors);
+    let [raster, again] = [file, folder.path().join("again.png")].map(|file| image::open(file).unwrap().to_rgb8());
+    // The raster screen is larger than the picture, which is in its upper left corner or its middle.
+    let covered = |picture: &image::RgbImage| picture.pixels().filter(|pixel| pixel.0.iter().any(|c| *c > 8)).count();
+    let (one, two) = (covered(&raster), covered(&again));
+    assert!(two > 150 && one.abs_diff(two) <= two / 100, "{one} and {two} pixels of {:?}", raster.dimensions());
+    let sum = |picture: &image::RgbImage| picture.pixels().map(|pixel| u64::from(pixel.0[1])).sum::<u64>();
+    assert!(sum(&raster).abs_diff(sum(&again)) < sum(&again) / 50);
 }
 
 #[test]

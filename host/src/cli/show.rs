@@ -5,15 +5,17 @@ use crate::{
     production::{Production, ProductionError, Sent, tiling},
     render::{Order, tiles::Tiling},
     scene::Scene,
+    script::camera_call,
     workstation::{
         Drawing, Emulator, Lines, Session, WorkstationError,
         network::{KEY_PREFIX, KEYS, Key},
     },
 };
 use clap::{Args, FromArgMatches};
+use files::Destination;
 use protocol::address::Address;
 use std::{
-    io::BufRead,
+    io::{BufRead, Write},
     num::NonZeroUsize,
     path::PathBuf,
     sync::mpsc,
@@ -22,7 +24,7 @@ use std::{
 
 pub(super) const ROW: Row = Row {
     name: "show",
-    summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 2 resets, key 12 ends.",
+    summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 2 resets, key 3 tells the view as a line of a script, key 12 ends.",
     arguments: Arguments::augment_args,
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
@@ -66,6 +68,9 @@ struct Arguments {
     /// Threads that render [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
+    /// Writes the line of a script that asks for the view into this file, when key 3 is pressed and in the end
+    #[arg(long, value_name = "FILE", conflicts_with = "once")]
+    camera: Option<PathBuf>,
     /// The folder below which orders such as 'picture vector a.png' write files
     #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "to")]
     files: PathBuf,
@@ -77,6 +82,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !(0.0..=180.0).contains(&arguments.crease) {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--crease is an angle of 0 to 180 degrees")));
     }
+    let file = arguments.camera.as_ref().map(Destination::of).transpose()?;
     let drawing = Drawing {
         lines: arguments.lines,
         crease_degrees: arguments.crease,
@@ -103,7 +109,48 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (number, label, _) in KEYS.iter().filter(|_| !arguments.json) {
         say!("key {number}: {label}");
     }
-    serve(&mut production, &mut emulator, &scene, arguments.threads)
+    let mut told = Told { file, is_quiet: arguments.json, last: String::new() };
+    serve(&mut production, &mut emulator, &scene, arguments.threads, &mut told)?;
+    match told.tell(&mut production) {
+        // It ends as it was asked to, whether the machine still answers or not.
+        Err(failure) if failure.exit == Exit::Line => {
+            super::warn(&format!("the view is not known: {}", failure.error));
+            Ok(())
+        }
+        told => told,
+    }
+}
+
+/// The view as somebody was told of it.
+struct Told {
+    /// Where it is written, too.
+    file: Option<Destination>,
+    /// Whether nobody is told.
+    is_quiet: bool,
+    /// The line that was told last.
+    last: String,
+}
+
+impl Told {
+    /// Tells the view that is set now, unless that was told already.
+    fn tell(&mut self, production: &mut Production) -> Result<(), Failure> {
+        let Some(camera) = production.camera()? else {
+            super::warn("no camera sees what is set: it is scaled unequally, or not seen at all");
+            return Ok(());
+        };
+        let line = camera_call(&camera);
+        if line == self.last {
+            return Ok(());
+        }
+        if let Some(file) = &self.file {
+            file.write_or_keep(|file| writeln!(file, "{line}"))?;
+        }
+        if !self.is_quiet {
+            say!("{line}");
+        }
+        self.last = line;
+        Ok(())
+    }
 }
 
 /// Solves for the light of all surfaces.
@@ -142,6 +189,7 @@ fn serve(
     emulator: &mut Option<Emulator>,
     scene: &Scene,
     threads: Option<NonZeroUsize>,
+    told: &mut Told,
 ) -> Result<(), Failure> {
     let orders = emulator.as_ref().map(|_| read_orders());
     let mut unanswered = 0_u64;
@@ -184,6 +232,7 @@ fn serve(
         match key {
             Some(Key::Render) => render(production, scene, threads)?,
             Some(Key::Reset) => production.reset()?,
+            Some(Key::Camera) => told.tell(production)?,
             Some(Key::End) => return Ok(()),
             None => say!("message: {}", String::from_utf8_lossy(&message)),
         }

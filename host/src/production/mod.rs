@@ -11,7 +11,7 @@ use crate::{
         Order, RenderError, Renderer, Rendering, Watch, metering::Meter, radiosity::Radiosity, ray_tracing::RayTracer,
         tiles::Tiling,
     },
-    scene::{Prepared, Projection, Scene, SceneError, View},
+    scene::{Camera, Prepared, Projection, Scene, SceneError, View},
     workstation::{Drawing, Session, WorkstationError, network, raster, structure, tiles},
 };
 use glam::{DMat4, DVec3};
@@ -131,6 +131,24 @@ impl Production {
         Ok(self.session.view()?)
     }
 
+    /// What a matrix that was read back shows of the scene.
+    fn projection(&self, matrix: &DMat4) -> Projection {
+        // The screen's sides are those of the longer side of the picture, a view's those of the shorter one.
+        let zoom = structure::elongation(&self.prepared.settings);
+        let matrix = DMat4::from_scale(DVec3::new(zoom, zoom, 1.0)) * *matrix;
+        Projection::from_workstation(&matrix, self.depth_clipping)
+    }
+
+    /// Reads back from where the scene is seen; none if no camera sees it so, as when somebody else has set the matrix.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn camera(&mut self) -> Result<Option<Camera>, ProductionError> {
+        let matrix = self.view()?;
+        let bounds = &self.prepared.bounds;
+        Ok(self.projection(&matrix).camera(bounds.center(), bounds.diagonal().max(f64::MIN_POSITIVE)))
+    }
+
     /// Ray-traces the view of a matrix that was read back.
     ///
     /// - `display`: how the image is shown; an automatic exposure is metered from this view.
@@ -144,10 +162,7 @@ impl Production {
         display: &DisplayTransform,
         watch: &Watch<'_>,
     ) -> Result<Shot, ProductionError> {
-        // The screen's sides are those of the longer side of the picture, a view's those of the shorter one.
-        let zoom = structure::elongation(&self.prepared.settings);
-        let matrix = DMat4::from_scale(DVec3::new(zoom, zoom, 1.0)) * *matrix;
-        let view = View::Projection(Projection::from_workstation(&matrix, self.depth_clipping));
+        let view = View::Projection(self.projection(matrix));
         let start = Instant::now();
         let plan = Plan::new(&self.prepared, &view);
         let tracer = RayTracer::new(&self.prepared, &plan)?;

@@ -4,6 +4,7 @@
 
 mod cage;
 mod composite;
+mod decomposition;
 mod default_light;
 mod error;
 mod exact;

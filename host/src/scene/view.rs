@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// How steeply the automatic camera looks down.
 const FRAMING_DIRECTION: DVec3 = DVec3::new(0.35, 0.45, 1.0);
 /// Field of view of the automatic camera, degrees.
-const FRAMING_FIELD_OF_VIEW: f64 = 30.0;
+pub(super) const FRAMING_FIELD_OF_VIEW: f64 = 30.0;
 
 /// The part of the shorter side of the picture that what is framed takes at most.
 const FRAMED: f64 = 0.9;

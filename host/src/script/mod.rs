@@ -5,6 +5,7 @@
 
 mod argument;
 mod builder;
+mod camera_call;
 mod daylight;
 mod definition;
 mod engine;
@@ -31,6 +32,7 @@ mod surface_tests;
 #[cfg(test)]
 mod tests;
 
+pub use camera_call::camera_call;
 pub use definition::Definition;
 pub use engine::{MAX_OPERATIONS, MAX_SCRIPT_BYTES};
 pub use error::ScriptError;

@@ -37,12 +37,15 @@ pub enum Key {
     Render,
     /// The dials go back to where they began.
     Reset,
+    /// The host tells the view that is set, as a camera.
+    Camera,
     /// The host ends.
     End,
 }
 
 /// Number, label and meaning of each function key in use.
-pub const KEYS: [(i32, &str, Key); 3] = [(1, "RENDER", Key::Render), (2, "RESET", Key::Reset), (12, "END", Key::End)];
+pub const KEYS: [(i32, &str, Key); 4] =
+    [(1, "RENDER", Key::Render), (2, "RESET", Key::Reset), (3, "CAMERA", Key::Camera), (12, "END", Key::End)];
 
 /// Labels over the dials.
 pub const DIAL_LABELS: [&str; 8] = ["ROT X", "ROT Y", "ROT Z", "SCALE", "TRAN X", "TRAN Y", "TRAN Z", ""];
