@@ -1,5 +1,6 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
+use super::source::stem;
 use super::{Definitions, Failure, Row, SCRIPT_HELP, Waits, interrupts, load, load_lit, progress};
 use crate::{
     picture::Picture,
@@ -97,6 +98,8 @@ struct DemoArguments {
 /// What is to be done.
 struct Job<'a> {
     title: &'a str,
+    /// The scene's name in picture files.
+    source: &'a str,
     scene: Scene,
     common: &'a Common,
     to: Option<&'a Address>,
@@ -112,6 +115,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let (common, to, dials) = (&arguments.common, arguments.to.as_ref(), arguments.dials.as_slice());
     Job {
         title: &evaluated.name,
+        source: stem(&arguments.script),
         scene: evaluated.scene,
         common,
         to,
@@ -128,6 +132,7 @@ fn demo(arguments: &DemoArguments) -> Result<(), Failure> {
     let (common, study) = (&arguments.common, !arguments.quick);
     Job {
         title: "the teapot",
+        source: "teapot",
         scene: evaluated.scene,
         common,
         to: None,
@@ -271,12 +276,14 @@ impl Job<'_> {
         let exposure = format!("exposed by {:+.2} stops", shot.stops);
         self.note("exposure", json!(shot.stops), format_args!("{exposure}"));
         let what = "the ray-traced image of that view";
+        let (made_by, display) = ((self.source, "ray-tracing"), &self.scene.display);
+        let provenance = rendering.provenance(made_by, order.seed, display, shot.stops);
         for (name, form, picture) in [
             ("raytraced.png", &exposure, &shot.shown),
             ("raytraced.exr", &"linear radiance, coverage as alpha".to_string(), &rendering.picture),
         ] {
             let path = contents.file(name, &format!("{what} ({form})"));
-            picture.write(&Picture::destination(&path)?)?;
+            picture.write_with(&Picture::destination(&path)?, &provenance)?;
         }
         Ok(shot.shown)
     }

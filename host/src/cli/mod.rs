@@ -36,6 +36,7 @@ use waits::Waits;
 use crate::memory;
 use crate::scene::Scene;
 use clap::{Arg, ArgMatches, Command};
+use std::io::IsTerminal;
 use std::num::NonZeroUsize;
 use std::process::ExitCode;
 
@@ -191,7 +192,10 @@ fn part(text: &str) -> Result<f64, String> {
 fn start_log() {
     let filter = tracing_subscriber::EnvFilter::try_from_env("PERIS_LOG")
         .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("warn"));
-    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+    let log = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal());
     log.without_time().with_target(false).init();
 }
 

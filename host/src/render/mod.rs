@@ -23,7 +23,8 @@ pub use state::{Fingerprint, State, StateError};
 
 use crate::illumination::material::MaterialError;
 use crate::octree::OctreeError;
-use crate::picture::{Filter, Picture, PictureError};
+use crate::picture::display::DisplayTransform;
+use crate::picture::{Filter, Picture, PictureError, Provenance};
 use crate::scene::View;
 use serde::Serialize;
 use std::num::NonZeroUsize;
@@ -145,6 +146,34 @@ pub struct Rendering {
 }
 
 impl Rendering {
+    /// What a file tells of how the picture was made: source, renderer, samples, seed, exposure, tone, and error, if it is
+    /// known.
+    ///
+    /// - `source`: the name of the scene. `renderer`: its word.
+    /// - `display`: how the picture is shown, exposed by `stops`.
+    pub fn provenance(
+        &self,
+        (source, renderer): (&str, &str),
+        seed: u64,
+        display: &DisplayTransform,
+        stops: f64,
+    ) -> Provenance {
+        let [least, most] = self.film.samples();
+        let provenance = Provenance::new(display.white)
+            .with("Source", source)
+            .with("Renderer", renderer)
+            .with("Samples", format!("{least} to {most}"))
+            .with("Seed", seed)
+            .with("Exposure", format!("{stops:.4} stops, in PNG files only"))
+            .with("Tone", display.tone.word());
+        let error = self.film.standard_error();
+        if error.is_finite() {
+            provenance.with("Error", format!("{error:.3e}, standard error of luminance"))
+        } else {
+            provenance
+        }
+    }
+
     /// Rays of all kinds per second, in millions.
     pub fn mega_rays_per_second(&self) -> f64 {
         self.rays.total() as f64 / self.seconds.max(f64::MIN_POSITIVE) / 1e6

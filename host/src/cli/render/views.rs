@@ -153,24 +153,14 @@ impl Views<'_> {
 
     /// What the files of a view tell of how it was made.
     fn provenance(&self, rendering: &Rendering) -> Provenance {
-        let [least, most] = rendering.film.samples();
         let renderer = self.arguments.renderer.to_possible_value();
-        let provenance = Provenance::new(self.display.white)
-            .with("Source", stem(&self.arguments.script))
-            .with("Renderer", renderer.map(|value| value.get_name().to_string()).unwrap_or_default())
-            .with("Samples", format!("{least} to {most}"))
-            .with("Seed", self.prepared.settings.seed)
-            .with("Exposure", format!("{:.4} stops, in PNG files only", self.stops))
-            .with("Tone", self.display.tone.word());
-        let provenance = match self.arguments.denoise {
+        let renderer = renderer.as_ref().map_or("", |value| value.get_name());
+        let source = stem(&self.arguments.script);
+        let seed = self.prepared.settings.seed;
+        let provenance = rendering.provenance((source, renderer), seed, self.display, self.stops);
+        match self.arguments.denoise {
             true => provenance.with("Denoiser", "first-order regression"),
             false => provenance,
-        };
-        let error = rendering.film.standard_error();
-        if error.is_finite() {
-            provenance.with("Error", format!("{error:.3e}, standard error of luminance"))
-        } else {
-            provenance
         }
     }
 
@@ -203,14 +193,19 @@ impl Views<'_> {
         let picture = &rendering.picture;
         let [least, most] = rendering.film.samples();
         let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
+        let samples = if least == most { format!("{least}") } else { format!("{least} to {most}") };
+        let error = rendering.film.standard_error();
+        let error = match (error.is_finite(), self.arguments.denoise) {
+            (true, false) => format!("standard error of luminance {error:.2e}"),
+            (true, true) => format!("standard error of luminance {error:.2e} before it was denoised"),
+            // One sample of each pixel tells nothing of its error.
+            (false, _) => "of unknown error".into(),
+        };
         say!(
-            "{}: {} x {} pixels, {} to {} samples each; standard error of luminance {:.2e}",
+            "{}: {} x {} pixels, {samples} samples each; {error}",
             names.join(", "),
             picture.width(),
-            picture.height(),
-            least,
-            most,
-            rendering.film.standard_error()
+            picture.height()
         );
         let memory = memory::readable(memory::peak());
         say!("{} triangles, built in {build_seconds:.3} s; at most {memory} of memory", self.prepared.triangles.len());

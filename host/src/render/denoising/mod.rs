@@ -43,8 +43,8 @@ const DARK: f32 = 0.1;
 /// A pixel has no noise to speak of below this relative standard error: less than a picture of eight bits shows.
 const QUIET: f32 = 1.0 / 512.0;
 
-/// Memory that denoising takes for each pixel of a picture, bytes.
-pub(super) const BYTES: u64 = 160;
+/// Memory that denoising takes for each pixel of a picture, bytes, the guides of its film included.
+pub(super) const BYTES: u64 = 220;
 
 /// The picture of a film without most of its noise; none if it was cancelled.
 ///

@@ -172,6 +172,8 @@ impl RayTracer<'_> {
 
     /// Makes a picture of a film to which samples are added, as [`RayTracer::accumulate`] does it.
     ///
+    /// If it is to be denoised, a film that holds samples has to hold guides, too; without these it stays as it is.
+    ///
     /// # Errors
     /// [`RenderError`].
     pub fn go_on(
