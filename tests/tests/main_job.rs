@@ -313,6 +313,20 @@ fn keys_of_the_workstation_make_the_host_render_tell_the_view_and_end() {
 }
 
 #[test]
+fn a_scene_is_shown_without_a_window_where_none_is_wanted_or_none_can_be() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.rhai"), SCENE).unwrap();
+    // Nothing serves this display.
+    let environment = [("PERIS_PS340", PS340), ("DISPLAY", ":5790"), ("WAYLAND_DISPLAY", "")];
+    for (arguments, warns) in [(&["show", "small.rhai", "--headless"][..], false), (&["show", "small.rhai"], true)] {
+        let ended = run(PERIS, arguments, &environment, folder.path(), LIMIT);
+        assert_eq!((ended.code, ended.errors.contains("without a window")), (Some(0), warns), "{}", ended.errors);
+        let camera = ended.out.lines().last().unwrap();
+        assert!(camera.starts_with("camera(#{ from: [0, 4, 14], at: [0, ") && camera.contains("field_of_view: 34 "));
+    }
+}
+
+#[test]
 fn what_goes_wrong_has_its_exit_code_and_its_place() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.rhai"), "sphere(1);\nsphere(-2);\n").unwrap();

@@ -178,7 +178,7 @@ impl Job<'_> {
         let (mut emulator, line) = match self.to {
             Some(line) => (None, line.clone()),
             None => {
-                let emulator = Emulator::start(patience, folder.path())?;
+                let emulator = Emulator::start(patience, folder.path(), false)?;
                 let (process, line) = (emulator.process(), emulator.line().clone());
                 let known = json!({ "process": process, "line": line.to_string() });
                 self.note("workstation", known, format_args!("workstation: process {process}, host line {line}"));

@@ -7,7 +7,7 @@ use crate::{
     scene::Scene,
     script::camera_call,
     workstation::{
-        Drawing, Emulator, Lines, Session, WorkstationError,
+        Drawing, Emulator, Lines, Patience, Session, WorkstationError,
         network::{KEY_PREFIX, KEYS, Key},
     },
 };
@@ -38,8 +38,8 @@ struct Arguments {
     script: String,
     #[command(flatten)]
     definitions: Definitions,
-    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, and the
-    /// lines of standard input are orders for its operator ('help' lists them)
+    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, with a window if
+    /// there is a display, and the lines of standard input are orders for its operator ('help' lists them)
     #[arg(long, value_name = "LINE")]
     to: Option<Address>,
     /// Sends the scene and ends, without waiting for keys
@@ -65,6 +65,9 @@ struct Arguments {
     /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
     #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::part)]
     tolerance: f64,
+    /// Opens no window, even if there is a display: orders from standard input do all
+    #[arg(long, conflicts_with = "to")]
+    headless: bool,
     /// Threads that render [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::threads)]
     threads: Option<NonZeroUsize>,
@@ -95,7 +98,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
         None => {
-            let emulator = Emulator::start(patience, &arguments.files)?;
+            let emulator = start(arguments, patience)?;
             let line = emulator.line().clone();
             (Some(emulator), line)
         }
@@ -110,7 +113,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         say!("key {number}: {label}");
     }
     let mut told = Told { file, is_quiet: arguments.json, last: String::new() };
-    serve(&mut production, &mut emulator, &scene, arguments.threads, &mut told)?;
+    let served = serve(&mut production, &mut emulator, &scene, arguments, &mut told);
+    if served.is_err() && emulator.as_mut().is_some_and(Emulator::has_quit) {
+        // Its window was closed.
+        return Ok(());
+    }
+    served?;
     match told.tell(&mut production) {
         // It ends as it was asked to, whether the machine still answers or not.
         Err(failure) if failure.exit == Exit::Line => {
@@ -119,6 +127,19 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         told => told,
     }
+}
+
+/// Starts a PS 340 of our own, with a window if there is a display to open it on.
+fn start(arguments: &Arguments, patience: Patience) -> Result<Emulator, Failure> {
+    let has_display =
+        ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some_and(|d| !d.is_empty()));
+    if has_display && !arguments.headless {
+        match Emulator::start(patience, &arguments.files, true) {
+            Ok(emulator) => return Ok(emulator),
+            Err(error) => super::warn(&format!("{error}; it is started without a window")),
+        }
+    }
+    Ok(Emulator::start(patience, &arguments.files, false)?)
 }
 
 /// The view as somebody was told of it.
@@ -188,16 +209,17 @@ fn serve(
     production: &mut Production,
     emulator: &mut Option<Emulator>,
     scene: &Scene,
-    threads: Option<NonZeroUsize>,
+    arguments: &Arguments,
     told: &mut Told,
 ) -> Result<(), Failure> {
-    let orders = emulator.as_ref().map(|_| read_orders());
+    let mut orders = emulator.as_ref().map(|_| read_orders());
     let mut unanswered = 0_u64;
     // When it was last seen at work on an order.
     let mut at_work = Instant::now();
     loop {
-        if let (Some(orders), Some(emulator)) = (&orders, emulator.as_mut()) {
-            match orders.try_recv() {
+        let given = orders.as_ref().map(mpsc::Receiver::try_recv);
+        if let (Some(given), Some(emulator)) = (given, emulator.as_mut()) {
+            match given {
                 Ok(order) if order == "quit" => return Ok(()),
                 Ok(order) => {
                     emulator.give(&order)?;
@@ -205,15 +227,19 @@ fn serve(
                     unanswered += 1;
                 }
                 Err(mpsc::TryRecvError::Empty) => {}
-                // The end of the orders is the end, once all are answered.
+                // With a window, somebody else gives orders. Without one, the end of the orders is the end, once all are
+                // answered.
+                Err(mpsc::TryRecvError::Disconnected) if emulator.has_window() => orders = None,
                 Err(mpsc::TryRecvError::Disconnected) if unanswered == 0 => return Ok(()),
                 Err(mpsc::TryRecvError::Disconnected) => {}
             }
-            if let Some(reply) = emulator.reply()? {
-                unanswered -= 1;
-                at_work = Instant::now();
-                say!("{}", reply.replace("\\n", "\n"));
-            }
+        }
+        if let Some(emulator) = emulator.as_mut()
+            && let Some(reply) = emulator.reply()?
+        {
+            unanswered -= 1;
+            at_work = Instant::now();
+            say!("{}", reply.replace("\\n", "\n"));
         }
         let session = production.session();
         if unanswered > 0 && at_work.elapsed() > session.patience().order {
@@ -230,7 +256,7 @@ fn serve(
         let number = number.and_then(|n| n.trim().parse::<i32>().ok());
         let key = KEYS.iter().find(|row| Some(row.0) == number).map(|row| row.2);
         match key {
-            Some(Key::Render) => render(production, scene, threads)?,
+            Some(Key::Render) => render(production, scene, arguments.threads)?,
             Some(Key::Reset) => production.reset()?,
             Some(Key::Camera) => told.tell(production)?,
             Some(Key::End) => return Ok(()),

@@ -25,6 +25,7 @@ pub struct Emulator {
     patience: Patience,
     replies: mpsc::Receiver<String>,
     line: Address,
+    has_window: bool,
 }
 
 impl Emulator {
@@ -34,15 +35,17 @@ impl Emulator {
     ///
     /// - `patience`: how long it may take to get ready, and to carry out orders.
     /// - `files`: the folder below which orders write files.
+    /// - `window`: whether it opens one, with both screens and all devices.
     ///
     /// # Errors
     /// [`WorkstationError::Start`] names the program.
-    pub fn start(patience: Patience, files: &Path) -> Result<Emulator, WorkstationError> {
+    pub fn start(patience: Patience, files: &Path, window: bool) -> Result<Emulator, WorkstationError> {
         let program = program();
         let error = |e: std::io::Error| WorkstationError::Start { program: program.clone(), reason: e.to_string() };
         let mut child = Command::new(&program)
             .args(["--listen", "tcp:127.0.0.1:0", "--operator", "stdio", "--with-parent", "--files"])
             .arg(files)
+            .args(window.then_some("--window"))
             // A group of its own: Ctrl-C on the terminal is ours to answer, and ends it through us.
             .process_group(0)
             .env("PS340_LOG", env::var("PS340_LOG").unwrap_or_else(|_| "warn".into()))
@@ -63,7 +66,7 @@ impl Emulator {
                 return Err(error(std::io::Error::other(reason)));
             }
         };
-        Ok(Emulator { child, orders, patience, replies, line })
+        Ok(Emulator { child, orders, patience, replies, line, has_window: window })
     }
 
     /// Where its host line is.
@@ -71,9 +74,26 @@ impl Emulator {
         &self.line
     }
 
+    /// Whether it has a window of its own.
+    pub fn has_window(&self) -> bool {
+        self.has_window
+    }
+
     /// Its process number.
     pub fn process(&self) -> u32 {
         self.child.id()
+    }
+
+    /// Whether it ended by itself as it was asked to, as by closing its window.
+    pub fn has_quit(&mut self) -> bool {
+        let end = Instant::now() + QUIT_TIME;
+        loop {
+            match self.child.try_wait() {
+                Ok(None) if Instant::now() < end => std::thread::sleep(Duration::from_millis(5)),
+                Ok(status) => return status.is_some_and(|status| status.success()),
+                Err(_) => return false,
+            }
+        }
     }
 
     /// Gives an order to the operator line, and returns the reply without its `ok`.
