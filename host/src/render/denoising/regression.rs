@@ -80,9 +80,9 @@ pub(super) struct Guides {
 /// A picture, of which each pixel is found by those around it.
 ///
 /// - `other`: of the same scene, with independent noise; it tells how much neighbors count.
-/// - `is_quiet`: whether a pixel has no noise to speak of. Where all around are quiet, the picture stays as it is, and
-///   nothing is computed.
-/// - `is_cancelled`: asked from time to time; what is left is then 0.
+/// - `is_quiet`: whether a pixel has no noise to speak of. Where all of some pixels in a row are quiet, they stay as they
+///   are, and nothing is computed.
+/// - `is_cancelled`: asked from time to time; what is left then stays as it was.
 pub(super) fn filtered(
     picture: &Noisy,
     other: &Noisy,
