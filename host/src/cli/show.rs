@@ -114,7 +114,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut told = Told { file, is_quiet: arguments.json, last: String::new() };
     let served = serve(&mut production, &mut emulator, &scene, arguments, &mut told);
-    if served.is_err() && emulator.as_mut().is_some_and(Emulator::has_quit) {
+    let is_cut = matches!(&served, Err(failure) if failure.exit == Exit::Line);
+    if is_cut && emulator.as_mut().is_some_and(|emulator| emulator.has_window() && emulator.has_quit()) {
         // Its window was closed.
         return Ok(());
     }

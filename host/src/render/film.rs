@@ -351,6 +351,12 @@ impl Film {
         &self.guides
     }
 
+    /// What guides a denoiser, pixel by pixel; none unless it is kept.
+    #[cfg(test)]
+    pub(super) fn guides_mut(&mut self) -> &mut [Guide] {
+        &mut self.guides
+    }
+
     /// All rows.
     pub(super) fn rows_mut(&mut self) -> Vec<Row<'_>> {
         let width = self.width as usize;

@@ -23,6 +23,9 @@ pub struct Guide {
     pub distance_squares: f32,
 }
 
+/// Radiance beyond this counts as this in squares, so that these stay numbers.
+const MOST: f32 = 1e16;
+
 impl Guide {
     /// Adds a sample.
     ///
@@ -34,7 +37,7 @@ impl Guide {
         let radiance = if sample.radiance.is_finite() { sample.radiance.as_vec3() } else { glam::Vec3::ZERO };
         let (albedo, normal) = (sample.albedo.as_vec3(), sample.normal.as_vec3());
         for band in 0..3 {
-            self.squares[band] += radiance[band] * radiance[band];
+            self.squares[band] += radiance[band].abs().min(MOST).powi(2);
             self.albedo[band] += albedo[band];
             self.normal[band] += normal[band];
         }

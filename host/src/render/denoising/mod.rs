@@ -43,12 +43,16 @@ const DARK: f32 = 0.1;
 /// A pixel has no noise to speak of below this relative standard error: less than a picture of eight bits shows.
 const QUIET: f32 = 1.0 / 512.0;
 
+/// Mean radiances of pictures whose squares are numbers of 32 bits.
+const UNITS: std::ops::RangeInclusive<f32> = 1e-15..=1e15;
+
 /// Memory that denoising takes for each pixel of a picture, bytes, the guides of its film included.
 pub(super) const BYTES: u64 = 220;
 
 /// The picture of a film without most of its noise; none if it was cancelled.
 ///
-/// The film has to keep guides, and at least two samples a pixel; a pixel of fewer is taken for all noise.
+/// The film has to keep guides. A pixel of a single sample has it in both halves. A film without guides, and one that is so
+/// dark or bright on average that squares leave the range of numbers ([`UNITS`]), stays as it is.
 ///
 /// - `is_cancelled`: asked from time to time.
 ///
@@ -88,26 +92,28 @@ struct Halves {
 }
 
 impl Halves {
-    /// None of a picture without light.
+    /// None of a film without light or guides.
     fn of(film: &Film) -> Option<Halves> {
         let size = [film.width() as usize, film.height() as usize];
         let (tallies, guides) = (film.tallies(), film.guides());
         let unit = tallies.iter().map(|tally| tally.mean().dot(LUMINANCE)).sum::<f64>() / tallies.len() as f64;
         let unit = unit as f32;
-        if !unit.is_normal() || unit < 0.0 || guides.len() != tallies.len() {
+        if !UNITS.contains(&unit) || guides.len() != tallies.len() {
             return None;
         }
         let counts = |pixel: usize| halves(tallies[pixel].count);
         let mean = |pixel: usize, band: usize| {
             let (Tally { sum, .. }, Guide { early, .. }) = (&tallies[pixel], &guides[pixel]);
             let [first, rest] = counts(pixel);
-            [early[band] / first.max(1.0), (sum[band] as f32 - early[band]) / rest.max(1.0)].map(|mean| mean / unit)
+            let late = (sum[band] as f32 - early[band]) / rest.max(1.0);
+            let early = if first > 0.0 { early[band] / first } else { late };
+            [early / unit, late / unit]
         };
         let early = from_fn(|band| Plane::new(size, MARGIN, |pixel| mean(pixel, band)[0]));
         let late = from_fn(|band| Plane::new(size, MARGIN, |pixel| mean(pixel, band)[1]));
         // As if samples were independent.
         let independent: [Plane; 3] = from_fn(|band| {
-            Plane::new(size, 1, |pixel| {
+            Plane::new(size, 0, |pixel| {
                 let (count, mean) = (tallies[pixel].count as f32, tallies[pixel].mean()[band] as f32);
                 let squares = guides[pixel].squares[band] / count.max(1.0) - mean * mean;
                 squares.max(0.0) / (count - 1.0).max(1.0) / (unit * unit)
@@ -150,8 +156,8 @@ impl Halves {
         (0..3).all(|band| {
             let [early, late] = [&self.early, &self.late].map(|half| half.bands[band].of(pixel));
             let mean = share * early + (1.0 - share) * late;
-            // That of the early half, for the share that it is of all.
-            let variance = share * self.early.variances[band].of(pixel);
+            // That of the late half, which no pixel lacks, for the share that it is of all.
+            let variance = (1.0 - share) * self.late.variances[band].of(pixel);
             variance <= QUIET * QUIET * (mean * mean + DARK)
         })
     }
