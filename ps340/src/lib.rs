@@ -22,6 +22,7 @@ pub mod disk;
 pub mod interpreter;
 pub mod line;
 pub mod machine;
+pub mod example;
 pub mod operator;
 pub mod shell;
 #[cfg(feature = "window")]

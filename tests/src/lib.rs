@@ -1,10 +1,11 @@
 //! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
-//! conformance suite; a judge of simple surfaces; the corpus of Boolean operations; the notices of crates of others; every
+//! conformance suite; a judge of simple surfaces; the window that real events work; the corpus of Boolean operations; the notices of crates of others; every
 //! reader of bytes.
 
 pub mod conformance;
 pub mod simple;
 pub mod corpus;
+pub mod desk;
 pub mod facets;
 pub mod notices;
 pub mod readers;

@@ -88,10 +88,10 @@ fn the_view_that_dials_set_reads_back_as_its_closed_form() {
     }
     machine.order("idle");
     let matrix = production.view().unwrap();
-    let expected = view_of_dials(production.prepared(), &turns).unwrap();
+    let expected = view_of_dials(production.initial(), &turns).unwrap();
     let off = difference(&matrix, &expected);
     assert!(off < 1e-6, "off by {off}: {matrix:?} is not {expected:?}");
-    let before = view_of_dials(production.prepared(), &[0.0; 7]).unwrap();
+    let before = view_of_dials(production.initial(), &[0.0; 7]).unwrap();
     assert!(difference(&matrix, &before) > 0.1, "the dials did something");
     production.reset().unwrap();
     machine.order("idle");

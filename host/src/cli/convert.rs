@@ -7,7 +7,7 @@ use crate::picture::Picture;
 use crate::picture::display::{DisplayTransform, Exposure};
 use crate::render::metering::stops_of_picture;
 use crate::scene::{Prepared, View};
-use crate::workstation::{Drawing, Lines, structure};
+use crate::workstation::{Drawing, InitialView, Lines, structure};
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use glam::{DAffine3, DVec3};
@@ -109,10 +109,11 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
     let scene = load(&input.to_string_lossy(), definitions)?.scene;
     let prepared = Prepared::new(&scene)?;
     let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
-    let shown = structure::commands(&scene, &prepared.camera, &prepared.bounds, &drawing)
+    let shown = InitialView::of(&prepared)
+        .and_then(|initial| structure::commands(&scene, &initial, &prepared.bounds, &drawing))
         .map_err(|error| Failure::new(Exit::Scene, error))?;
     let mut text = Vec::new();
-    for command in &shown.commands {
+    for command in std::iter::once(&structure::delete()).chain(&shown.commands) {
         print(command, &mut text);
         text.push(b'\n');
     }

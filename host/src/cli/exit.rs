@@ -129,6 +129,7 @@ impl From<ProductionError> for Failure {
             ProductionError::Scene(e) => e.into(),
             ProductionError::Workstation(e) => e.into(),
             ProductionError::Render(e) => e.into(),
+            ProductionError::Thread(_) => Failure::new(Exit::Failed, error),
         }
     }
 }

@@ -250,7 +250,7 @@ impl Job<'_> {
         if self.to.is_none() {
             let mut turns = [0.0; 7];
             self.dials.iter().for_each(|t| turns[t.dial - 1] += t.turns);
-            if let Some(expected) = view_of_dials(production.prepared(), &turns) {
+            if let Some(expected) = view_of_dials(production.initial(), &turns) {
                 let off = difference(&matrix, &expected);
                 let text =
                     format_args!("the matrix that the dials set was read back; off the closed form by {off:.1e}");

@@ -30,6 +30,11 @@ impl Definitions {
     }
 }
 
+/// The file that a name on the command line means; none for the name of a scene that ships.
+pub(super) fn file(name: &str) -> Option<&Path> {
+    script::EMBEDDED.iter().all(|embedded| embedded.name != name).then_some(Path::new(name))
+}
+
 /// Whether a name is that of a file with triangles, and not of a script.
 pub(super) fn is_mesh(name: &Path) -> bool {
     mesh::Format::of(name).is_some() || Octree::is_file(name)
@@ -41,7 +46,14 @@ pub(super) fn is_mesh(name: &Path) -> bool {
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`], if the script is wrong or the mesh cannot be read.
 pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
-    let evaluated = load(name, definitions)?;
+    lit(name, load(name, definitions)?)
+}
+
+/// What [`load`] gave for a name, to be looked at, as [`load_lit`] says it.
+///
+/// # Errors
+/// A [`Failure`] with [`super::Exit::Scene`].
+pub(super) fn lit(name: &str, evaluated: Evaluated) -> Result<Evaluated, Failure> {
     if is_mesh(Path::new(name)) {
         return Ok(Evaluated { scene: evaluated.scene.in_studio()?, ..evaluated });
     }
@@ -64,7 +76,12 @@ pub fn load(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure>
         if !definitions.is_empty() {
             return Err(Failure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
         }
-        return Ok(Evaluated { scene: Scene::of_mesh(path), name: stem(name).into(), printed: Vec::new() });
+        return Ok(Evaluated {
+            scene: Scene::of_mesh(path),
+            name: stem(name).into(),
+            printed: Vec::new(),
+            files: Vec::new(),
+        });
     }
     progress::stage("while evaluating the script");
     let inputs = Inputs { definitions: definitions.given.clone(), allowed: definitions.allow.clone() };

@@ -4,7 +4,7 @@ use crate::workstation::Patience;
 use clap::Args;
 
 /// How long the workstation may take.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(super) struct Waits {
     /// Seconds that the workstation may take to open its line, to answer, and to carry out an order of its operator
     /// [default: 30, 30 and 120]

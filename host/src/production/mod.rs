@@ -1,21 +1,21 @@
 //! The main job: a scene on the workstation, the view that is set there with the dials, and its image back.
 
 mod closed_form;
+mod progressive;
 
 pub use closed_form::{difference, view_of_dials};
+pub use progressive::{News, Progressive};
 
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
-    render::{
-        Order, RenderError, Renderer, Rendering, Watch, metering::Meter, radiosity::Radiosity, ray_tracing::RayTracer,
-        tiles::Tiling,
-    },
+    render::{Order, RenderError, Rendering, Watch, radiosity::Radiosity, tiles::Tiling},
     scene::{Camera, Prepared, Projection, Scene, SceneError, View},
-    workstation::{Drawing, Session, WorkstationError, network, raster, structure, tiles},
+    workstation::{Drawing, InitialView, Session, Shown, WorkstationError, network, raster, structure, tiles},
 };
 use glam::{DMat4, DVec3};
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Corners of the tiles that show a solution by radiosity, unless the scene has more triangles: the machine shades so many
@@ -36,16 +36,60 @@ pub enum ProductionError {
     /// The image cannot be rendered.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// No thread can be had to render with, or it failed.
+    #[error("the rendering cannot go on: {0}")]
+    Thread(String),
+}
+
+/// A scene that is ready to be shown on a workstation.
+#[derive(Debug)]
+pub struct Model {
+    prepared: Prepared,
+    initial: InitialView,
+    shown: Shown,
+    is_lit: bool,
+    begun: Instant,
+}
+
+impl Model {
+    /// Models a scene.
+    ///
+    /// - `light`: of its surfaces, if it is to be shown; the workstation shades it whenever the dials have stood still for a
+    ///   while. `initial`: from where it is seen, instead of by its own camera.
+    ///
+    /// # Errors
+    /// [`ProductionError`].
+    pub fn new(
+        scene: &Scene,
+        drawing: &Drawing,
+        light: Option<&Tiling>,
+        initial: Option<InitialView>,
+    ) -> Result<Model, ProductionError> {
+        let prepared = Prepared::new(scene)?;
+        let begun = Instant::now();
+        let own = InitialView::of(&prepared)?;
+        let initial = initial.map_or(own, |initial| InitialView { elongation: own.elongation, ..initial });
+        let shown = structure::with_light(scene, &initial, &prepared.bounds, drawing, light)?;
+        Ok(Model { prepared, initial, shown, is_lit: light.is_some(), begun })
+    }
+
+    /// From where it is seen before dials turn it.
+    pub fn initial(&self) -> &InitialView {
+        &self.initial
+    }
 }
 
 /// A scene that stands on a workstation.
 #[derive(Debug)]
 pub struct Production {
-    prepared: Prepared,
+    prepared: Arc<Prepared>,
+    initial: InitialView,
     session: Session,
     depth_clipping: bool,
     is_lit: bool,
     sent: Sent,
+    /// Width and height of the image on the raster screen, if one was sent.
+    image: Option<[u32; 2]>,
 }
 
 /// What was sent to show a scene.
@@ -55,7 +99,7 @@ pub struct Sent {
     pub lines: usize,
     /// Points sent: lines and moves.
     pub points: usize,
-    /// Until the workstation had them, seconds.
+    /// From when they were chosen until the workstation had them, seconds.
     pub seconds: f64,
 }
 
@@ -74,43 +118,65 @@ pub struct Shot {
     pub stops: f64,
 }
 
+impl Shot {
+    /// For each row, from the top, whether all of its pixels have samples; false in rows that a stop left out.
+    pub fn rows(&self) -> Vec<bool> {
+        progressive::rows_of(&self.rendering.film)
+    }
+}
+
 impl Production {
     /// Models the scene and shows it on a workstation.
     ///
     /// # Errors
     /// [`ProductionError`].
     pub fn begin(scene: &Scene, session: Session, drawing: &Drawing) -> Result<Production, ProductionError> {
-        Production::lit(scene, session, drawing, None)
+        Production::show(Model::new(scene, drawing, None, None)?, session)
     }
 
-    /// Models the scene and shows it on a workstation with the light of a solution, which the workstation shades whenever the
-    /// dials have stood still for a while.
+    /// Shows a scene on a workstation.
     ///
     /// # Errors
-    /// [`ProductionError`].
-    pub fn lit(
-        scene: &Scene,
-        mut session: Session,
-        drawing: &Drawing,
-        light: Option<&Tiling>,
-    ) -> Result<Production, ProductionError> {
-        let prepared = Prepared::new(scene)?;
-        let start = Instant::now();
-        let shown = structure::with_light(scene, &prepared.camera, &prepared.bounds, drawing, light)?;
-        session.show(&shown, prepared.bounds.diagonal().max(f64::MIN_POSITIVE))?;
-        if light.is_some() {
+    /// [`ProductionError::Workstation`].
+    pub fn show(model: Model, mut session: Session) -> Result<Production, ProductionError> {
+        let Model { prepared, initial, shown, is_lit, begun } = model;
+        session.show(&shown, initial.movement())?;
+        if is_lit {
             session.commands(&tiles::settings(prepared.background))?;
             session.commands(&network::shading())?;
             session.synchronize()?;
         }
-        let sent = Sent { lines: shown.lines, points: shown.points, seconds: start.elapsed().as_secs_f64() };
-        let (depth_clipping, is_lit) = (shown.depth_clipping, light.is_some());
-        Ok(Production { prepared, session, depth_clipping, is_lit, sent })
+        let sent = Sent { lines: shown.lines, points: shown.points, seconds: begun.elapsed().as_secs_f64() };
+        let depth_clipping = shown.depth_clipping;
+        Ok(Production { prepared: Arc::new(prepared), initial, session, depth_clipping, is_lit, sent, image: None })
+    }
+
+    /// Shows another scene in place of this one, which was shown with light if that is.
+    ///
+    /// - `keeps_dials`: whether it stands as dials have turned this one, rather than as its own camera sees it.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn replace(&mut self, model: Model, keeps_dials: bool) -> Result<(), ProductionError> {
+        let Model { prepared, initial, shown, begun, .. } = model;
+        self.session.replace(&shown, initial.movement())?;
+        if self.is_lit {
+            // The node that shades was made anew.
+            self.session.commands(&network::shading())?;
+        }
+        self.sent = Sent { lines: shown.lines, points: shown.points, seconds: begun.elapsed().as_secs_f64() };
+        (self.prepared, self.initial, self.depth_clipping) = (Arc::new(prepared), initial, shown.depth_clipping);
+        if keeps_dials { Ok(self.session.synchronize()?) } else { self.reset() }
     }
 
     /// The scene as it is rendered.
     pub fn prepared(&self) -> &Prepared {
         &self.prepared
+    }
+
+    /// From where it is seen before dials turn it.
+    pub fn initial(&self) -> &InitialView {
+        &self.initial
     }
 
     /// What was sent.
@@ -134,7 +200,7 @@ impl Production {
     /// What a matrix that was read back shows of the scene.
     fn projection(&self, matrix: &DMat4) -> Projection {
         // The screen's sides are those of the longer side of the picture, a view's those of the shorter one.
-        let zoom = structure::elongation(&self.prepared.settings);
+        let zoom = self.initial.elongation;
         let matrix = DMat4::from_scale(DVec3::new(zoom, zoom, 1.0)) * *matrix;
         Projection::from_workstation(&matrix, self.depth_clipping)
     }
@@ -145,8 +211,8 @@ impl Production {
     /// [`ProductionError::Workstation`].
     pub fn camera(&mut self) -> Result<Option<Camera>, ProductionError> {
         let matrix = self.view()?;
-        let bounds = &self.prepared.bounds;
-        Ok(self.projection(&matrix).camera(bounds.center(), bounds.diagonal().max(f64::MIN_POSITIVE)))
+        let diagonal = self.prepared.bounds.diagonal().max(f64::MIN_POSITIVE);
+        Ok(self.projection(&matrix).camera(self.initial.center, diagonal))
     }
 
     /// Ray-traces the view of a matrix that was read back.
@@ -163,18 +229,23 @@ impl Production {
         watch: &Watch<'_>,
     ) -> Result<Shot, ProductionError> {
         let view = View::Projection(self.projection(matrix));
-        let start = Instant::now();
-        let plan = Plan::new(&self.prepared, &view);
-        let tracer = RayTracer::new(&self.prepared, &plan)?;
-        let build_seconds = start.elapsed().as_secs_f64();
-        let triangles = self.prepared.triangles.len().max(1) as f64;
-        let octree_bytes = tracer.octree().map(|octree| octree.bytes() as f64 / triangles);
-        let meter = Meter::new(&self.prepared.settings, display, order.threads);
-        let stops = meter.stops(&tracer, &self.prepared, &[view], watch)?;
-        let rendering = tracer.render(&view, order, watch)?;
-        let pixel_angle = view.pixel_angle(order.width, order.height);
-        let shown = display.shown(&rendering.picture, stops, pixel_angle).map_err(RenderError::from)?;
-        Ok(Shot { rendering, octree_bytes, build_seconds, shown, stops })
+        progressive::shot(&self.prepared, &view, order, display, watch, None)
+    }
+
+    /// Begins to ray-trace the view of a matrix that was read back, beside whatever else is done.
+    ///
+    /// - `display`: how the image is shown; an automatic exposure is metered from this view.
+    ///
+    /// # Errors
+    /// [`ProductionError::Thread`].
+    pub fn begin_rendering(
+        &self,
+        matrix: &DMat4,
+        order: &Order,
+        display: &DisplayTransform,
+    ) -> Result<Progressive, ProductionError> {
+        let view = View::Projection(self.projection(matrix));
+        Progressive::begin(self.prepared.clone(), view, *order, *display)
     }
 
     /// Shows an image on the raster screen, whose radiance is the light of the display. It is there when this returns.
@@ -182,10 +253,41 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Workstation`].
     pub fn show_image(&mut self, picture: &Picture) -> Result<(), ProductionError> {
+        self.show_rows(picture, |_| true)
+    }
+
+    /// Shows rows of an image on the raster screen, whose radiance is the light of the display. They are there when this
+    /// returns. Elsewhere an image of the same size stays.
+    ///
+    /// - `is_shown`: which rows, counted from the top.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn show_rows(&mut self, picture: &Picture, is_shown: impl Fn(u32) -> bool) -> Result<(), ProductionError> {
+        let size = [picture.width(), picture.height()];
+        if self.image.replace(size) != Some(size) {
+            self.session.raster(&raster::begin())?;
+        }
         let bytes = picture.to_srgb8();
         let (pixels, _) = bytes.as_chunks::<3>();
-        self.session.raster(&raster::commands(picture.width(), picture.height(), pixels))?;
+        self.session.raster(&raster::rows(size, pixels, is_shown))?;
         Ok(self.session.synchronize()?)
+    }
+
+    /// Says something in the message line of the workstation; nothing empties it. Letters are shown as capitals.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn say(&mut self, text: &str) -> Result<(), ProductionError> {
+        Ok(self.session.commands(&[network::message(text)])?)
+    }
+
+    /// Writes the label over a function key (1..=12), of 8 characters at most.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn label(&mut self, key: i32, text: &str) -> Result<(), ProductionError> {
+        Ok(self.session.commands(&[network::label(key, text)])?)
     }
 
     /// Puts the dials back to where they began.
@@ -201,7 +303,7 @@ impl Production {
     }
 }
 
-/// Solves for the light of a scene by radiosity, as tiles for [`Production::lit`].
+/// Solves for the light of a scene by radiosity, as tiles for a [`Model`].
 ///
 /// - `threads`: as in [`Order`].
 ///

@@ -84,7 +84,8 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -
     let scene = state.borrow().finish();
     scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
     let printed = printed.take().finish();
-    Ok(Evaluated { scene, name: name.to_owned(), printed })
+    let files = state.borrow().folders.named();
+    Ok(Evaluated { scene, name: name.to_owned(), printed, files })
 }
 
 fn limited() -> Engine {

@@ -1,5 +1,6 @@
 //! Below which folders a script reads.
 
+use std::cell::RefCell;
 use std::path::{Component, Path, PathBuf};
 
 /// The folder where the paths of a script begin, and all below which it may read.
@@ -7,6 +8,8 @@ pub(super) struct Folders {
     own: PathBuf,
     /// Without links; those that there are.
     readable: Vec<PathBuf>,
+    /// The files that it has named.
+    named: RefCell<Vec<PathBuf>>,
 }
 
 impl Folders {
@@ -14,7 +17,12 @@ impl Folders {
     /// - `allowed`: others, below which the script may read, too.
     pub(super) fn new(own: &Path, allowed: &[PathBuf]) -> Folders {
         let all = std::iter::once(own).chain(allowed.iter().map(PathBuf::as_path));
-        Folders { own: own.into(), readable: all.filter_map(without_links).collect() }
+        Folders { own: own.into(), readable: all.filter_map(without_links).collect(), named: RefCell::default() }
+    }
+
+    /// The files that the script has named, in the order in which it did.
+    pub(super) fn named(&self) -> Vec<PathBuf> {
+        self.named.borrow().clone()
     }
 
     /// Where a file is that a script names; a file that is not there may be anywhere below the folders.
@@ -23,6 +31,7 @@ impl Folders {
     /// In words, where it is outside the folders, links followed.
     pub(super) fn file(&self, name: &str) -> Result<PathBuf, String> {
         let path = self.own.join(name);
+        self.named.borrow_mut().push(path.clone());
         let is_below = without_links(&path).is_some_and(|path| self.readable.iter().any(|top| path.starts_with(top)));
         is_below.then_some(path).ok_or_else(|| {
             format!(

@@ -199,6 +199,8 @@ pub struct Evaluated {
     pub name: String,
     /// What the script printed, line by line.
     pub printed: Vec<String>,
+    /// The files that it read, in the order in which it named them.
+    pub files: Vec<PathBuf>,
 }
 
 /// Endings of the names of pictures.

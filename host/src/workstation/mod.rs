@@ -1,6 +1,7 @@
 //! The host's side of the line: scenes, dial networks and images for a PS 340, and the view back from it.
 
 mod error;
+mod initial_view;
 mod patience;
 pub mod emulator;
 pub mod facets;
@@ -12,6 +13,7 @@ pub mod tiles;
 
 pub use emulator::Emulator;
 pub use error::WorkstationError;
+pub use initial_view::InitialView;
 pub use patience::Patience;
 pub use session::Session;
 pub use structure::{Drawing, Lines, Shown};

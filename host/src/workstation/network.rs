@@ -9,12 +9,10 @@ use protocol::{
 
 /// Degrees that one turn of a dial rotates: what clients of the time used.
 pub const DEGREES_PER_TURN: f64 = 200.0;
-/// Scale that one turn of dial 4 adds.
-pub const SCALE_PER_TURN: f64 = 1.0;
-/// Least and greatest scale.
-pub const SCALE_LIMITS: [f64; 2] = [0.01, 1000.0];
-/// What dials 5 to 7 move in one turn, as a part of the scene's diagonal.
-pub const DIAGONALS_PER_TURN: f64 = 0.5;
+/// How many times dial 4 is squared: the scale is `(1 + x / 2^n)^(2^n)`, nearly the exponential of its turns x.
+pub const SCALE_SQUARINGS: u32 = 4;
+/// Least and greatest turns of dial 4 that count: scales of 0.01 and 657.
+pub const SCALE_LIMITS: [f64; 2] = [-4.0, 8.0];
 
 /// What a message to the host begins with when a function key was pressed; the number follows.
 pub const KEY_PREFIX: &str = "KEY ";
@@ -39,13 +37,20 @@ pub enum Key {
     Reset,
     /// The host tells the view that is set, as a camera.
     Camera,
+    /// The host stops rendering; what it has rendered stays.
+    Cancel,
     /// The host ends.
     End,
 }
 
 /// Number, label and meaning of each function key in use.
-pub const KEYS: [(i32, &str, Key); 4] =
-    [(1, "RENDER", Key::Render), (2, "RESET", Key::Reset), (3, "CAMERA", Key::Camera), (12, "END", Key::End)];
+pub const KEYS: [(i32, &str, Key); 5] = [
+    (1, "RENDER", Key::Render),
+    (2, "RESET", Key::Reset),
+    (3, "CAMERA", Key::Camera),
+    (4, "CANCEL", Key::Cancel),
+    (12, "END", Key::End),
+];
 
 /// Labels over the dials.
 pub const DIAL_LABELS: [&str; 8] = ["ROT X", "ROT Y", "ROT Z", "SCALE", "TRAN X", "TRAN Y", "TRAN Z", ""];
@@ -75,6 +80,30 @@ impl Build {
     fn send(&mut self, value: Value, input: u32, to: &str) {
         self.commands.push(send(value, input, to));
     }
+
+    /// Dial 4 scales by a factor, whatever the scale is: its turns are summed, and squared often enough.
+    fn scale(&mut self) {
+        self.function("PERIS_S", "ACCUMULATE");
+        self.send(Value::Real(SCALE_LIMITS[1]), 5, "PERIS_S");
+        self.send(Value::Real(SCALE_LIMITS[0]), 6, "PERIS_S");
+        self.connect("DIALS", 4, 1, "PERIS_S");
+        self.function("PERIS_S0", "MULC");
+        self.send(Value::Real(1.0 / f64::from(1 << SCALE_SQUARINGS)), 2, "PERIS_S0");
+        self.connect("PERIS_S", 1, 1, "PERIS_S0");
+        self.function("PERIS_S1", "ADDC");
+        self.send(Value::Real(1.0), 2, "PERIS_S1");
+        self.connect("PERIS_S0", 1, 1, "PERIS_S1");
+        for number in 1..=SCALE_SQUARINGS {
+            let [from, to] = [number, number + 1].map(|number| format!("PERIS_S{number}"));
+            self.function(&to, "MUL");
+            self.connect(&from, 1, 1, &to);
+            self.connect(&from, 1, 2, &to);
+        }
+        let last = format!("PERIS_S{}", SCALE_SQUARINGS + 1);
+        self.function("PERIS_SCALE", "SCALE");
+        self.connect(&last, 1, 1, "PERIS_SCALE");
+        self.connect("PERIS_SCALE", 1, 1, &format!("{ROOT}.S"));
+    }
 }
 
 /// `SEND value TO <input>to;`
@@ -84,8 +113,8 @@ pub(super) fn send(value: Value, input: u32, to: &str) -> Command {
 
 /// Dials that rotate, scale and move the scene, with their labels; keys; and the way back of the view.
 ///
-/// - `diagonal`: of the scene, scene units.
-pub fn commands(diagonal: f64) -> Vec<Command> {
+/// - `movement`: what a turn of dials 5 to 7 moves, scene units.
+pub fn commands(movement: f64) -> Vec<Command> {
     let mut build = Build::default();
     for (dial, axis) in (1..).zip(["X", "Y", "Z"]) {
         let function = format!("PERIS_R{axis}");
@@ -94,14 +123,9 @@ pub fn commands(diagonal: f64) -> Vec<Command> {
         build.connect("DIALS", dial, 1, &function);
         build.connect(&function, 1, 1, &format!("{ROOT}.R{axis}"));
     }
-    build.function("PERIS_S", "DSCALE");
-    build.send(Value::Real(SCALE_PER_TURN), 3, "PERIS_S");
-    build.send(Value::Real(SCALE_LIMITS[1]), 4, "PERIS_S");
-    build.send(Value::Real(SCALE_LIMITS[0]), 5, "PERIS_S");
-    build.connect("DIALS", 4, 1, "PERIS_S");
-    build.connect("PERIS_S", 1, 1, &format!("{ROOT}.S"));
+    build.scale();
     build.function("PERIS_T", "ACCUMULATE");
-    build.send(Value::Real(diagonal * DIAGONALS_PER_TURN), 4, "PERIS_T");
+    build.send(Value::Real(movement), 4, "PERIS_T");
     build.connect("PERIS_T", 1, 1, &format!("{ROOT}.T"));
     for (dial, axis) in (5..).zip(["X", "Y", "Z"]) {
         let function = format!("PERIS_V{axis}");
@@ -120,7 +144,7 @@ pub fn commands(diagonal: f64) -> Vec<Command> {
     build.connect("PERIS_NUMBER", 1, 2, "PERIS_KEY");
     build.connect("PERIS_KEY", 1, 1, "HOST_MESSAGE");
     for (number, label, _) in KEYS {
-        build.send(Value::string(label), 1, &format!("FLABEL{number}"));
+        build.commands.push(self::label(number, label));
     }
     build.function(VIEW_TRIGGER, "XFORMDATA");
     build.function("PERIS_LIST", "LIST");
@@ -129,6 +153,16 @@ pub fn commands(diagonal: f64) -> Vec<Command> {
     build.connect(VIEW_TRIGGER, 1, 1, "PERIS_LIST");
     build.connect("PERIS_LIST", 1, 1, VIEW_TEXT);
     build.commands
+}
+
+/// A text for the message line.
+pub fn message(text: &str) -> Command {
+    send(Value::string(text), 1, "MESSAGE_DISPLAY")
+}
+
+/// A text for the label over a function key.
+pub fn label(key: i32, text: &str) -> Command {
+    send(Value::string(text), 1, &format!("FLABEL{key}"))
 }
 
 /// Asks for the matrix of the view, whoever set up the network that answers.
@@ -169,6 +203,20 @@ pub fn shade() -> Vec<Command> {
     vec![send(Value::Boolean(true), 1, QUIET)]
 }
 
+/// Makes a scene that takes the place of another stand as dials have turned that: they are turned by nothing, so that what
+/// sums their turns speaks.
+///
+/// - `movement`: what a turn of dials 5 to 7 moves from now on, scene units.
+pub fn settle(movement: f64) -> Vec<Command> {
+    let mut build = Build::default();
+    build.send(Value::Real(movement), 4, "PERIS_T");
+    for function in ["PERIS_RX", "PERIS_RY", "PERIS_RZ", "PERIS_S"] {
+        build.send(Value::Real(0.0), 1, function);
+    }
+    build.send(Value::Vector3(DVec3::ZERO), 1, "PERIS_T");
+    build.commands
+}
+
 /// Puts the dials back to where they began: the accumulators first, then a delta of nothing, which makes the
 /// functions speak.
 pub fn reset() -> Vec<Command> {
@@ -178,7 +226,7 @@ pub fn reset() -> Vec<Command> {
         build.send(Value::Real(0.0), 2, &function);
         build.send(Value::Real(0.0), 1, &function);
     }
-    build.send(Value::Real(1.0), 2, "PERIS_S");
+    build.send(Value::Real(0.0), 2, "PERIS_S");
     build.send(Value::Real(0.0), 1, "PERIS_S");
     build.send(Value::Vector3(DVec3::ZERO), 2, "PERIS_T");
     build.send(Value::Vector3(DVec3::ZERO), 1, "PERIS_T");

@@ -263,11 +263,28 @@ impl Session {
 
     /// Shows a scene, with its dials, labels and keys. The scene is there when this returns.
     ///
+    /// - `movement`: what a turn of dials 5 to 7 moves, scene units.
+    ///
     /// # Errors
     /// [`WorkstationError`].
-    pub fn show(&mut self, shown: &structure::Shown, diagonal: f64) -> Result<(), WorkstationError> {
+    pub fn show(&mut self, shown: &structure::Shown, movement: f64) -> Result<(), WorkstationError> {
+        self.commands(&[structure::delete()])?;
         self.commands(&shown.commands)?;
-        self.commands(&network::commands(diagonal))?;
+        self.commands(&network::commands(movement))?;
+        self.synchronize()
+    }
+
+    /// Shows a scene in place of another one, as far as dials have turned that. Nobody sees a half of it.
+    ///
+    /// - `movement`: what a turn of dials 5 to 7 moves, scene units.
+    ///
+    /// # Errors
+    /// [`WorkstationError`].
+    pub fn replace(&mut self, shown: &structure::Shown, movement: f64) -> Result<(), WorkstationError> {
+        self.commands(&[Command::Begin, structure::delete_objects()])?;
+        self.commands(&shown.commands)?;
+        self.commands(&network::settle(movement))?;
+        self.commands(&[Command::End])?;
         self.synchronize()
     }
 }

@@ -4,7 +4,7 @@
 //! screen): every z is negated on the way.
 
 use super::{
-    WorkstationError,
+    InitialView, WorkstationError,
     facets::{self, mirrored},
     network::name,
     tiles,
@@ -14,10 +14,10 @@ use crate::{
     mesh::{Eye, Polylines, Selection, polylines_of_groups},
     numeric::bounds::Bounds,
     render::tiles::Tiling,
-    scene::{Camera, Object, Scene, Settings},
+    scene::{Camera, Object, Scene},
     surface::Tolerance,
 };
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 use protocol::{
     Name,
     command::{Axis, Boundaries, Command, NamePattern, Object as Node, Operate, Scopes, VectorClass, VectorList},
@@ -78,42 +78,48 @@ pub struct Shown {
     pub depth_clipping: bool,
 }
 
-/// The longer side of a scene's picture over the shorter one.
-///
-/// The square screen of the workstation shows the whole picture: its sides are the longer side, and a wide picture
-/// takes a band across its middle. The field of view of a camera is that of the shorter side.
-pub fn elongation(settings: &Settings) -> f64 {
-    let (width, height) = (f64::from(settings.width), f64::from(settings.height));
-    width.max(height) / width.min(height)
+/// Deletes whatever a scene has on the workstation: its structure, its networks, and what its polygons look like.
+pub fn delete() -> Command {
+    Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())])
 }
 
-/// The commands that build the structure [`ROOT`] and display it.
+/// Deletes the objects of a scene whose structure is about to be defined anew. Its nodes, and the arcs to them, stay.
+pub fn delete_objects() -> Command {
+    Command::Delete([format!("{ROOT}.O"), format!("{ROOT}_A")].map(NamePattern::Prefix).into())
+}
+
+/// The commands that build the structure [`ROOT`] and display it; [`delete`] comes before them.
 ///
 /// Its nodes `CLIP`, `VIEW`, `LOOK`, `T`, `RX`, `RY`, `RZ`, `S` take values from networks; `MATRIX` is an XFORM
 /// MATRIX node below them all, whose matrix takes scene coordinates (z negated) to clip space.
 ///
+/// - `initial`: from where it is seen. `bounds`: a box around the scene.
+///
 /// # Errors
-/// [`WorkstationError::Scene`], if the camera cannot see or an object cannot be tessellated.
-pub fn commands(scene: &Scene, camera: &Camera, bounds: &Bounds, drawing: &Drawing) -> Result<Shown, WorkstationError> {
-    with_light(scene, camera, bounds, drawing, None)
+/// [`WorkstationError::Scene`], if an object cannot be tessellated.
+pub fn commands(
+    scene: &Scene,
+    initial: &InitialView,
+    bounds: &Bounds,
+    drawing: &Drawing,
+) -> Result<Shown, WorkstationError> {
+    with_light(scene, initial, bounds, drawing, None)
 }
 
 /// The commands that [`commands`] gives, and the light of a solution by radiosity, which the node `SHADE` shades on the
 /// raster screen when it gets FIX(5); its polygons are not drawn as vectors.
 ///
 /// # Errors
-/// [`WorkstationError::Scene`], if the camera cannot see or an object cannot be tessellated.
+/// [`WorkstationError::Scene`], if an object cannot be tessellated.
 pub fn with_light(
     scene: &Scene,
-    camera: &Camera,
+    initial: &InitialView,
     bounds: &Bounds,
     drawing: &Drawing,
     light: Option<&Tiling>,
 ) -> Result<Shown, WorkstationError> {
-    let failed = |e: String| WorkstationError::Scene(e);
-    camera.check().map_err(|e| failed(e.to_string()))?;
+    let camera = &initial.camera;
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
-    shown.commands.push(Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())]));
     let angle = scene.settings.angle;
     let objects: Result<Vec<Vec<Part>>, WorkstationError> = (1..)
         .zip(&scene.objects)
@@ -125,7 +131,7 @@ pub fn with_light(
         shown.commands.push(Command::ReserveWorkingStorage(bytes));
     }
     begin(&mut shown.commands, ROOT);
-    view(&mut shown.commands, camera, bounds, elongation(&scene.settings), shown.depth_clipping)?;
+    view(&mut shown.commands, initial, bounds, shown.depth_clipping);
     if drawing.facets {
         operate(&mut shown.commands, Some("SHADE"), Operate::SurfaceRendering);
         let lights = facets::illumination(&scene.lights, bounds.center());
@@ -164,34 +170,46 @@ fn operate(commands: &mut Vec<Command>, node: Option<&str>, operate: Operate) {
 }
 
 /// Viewport, projection, eye, and what the dials change.
-fn view(
-    commands: &mut Vec<Command>,
-    camera: &Camera,
-    bounds: &Bounds,
-    elongation: f64,
-    depth_clipping: bool,
-) -> Result<(), WorkstationError> {
-    let center = bounds.center();
-    let projection = camera.projection().ok_or_else(|| WorkstationError::Scene("the camera cannot see".into()))?;
+fn view(commands: &mut Vec<Command>, initial: &InitialView, bounds: &Bounds, depth_clipping: bool) {
+    let InitialView { camera, center, elongation } = initial;
+    let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
+    let axes = mirror * initial.axes() * mirror;
     let (horizontal, vertical) = ([-1.0, 1.0], [-1.0, 1.0]);
     operate(commands, None, Operate::Viewport { horizontal, vertical, intensity: Some([BACK_INTENSITY, 1.0]) });
     operate(commands, Some("CLIP"), Operate::SetDepthClipping(depth_clipping));
-    let depth = projection.to_clip.row(3).dot(bounds.center().extend(1.0));
-    let boundaries = Some(boundaries(camera, depth, bounds.diagonal() / 2.0));
-    let angle = 2.0 * (camera.half_tangent() * elongation).atan().to_degrees();
-    operate(commands, Some("VIEW"), Operate::FieldOfView { angle, boundaries });
+    let boundaries = Some(boundaries(camera, initial.depth(), bounds.diagonal() / 2.0));
+    match camera.parallel {
+        None => {
+            let angle = 2.0 * (camera.half_tangent() * elongation).atan().to_degrees();
+            operate(commands, Some("VIEW"), Operate::FieldOfView { angle, boundaries });
+        }
+        Some(parallel) => {
+            let half = parallel.height / 2.0 * elongation;
+            operate(commands, Some("VIEW"), Operate::Window { x: [-half, half], y: [-half, half], boundaries });
+        }
+    }
+    // In the coordinates of the eye: what dials 5 and 6 move goes along the sides of the screen.
+    operate(commands, Some("T"), Operate::Translate(DVec3::ZERO));
+    let oblique = camera.parallel.map(|parallel| parallel.oblique).filter(|oblique| *oblique != DVec2::ZERO);
+    if let Some(oblique) = oblique {
+        let distance = DVec3::new(0.0, 0.0, (camera.at - camera.from).length());
+        let shear = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(-oblique.x, -oblique.y, 1.0));
+        operate(commands, None, Operate::Translate(distance));
+        operate(commands, None, Operate::Matrix3(shear));
+        operate(commands, None, Operate::Translate(-distance));
+    }
     let (at, from) = (mirrored(camera.at), mirrored(camera.from));
     // The workstation takes UP as a point above AT.
     operate(commands, Some("LOOK"), Operate::Look { at, from, up: Some(at + mirrored(camera.up)) });
-    operate(commands, Some("T"), Operate::Translate(DVec3::ZERO));
-    operate(commands, None, Operate::Translate(mirrored(center)));
+    operate(commands, None, Operate::Translate(mirrored(*center)));
+    operate(commands, None, Operate::Matrix3(axes));
     for (node, axis) in [("RX", Axis::X), ("RY", Axis::Y), ("RZ", Axis::Z)] {
         operate(commands, Some(node), Operate::Rotate { axis, angle: 0.0 });
     }
     operate(commands, Some("S"), Operate::Scale(DVec3::ONE));
-    operate(commands, None, Operate::Translate(mirrored(-center)));
+    operate(commands, None, Operate::Matrix3(axes.transpose()));
+    operate(commands, None, Operate::Translate(mirrored(-*center)));
     operate(commands, Some("MATRIX"), Operate::XformMatrix);
-    Ok(())
 }
 
 /// Front and back for a scene whose centre lies at `depth` from the eye, and which is no larger than a sphere of `radius`.
@@ -324,7 +342,8 @@ mod tests {
     /// What follows each colour: hue, name of the node, number of lines or polygons.
     fn colored(drawing: &Drawing) -> Vec<(f64, String, usize)> {
         let bounds = Bounds::of([DVec3::splat(-2.0), DVec3::splat(2.0)]);
-        let shown = commands(&drilled(), &Camera::framing(&bounds), &bounds, drawing).unwrap();
+        let initial = InitialView { camera: Camera::framing(&bounds), center: bounds.center(), elongation: 1.0 };
+        let shown = commands(&drilled(), &initial, &bounds, drawing).unwrap();
         let mut found = Vec::new();
         let mut hue_now = f64::NAN;
         for command in &shown.commands {

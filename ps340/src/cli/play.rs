@@ -2,9 +2,10 @@
 
 use super::{Trouble, read, say};
 use crate::{
+    example::{EXAMPLES, example},
     machine::Settings,
     picture::Picture,
-    play::{EXAMPLES, End, Patience, Player, Script, Watcher, example},
+    play::{End, Patience, Player, Script, Watcher},
 };
 use files::{Beneath, Destination, Growing};
 use std::{

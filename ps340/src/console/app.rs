@@ -1,35 +1,31 @@
 //! The window as a whole: screens in the middle, devices below, views at the side.
 
 use super::{
-    Appearance,
+    Appearance, Link, WINDOW,
+    bar::Bar,
+    choices::{Choices, RasterPlace, Role},
+    devices,
     dials::Dials,
-    keys::{Row, show_buttons, show_keys},
+    keys::Row,
     mapping::Mapping,
     orders::Orders,
     pad::Pad,
-    places,
     screens::{RasterScreen, VectorScreen},
+    split::Split,
     views::{self, View},
+    welcome::{self, Guests},
 };
-use crate::{
-    line::OperatorLine,
-    machine::KeyboardMode,
-    shell::{Asked, Mirror, Shown},
+use crate::shell::{Asked, Mirror, Shown};
+use egui::{CentralPanel, Color32, Panel, RichText, Ui, UiBuilder, ViewportBuilder, ViewportId, vec2};
+use std::{
+    sync::{Arc, Mutex, PoisonError},
+    time::Duration,
 };
-use egui::{CentralPanel, Color32, Panel, RichText, Ui, ViewportBuilder, ViewportId, vec2};
-use std::sync::{Arc, mpsc};
 
-/// Where the raster screen is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum RasterPlace {
-    /// Nowhere.
-    #[default]
-    Hidden,
-    /// Beside the vector screen.
-    Beside,
-    /// In a window of its own.
-    Apart,
-}
+/// How all that is drawn grows with a window that is larger than at first: by the power of its sides.
+const ENLARGEMENT: f32 = 0.7;
+/// Width of a view beside the screens.
+const VIEW_WIDTH: f32 = 460.0;
 
 /// The window.
 pub struct App {
@@ -38,30 +34,27 @@ pub struct App {
     mapping: Mapping,
     vector: VectorScreen,
     raster: RasterScreen,
-    raster_place: RasterPlace,
     /// Whether something was ever on the raster screen: then it comes into view by itself.
     raster_seen: bool,
+    split: Split,
     dials: Dials,
     pad: Pad,
     row: Row,
-    devices: bool,
     views: Vec<Box<dyn View>>,
-    view: Option<usize>,
+    choices: Choices,
+    guests: Guests,
+    /// Where hosts attach.
+    lines: Arc<Mutex<Vec<String>>>,
     /// What draws the window, in words.
     drawn_by: String,
+    /// How much larger all is drawn, if the window decides that.
+    enlargement: Option<f32>,
 }
 
 impl App {
     /// The window of a machine.
-    ///
-    /// - `mirror`: what is to be seen of it.
-    /// - `orders`: where orders go.
-    pub fn new(
-        creation: &eframe::CreationContext<'_>,
-        mirror: Arc<Mirror>,
-        orders: mpsc::Sender<OperatorLine>,
-        appearance: Appearance,
-    ) -> App {
+    pub(super) fn new(creation: &eframe::CreationContext<'_>, link: Link, appearance: Appearance) -> App {
+        let Link { mirror, orders, lines } = link;
         let context = &creation.egui_ctx;
         context.set_visuals(egui::Visuals::dark());
         if let Some(scale) = appearance.scale {
@@ -80,86 +73,78 @@ impl App {
             vector: VectorScreen::new(context.clone(), mirror.screen().clone(), appearance.mapping.mouse()),
             mirror,
             raster: RasterScreen::default(),
-            raster_place: RasterPlace::default(),
             raster_seen: false,
+            split: Split::default(),
             dials: Dials::default(),
             pad: Pad::new(context),
             row: Row::default(),
-            devices: true,
             views: views::all(appearance.mapping.mouse()),
-            view: None,
+            choices: Choices { raster: RasterPlace::default(), devices: true, view: None, role: None },
+            guests: Guests::default(),
+            lines,
+            enlargement: appearance.scale.is_none().then_some(1.0),
             drawn_by,
             mapping: appearance.mapping,
         }
     }
 
-    fn show_bar(&mut self, ui: &mut Ui, shown: &Shown) {
-        ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new("PS 340").strong()).on_hover_text(format!(
-                "the window is drawn by {}, the vector screen by {}",
-                self.drawn_by,
-                self.mirror.screen().drawer()
-            ));
-            for (mode, key) in [
-                (KeyboardMode::Terminal, "host"),
-                (KeyboardMode::Command, "command"),
-                (KeyboardMode::Interactive, "local"),
-            ] {
-                let hint = format!("typed characters go to {}", target(mode));
-                if ui.selectable_label(shown.mode == mode, key.to_uppercase()).on_hover_text(hint).clicked() {
-                    self.orders.give(format!("key {key}"));
+    /// Draws all larger in a larger window than usual, until somebody sets the size himself.
+    fn enlarge(&mut self, context: &egui::Context) {
+        let Some(before) = self.enlargement else { return };
+        if (context.zoom_factor() - before).abs() > 1e-3 {
+            self.enlargement = None;
+            return;
+        }
+        let size = context.content_rect().size() * before;
+        let times = (size.x / WINDOW[0]).min(size.y / WINDOW[1]);
+        // In steps, so that a window that is drawn wider is not drawn anew at each pixel.
+        let wanted = (times.max(1.0).powf(ENLARGEMENT) * 10.0).round() / 10.0;
+        if wanted != before {
+            self.enlargement = Some(wanted);
+            context.set_zoom_factor(wanted);
+        }
+    }
+
+    /// What went wrong last, until somebody clicks it away.
+    fn show_failure(&mut self, ui: &mut Ui) {
+        let Some(failure) = self.orders.failure.clone() else { return };
+        Panel::bottom("failure").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let is_read = ui.small_button("\u{d7}").on_hover_text("away with it").clicked();
+                ui.add(egui::Label::new(RichText::new(failure).color(Color32::from_rgb(255, 120, 100))).truncate());
+                if is_read {
+                    self.orders.failure = None;
                 }
-            }
-            ui.separator();
-            for (key, hint) in [("graph", "graphics off and on"), ("term", "text off and on"), ("setup", "set-up page")]
-            {
-                if ui.button(key.to_uppercase()).on_hover_text(hint).clicked() {
-                    self.orders.give(format!("key {key}"));
-                }
-            }
-            ui.separator();
-            ui.label("raster");
-            for (place, word) in
-                [(RasterPlace::Hidden, "off"), (RasterPlace::Beside, "beside"), (RasterPlace::Apart, "window")]
-            {
-                ui.selectable_value(&mut self.raster_place, place, word);
-            }
-            ui.toggle_value(&mut self.devices, "devices");
-            ui.separator();
-            for (index, view) in self.views.iter().enumerate() {
-                let is_open = self.view == Some(index);
-                let tab = ui.selectable_label(is_open, view.title());
-                places::note(ui, &format!("view {}", view.title()), tab.rect.center());
-                if tab.clicked() {
-                    self.view = (!is_open).then_some(index);
-                }
-            }
-            if let Some(failure) = &self.orders.failure
-                && ui.link(RichText::new(failure).color(Color32::from_rgb(255, 120, 100))).clicked()
-            {
-                self.orders.failure = None;
-            }
+            });
         });
     }
 
-    fn show_devices(&mut self, ui: &mut Ui, shown: &Shown) {
-        egui::ScrollArea::horizontal().show(ui, |ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            ui.horizontal(|ui| {
-                ui.vertical(|ui| {
-                    self.dials.show(ui, &shown.panel, 52.0);
-                    show_keys(ui, &shown.panel, &mut self.row, &mut self.orders);
-                });
-                ui.separator();
-                show_buttons(ui, &shown.panel, &mut self.orders);
-            });
+    /// The screens, in the space that is left.
+    fn show_screens(&mut self, ui: &mut Ui, shown: &Shown, role: Role) {
+        ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
+        let space = ui.available_rect_before_wrap();
+        let (vector, raster) = match self.choices.raster {
+            RasterPlace::Beside => {
+                let [vector, raster] = self.split.show(ui, space);
+                (vector, Some(raster))
+            }
+            _ => (space, None),
+        };
+        let lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        ui.scope_builder(UiBuilder::new().max_rect(vector), |ui| {
+            let App { vector, mapping, dials, orders, guests, .. } = self;
+            let screen = vector.show(ui, shown, mapping, orders, (role == Role::Dials).then_some(dials));
+            welcome::show(ui, screen, shown, guests, &lines, orders);
         });
+        if let Some(raster) = raster {
+            ui.scope_builder(UiBuilder::new().max_rect(raster), |ui| self.raster.show(ui, shown));
+        }
     }
 
     /// Asks for what the open view shows, if any.
     fn ask(&self) {
         let mut asked = Asked::default();
-        if let Some(view) = self.view.and_then(|index| self.views.get(index)) {
+        if let Some(view) = self.choices.view.and_then(|index| self.views.get(index)) {
             view.ask(&mut asked);
         }
         self.mirror.ask(&asked);
@@ -173,52 +158,52 @@ impl App {
             ui.ctx().input(|input| input.viewport().close_requested())
         });
         if closed {
-            self.raster_place = RasterPlace::Hidden;
+            self.choices.raster = RasterPlace::Hidden;
         }
-    }
-}
-
-/// Where characters go in a mode of the keyboard.
-fn target(mode: KeyboardMode) -> &'static str {
-    match mode {
-        KeyboardMode::Terminal => "the host, as from a terminal",
-        KeyboardMode::Command => "the command interpreter",
-        KeyboardMode::Interactive => "the function network",
     }
 }
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.orders.take_replies();
+        self.enlarge(ui.ctx());
         let shown = self.mirror.shown();
         if !self.raster_seen && !shown.raster.is_blank() {
             self.raster_seen = true;
-            if self.raster_place == RasterPlace::Hidden {
-                self.raster_place = RasterPlace::Beside;
+            if self.choices.raster == RasterPlace::Hidden {
+                self.choices.raster = RasterPlace::Beside;
             }
         }
-        Panel::top("bar").show(ui, |ui| self.show_bar(ui, &shown));
-        if self.devices {
-            Panel::bottom("devices").show(ui, |ui| self.show_devices(ui, &shown));
+        self.guests.note(&shown);
+        if shown.hosts.is_empty() {
+            // How long ago the last one left is told.
+            ui.ctx().request_repaint_after(Duration::from_secs(1));
         }
-        if let Some(view) = self.view.and_then(|index| self.views.get_mut(index)) {
-            Panel::right("view").resizable(true).default_size(440.0).show(ui, |ui| {
+        let usual = if shown.tablet_is_read { Role::Puck } else { Role::Dials };
+        let role = self.choices.role.unwrap_or(usual);
+        let drawn_by =
+            format!("the window is drawn by {}, the vector screen by {}", self.drawn_by, self.mirror.screen().drawer());
+        Panel::top("bar").show(ui, |ui| {
+            let App { guests, choices, views, orders, .. } = self;
+            Bar { shown: &shown, guests, views, role, drawn_by: &drawn_by }.show(ui, choices, orders);
+        });
+        if self.choices.devices {
+            Panel::bottom("devices").show(ui, |ui| {
+                devices::show(ui, &shown.panel, &mut self.dials, &mut self.row, &mut self.orders);
+            });
+        }
+        self.show_failure(ui);
+        let width = ui.available_width();
+        if let Some(view) = self.choices.view.and_then(|index| self.views.get_mut(index)) {
+            let (usual, most) = (VIEW_WIDTH.min(width * 0.45), width * 0.7);
+            Panel::right("view").resizable(true).default_size(usual).max_size(most).show(ui, |ui| {
                 view.show(ui, &shown, &mut self.orders);
             });
         }
         self.ask();
-        let width = ui.available_width();
-        if self.raster_place == RasterPlace::Beside {
-            Panel::right("raster").resizable(true).default_size(width * 0.45).frame(egui::Frame::NONE).show(ui, |ui| {
-                self.raster.show(ui, &shown);
-            });
-        }
         let black = egui::Frame::NONE.fill(Color32::from_gray(12)).inner_margin(1.0);
-        CentralPanel::default().frame(black).show(ui, |ui| {
-            ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
-            self.vector.show(ui, &shown, &self.mapping, &mut self.orders);
-        });
-        if self.raster_place == RasterPlace::Apart {
+        CentralPanel::default().frame(black).show(ui, |ui| self.show_screens(ui, &shown, role));
+        if self.choices.raster == RasterPlace::Apart {
             self.show_raster_window(ui, &shown);
         }
         let seconds = f64::from(ui.input(|input| input.stable_dt));

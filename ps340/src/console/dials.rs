@@ -14,6 +14,8 @@ const POINTS_PER_TURN: f64 = 240.0;
 const WHEEL_PER_TURN: f64 = 1600.0;
 /// Turns of one stroke of an arrow key.
 const KEY_TURNS: f64 = 1.0 / 64.0;
+/// Diameter of a dial in a wide window.
+const MOST_SIZE: f32 = 64.0;
 /// What SHIFT makes of a movement, and what CONTROL does.
 const FINE: f64 = 0.1;
 const COARSE: f64 = 10.0;
@@ -40,13 +42,14 @@ impl Dials {
         }
     }
 
-    /// Shows the dials in a row, and orders what is turned.
-    pub fn show(&mut self, ui: &mut Ui, panel: &Panel, size: f32) {
+    /// Shows the dials in a row of a width, and orders what is turned.
+    pub fn show(&mut self, ui: &mut Ui, panel: &Panel, width: f32) {
         ui.horizontal(|ui| {
+            let column = ((width - 7.0 * ui.spacing().item_spacing.x) / 8.0).max(1.0);
             let mut knobs = Vec::new();
             for dial in 1..=8 {
                 let label = String::from_utf8_lossy(panel.label(Label::Dial(dial))).into_owned();
-                let (knob, turns) = self.show_dial(ui, dial, &label, size);
+                let (knob, turns) = self.show_dial(ui, dial, &label, column);
                 knobs.push(knob);
                 self.turn(dial, turns);
             }
@@ -68,8 +71,8 @@ impl Dials {
     }
 
     /// Shows one dial; returns where it is, and by how many turns wheel and keys turn it.
-    fn show_dial(&self, ui: &mut Ui, dial: u8, label: &str, size: f32) -> (Rect, f64) {
-        let width = size.max(76.0);
+    fn show_dial(&self, ui: &mut Ui, dial: u8, label: &str, width: f32) -> (Rect, f64) {
+        let size = (width * 0.6).clamp(40.0, MOST_SIZE).min(width);
         let (area, _) = ui.allocate_exact_size(vec2(width, size + 22.0), Sense::hover());
         let strip = Rect::from_min_size(area.min, vec2(width, 18.0));
         show_label(ui, strip, label);

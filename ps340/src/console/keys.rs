@@ -20,16 +20,22 @@ pub enum Row {
     Control,
 }
 
-/// Shows the function keys, and orders those that are pressed.
-pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, orders: &mut Orders) {
+/// Height of a lighted button.
+const BUTTON_HEIGHT: f32 = 22.0;
+/// Width of the choice of the row.
+const CHOICE: f32 = 58.0;
+
+/// Shows the function keys in a row of a width, and orders those that are pressed.
+pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, width: f32, orders: &mut Orders) {
     ui.horizontal(|ui| {
+        let column = ((width - CHOICE - 12.0 * ui.spacing().item_spacing.x) / 12.0).max(1.0);
         for key in 1..=12_u8 {
             let label = String::from_utf8_lossy(panel.label(Label::Key(key))).into_owned();
-            let (area, response) = ui.allocate_exact_size(vec2(68.0, 44.0), Sense::click());
+            let (area, response) = ui.allocate_exact_size(vec2(column, 42.0), Sense::click());
             let name = format!("F{key} {label}");
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             show_label(ui, Rect::from_min_size(area.min, vec2(area.width(), 18.0)), &label);
-            let cap = Rect::from_min_max(area.min + vec2(4.0, 20.0), area.max - vec2(4.0, 0.0));
+            let cap = Rect::from_min_max(area.min + vec2(2.0, 20.0), area.max - vec2(2.0, 0.0));
             let fill = if response.is_pointer_button_down_on() { 30 } else { 62 };
             ui.painter().rect_filled(cap, 4.0, Color32::from_gray(fill));
             ui.painter().text(
@@ -61,22 +67,25 @@ pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, orders: &mut Orders)
     });
 }
 
-/// Shows the lighted buttons in four rows of eight, and orders those that are pressed.
-pub fn show_buttons(ui: &mut Ui, panel: &Panel, orders: &mut Orders) {
+/// Shows the lighted buttons in rows, and orders those that are pressed.
+///
+/// - `grid`: rows, and buttons in each of them. `width`: of a row.
+pub fn show_buttons(ui: &mut Ui, panel: &Panel, [rows, columns]: [u8; 2], width: f32, orders: &mut Orders) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
-        for row in 0..4_u8 {
+        let column = ((width - 3.0 * f32::from(columns - 1)) / f32::from(columns)).max(1.0);
+        for row in 0..rows {
             ui.horizontal(|ui| {
-                for column in 0..8_u8 {
-                    show_button(ui, panel, row * 8 + column + 1, orders);
+                for number in row * columns + 1..=(row + 1) * columns {
+                    show_button(ui, panel, number, column, orders);
                 }
             });
         }
     });
 }
 
-fn show_button(ui: &mut Ui, panel: &Panel, button: u8, orders: &mut Orders) {
-    let (area, response) = ui.allocate_exact_size(vec2(27.0, 20.0), Sense::click());
+fn show_button(ui: &mut Ui, panel: &Panel, button: u8, width: f32, orders: &mut Orders) {
+    let (area, response) = ui.allocate_exact_size(vec2(width, BUTTON_HEIGHT), Sense::click());
     let is_lit = panel.light(button);
     let name = format!("button {button}{}", if is_lit { ", lit" } else { "" });
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));

@@ -8,14 +8,23 @@ use std::collections::HashMap;
 /// The table that is in force without a file. A file changes or adds entries.
 pub const DEFAULT_MAPPING: &str = include_str!("default.map");
 
-/// A key with the keys that are held beside it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Chord {
-    key: Key,
+/// Keys that are held beside another, or beside a button of the mouse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct Held {
     shift: bool,
     ctrl: bool,
     alt: bool,
 }
+
+/// A key with the keys that are held beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Chord {
+    key: Key,
+    held: Held,
+}
+
+/// A dial, and by how many turns it is turned.
+type Turn = (u8, f64);
 
 /// What a button of the mouse does over a picture of the tablet.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,9 +35,14 @@ pub enum Click {
     Order(String),
 }
 
-/// What the mouse does over a picture of the tablet, besides moving the puck.
+/// What the mouse does: over a picture of the tablet, besides moving the puck, and over the vector screen while it turns
+/// dials.
 #[derive(Clone, Debug, Default)]
 pub struct Mouse {
+    /// What drags turn, along x and y.
+    drags: HashMap<(usize, Held), [Option<Turn>; 2]>,
+    /// What a step of the wheel turns.
+    roll: Option<Turn>,
     /// In the order of [`MOUSE_BUTTONS`].
     buttons: [Option<Click>; MOUSE_BUTTONS.len()],
     /// Orders of a step of the wheel, up and down.
@@ -52,7 +66,7 @@ pub struct Mapping {
     /// Orders by button.
     buttons: HashMap<u8, String>,
     /// Dial, and its turns a second at the end of the way, by axis.
-    axes: HashMap<u8, (u8, f64)>,
+    axes: HashMap<u8, Turn>,
 }
 
 /// A line of a mapping file that is wrong.
@@ -72,13 +86,15 @@ pub enum MappingProblem {
     #[error("there is no '=' between a key and an order")]
     NoEquals,
     /// A key that is not known.
-    #[error("'{0}' is no key; examples: F1, Ctrl+Alt+C, Up, mouse left, wheel up, pad button 0, pad axis 1")]
+    #[error(
+        "'{0}' is no key; examples: F1, Ctrl+Alt+C, Up, mouse left, wheel up, drag Shift+left x, drag wheel, pad button 0, pad axis 1"
+    )]
     Key(String),
     /// The order is none.
     #[error(transparent)]
     Order(#[from] OrderError),
-    /// The order of an axis does not turn a dial.
-    #[error("an axis turns a dial: 'dial N TURNS'")]
+    /// The order of an axis or a drag does not turn a dial.
+    #[error("axes and drags turn a dial: 'dial N TURNS'")]
     Axis,
 }
 
@@ -114,11 +130,12 @@ impl Mapping {
         let unknown = || MappingProblem::Key(key.into());
         if let Some(number) = key.strip_prefix("pad axis ") {
             let axis = number.trim().parse().map_err(|_| unknown())?;
-            match parsed {
+            match turn(parsed)? {
                 None => drop(self.axes.remove(&axis)),
-                Some(Order::Dial { dial, turns }) => drop(self.axes.insert(axis, (dial, turns))),
-                Some(_) => return Err(MappingProblem::Axis),
+                Some(turn) => drop(self.axes.insert(axis, turn)),
             }
+        } else if let Some(drag) = key.strip_prefix("drag ") {
+            *self.mouse.drag(drag.trim()).ok_or_else(unknown)? = turn(parsed)?;
         } else if let Some(number) = key.strip_prefix("pad button ") {
             let button = number.trim().parse().map_err(|_| unknown())?;
             put(&mut self.buttons, button, order);
@@ -139,8 +156,7 @@ impl Mapping {
 
     /// The order of a key.
     pub fn key(&self, key: Key, held: Modifiers) -> Option<&str> {
-        let chord = Chord { key, shift: held.shift, ctrl: held.ctrl, alt: held.alt };
-        self.keys.get(&chord).map(String::as_str)
+        self.keys.get(&Chord { key, held: held.into() }).map(String::as_str)
     }
 
     /// What the mouse does.
@@ -166,6 +182,33 @@ impl Mouse {
         self.buttons[place].as_ref()
     }
 
+    /// The dials that a drag of a button turns.
+    ///
+    /// - `held`: when the button went down. `way`: to the right and up, as parts of the screen.
+    pub fn dragged(&self, button: PointerButton, held: Modifiers, way: [f64; 2]) -> impl Iterator<Item = Turn> {
+        let place = MOUSE_BUTTONS.iter().position(|row| row.1 == button);
+        let turns = place.and_then(|place| self.drags.get(&(place, held.into()))).copied().unwrap_or_default();
+        let turned = turns.into_iter().zip(way).filter_map(|(turn, way)| turn.map(|(dial, turns)| (dial, turns * way)));
+        turned.filter(|(_, turns)| *turns != 0.0)
+    }
+
+    /// The dial that so many steps of the wheel turn.
+    pub fn rolled(&self, steps: f64) -> Option<Turn> {
+        self.roll.map(|(dial, turns)| (dial, turns * steps))
+    }
+
+    /// The entry of a drag such as `Shift+left x`, or of `wheel`.
+    fn drag(&mut self, name: &str) -> Option<&mut Option<Turn>> {
+        if name.eq_ignore_ascii_case("wheel") {
+            return Some(&mut self.roll);
+        }
+        let (button, axis) = name.rsplit_once(' ')?;
+        let axis = ["x", "y"].iter().position(|name| name.eq_ignore_ascii_case(axis))?;
+        let (held, button) = Held::before(button.trim());
+        let place = MOUSE_BUTTONS.iter().position(|row| row.0.eq_ignore_ascii_case(button))?;
+        Some(&mut self.drags.entry((place, held)).or_default()[axis])
+    }
+
     /// The order of a step of the wheel.
     pub fn wheel(&self, is_up: bool) -> Option<&str> {
         self.wheel[usize::from(!is_up)].as_deref()
@@ -181,8 +224,24 @@ fn put<K: std::hash::Hash + Eq>(table: &mut HashMap<K, String>, key: K, order: &
     }
 }
 
-impl Chord {
-    fn named(name: &str) -> Option<Chord> {
+/// The dial that an order turns; none for no order.
+fn turn(order: Option<Order>) -> Result<Option<Turn>, MappingProblem> {
+    match order {
+        None => Ok(None),
+        Some(Order::Dial { dial, turns }) => Ok(Some((dial, turns))),
+        Some(_) => Err(MappingProblem::Axis),
+    }
+}
+
+impl From<Modifiers> for Held {
+    fn from(held: Modifiers) -> Held {
+        Held { shift: held.shift, ctrl: held.ctrl, alt: held.alt }
+    }
+}
+
+impl Held {
+    /// The keys that a name such as `Shift+Ctrl+left` begins with, and what follows them.
+    fn before(name: &str) -> (Held, &str) {
         let mut rest = name;
         let mut held = |prefix: &str| match rest.get(..prefix.len()) {
             Some(start) if start.eq_ignore_ascii_case(prefix) && rest.len() > prefix.len() => {
@@ -191,8 +250,15 @@ impl Chord {
             }
             _ => false,
         };
-        let (shift, ctrl, alt) = (held("Shift+"), held("Ctrl+"), held("Alt+"));
-        Some(Chord { key: Key::from_name(rest)?, shift, ctrl, alt })
+        let held = Held { shift: held("Shift+"), ctrl: held("Ctrl+"), alt: held("Alt+") };
+        (held, rest)
+    }
+}
+
+impl Chord {
+    fn named(name: &str) -> Option<Chord> {
+        let (held, rest) = Held::before(name);
+        Some(Chord { key: Key::from_name(rest)?, held })
     }
 }
 
@@ -210,6 +276,9 @@ mod tests {
         assert_eq!(mapping.button(3), Some("key 4"));
         assert_eq!(mapping.mouse().button(PointerButton::Secondary), Some(&Click::Puck(4)));
         assert_eq!(mapping.mouse().wheel(true), None);
+        let dragged = |held| mapping.mouse().dragged(PointerButton::Primary, held, [0.5, 0.0]).collect::<Vec<_>>();
+        assert_eq!((dragged(Modifiers::NONE), dragged(Modifiers::SHIFT)), (vec![(2, -0.45)], vec![(5, 0.5)]));
+        assert_eq!(mapping.mouse().rolled(-2.0), Some((4, -0.2)));
     }
 
     #[test]
@@ -225,6 +294,11 @@ mod tests {
         assert_eq!(mouse.button(PointerButton::Secondary), Some(&Click::Order("key 5".into())));
         assert_eq!(mouse.button(PointerButton::Middle), None);
         assert_eq!((mouse.wheel(true), mouse.wheel(false)), (None, Some("dial 4 -0.02")));
+        mapping.read("drag ctrl+Alt+right y = dial 8 2\ndrag left x =\ndrag wheel = dial 7 1\n").unwrap();
+        let dragged = |button, held| mapping.mouse().dragged(button, held, [1.0, 0.5]).collect::<Vec<_>>();
+        assert_eq!(dragged(PointerButton::Secondary, Modifiers::CTRL | Modifiers::ALT), [(8, 1.0)]);
+        assert_eq!(dragged(PointerButton::Primary, Modifiers::NONE), [(1, 0.45)]);
+        assert_eq!(mapping.mouse().rolled(1.0), Some((7, 1.0)));
     }
 
     #[test]
@@ -233,7 +307,10 @@ mod tests {
         assert!(wrong("F1 = key 1\n\nF1 key 1").starts_with("line 3: there is no '='"));
         assert!(wrong("Fx = key 1").contains("'Fx' is no key"));
         assert!(wrong("F1 = kee 1").contains("did you mean 'key'"));
-        assert!(wrong("pad axis 1 = key 1").contains("an axis turns a dial"));
+        for line in ["pad axis 1 = key 1", "drag left x = key 1"] {
+            assert!(wrong(line).contains("axes and drags turn a dial"));
+        }
+        assert!(wrong("drag left z = dial 1 1").contains("no key") && wrong("drag up x = dial 1 1").contains("no key"));
         assert!(wrong("pad button x = key 1").contains("no key"));
         assert!(wrong("mouse up = key 1").contains("no key") && wrong("wheel left = key 1").contains("no key"));
     }

@@ -9,23 +9,44 @@ mod mapping;
 mod libraries;
 mod painter;
 mod puck;
-mod screens;
 mod keyboard;
 mod dials;
+mod steering;
+mod screens;
+mod split;
 mod pad;
 mod keys;
+mod devices;
+mod readable;
 mod views;
+mod welcome;
+mod choices;
+mod bar;
 mod app;
 
 pub use mapping::{DEFAULT_MAPPING, Mapping, MappingError};
 
+use crate::line::OperatorLine;
 use crate::shell::{End, Mirror, Options, Window, run};
 use app::App;
 use std::{
     io,
     panic::{AssertUnwindSafe, catch_unwind},
-    sync::{Arc, OnceLock, mpsc},
+    sync::{Arc, Mutex, OnceLock, PoisonError, mpsc},
 };
+
+/// Width and height of the window at first, points.
+const WINDOW: [f32; 2] = [1280.0, 860.0];
+
+/// What window and machine share.
+struct Link {
+    /// What is to be seen of the machine.
+    mirror: Arc<Mirror>,
+    /// Where orders go.
+    orders: mpsc::Sender<OperatorLine>,
+    /// Where hosts attach, as soon as that is known.
+    lines: Arc<Mutex<Vec<String>>>,
+}
 
 /// How the window begins.
 #[derive(Clone, Debug, Default)]
@@ -81,6 +102,15 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
         }
     };
     let mirror = Arc::new(Mirror::new(options.drawer.clone(), wake));
+    let lines = Arc::new(Mutex::new(Vec::new()));
+    let told = lines.clone();
+    let mut tell = ready;
+    let ready = move |text: &str| {
+        if let Some(line) = text.strip_prefix("ready line ") {
+            told.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
+        }
+        tell(text);
+    };
     let (sender, orders) = mpsc::channel();
     let window = Window { mirror: mirror.clone(), orders };
     let (opened, opening) = mpsc::channel();
@@ -96,7 +126,7 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
             }
             end
         });
-        let shown = show(context, mirror, sender, appearance, opened);
+        let shown = show(context, Link { mirror, orders: sender, lines }, appearance, opened);
         // The other end of the orders is gone: the machine ends if it has not yet.
         let end = machine.join().unwrap_or_else(|_| Err(io::Error::other("the machine's thread failed")));
         shown?;
@@ -107,15 +137,14 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
 /// Shows the window until it is closed; tells `opened` when it is there.
 fn show(
     context: Arc<OnceLock<egui::Context>>,
-    mirror: Arc<Mirror>,
-    orders: mpsc::Sender<crate::line::OperatorLine>,
+    link: Link,
     appearance: Appearance,
     opened: mpsc::Sender<()>,
 ) -> Result<(), ConsoleError> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("PS 340")
         .with_app_id("ps340")
-        .with_inner_size([1280.0, 860.0])
+        .with_inner_size(WINDOW)
         .with_min_inner_size([1.0, 1.0]);
     // Keys such as CONTROL C belong to the machine.
     let mut native = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
@@ -135,7 +164,7 @@ fn show(
             Box::new(move |creation| {
                 let _ = context.set(creation.egui_ctx.clone());
                 let _ = opened.send(());
-                Ok(Box::new(App::new(creation, mirror, orders, appearance)))
+                Ok(Box::new(App::new(creation, link, appearance)))
             }),
         )
     }));

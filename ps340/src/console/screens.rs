@@ -1,12 +1,14 @@
 //! The two screens: their pictures, and the mouse on the vector screen as puck.
 
 use super::{
+    dials::Dials,
     keyboard,
     mapping::{Mapping, Mouse},
     orders::Orders,
     painter::{Painter, Wanted},
     places,
     puck::Puck,
+    steering::Steering,
 };
 use crate::{calligraphic::Screen, raster::FrameBuffer, shell::Shown};
 use egui::{
@@ -23,16 +25,32 @@ pub struct VectorScreen {
     painter: Painter,
     texture: Option<TextureHandle>,
     puck: Puck,
+    steering: Steering,
 }
 
 impl VectorScreen {
     /// A window on a screen.
     pub fn new(context: egui::Context, screen: Arc<Screen>, mouse: &Mouse) -> VectorScreen {
-        VectorScreen { painter: Painter::new(context, screen), texture: None, puck: Puck::new(mouse) }
+        VectorScreen {
+            painter: Painter::new(context, screen),
+            texture: None,
+            puck: Puck::new(mouse),
+            steering: Steering::default(),
+        }
     }
 
-    /// Shows the screen as the largest square of the space that is left, and orders what puck and keyboard do.
-    pub fn show(&mut self, ui: &mut Ui, shown: &Shown, mapping: &Mapping, orders: &mut Orders) {
+    /// Shows the screen as the largest square of the space that is left, and orders what mouse and keyboard do. Returns the
+    /// square.
+    ///
+    /// - `dials`: what the mouse turns; without them, it is the puck.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        shown: &Shown,
+        mapping: &Mapping,
+        orders: &mut Orders,
+        dials: Option<&mut Dials>,
+    ) -> Rect {
         let side = ui.available_size().min_elem().max(1.0);
         let (space, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         let area = Rect::from_center_size(space.center(), Vec2::splat(side));
@@ -47,7 +65,17 @@ impl VectorScreen {
         places::note(ui, "vector screen", area.center());
         places::note(ui, "vector screen's corner", area.right_top());
         self.keyboard(ui, &response, mapping, orders);
-        self.puck.follow(ui, &response, orders);
+        match dials {
+            Some(dials) => {
+                self.puck.take_off(orders);
+                self.steering.follow(ui, &response, mapping.mouse(), dials);
+                if !self.steering.is_known() && response.hovered() && !shown.scene.strokes.is_empty() {
+                    hint(ui, area);
+                }
+            }
+            None => self.puck.follow(ui, &response, orders),
+        }
+        area
     }
 
     /// Gives what is typed to the machine while the screen has the focus, which it takes at the start and by a press.
@@ -64,6 +92,13 @@ impl VectorScreen {
             ui.input(|input| keyboard::type_events(&input.events, mapping, orders));
         }
     }
+}
+
+/// Says what the mouse does, at the upper edge of the screen.
+fn hint(ui: &Ui, screen: Rect) {
+    let text = "drag turns   \u{b7}   SHIFT or right button moves   \u{b7}   wheel scales";
+    let at = screen.center_top() + vec2(0.0, 12.0);
+    ui.painter().text(at, Align2::CENTER_CENTER, text, FontId::proportional(12.0), Color32::from_gray(120));
 }
 
 /// The raster screen.

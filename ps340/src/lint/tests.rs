@@ -16,7 +16,7 @@ fn one(text: &str) -> String {
 #[test]
 fn programs_that_work_are_clean() {
     assert_eq!(findings(""), [""; 0]);
-    for example in crate::play::EXAMPLES {
+    for example in crate::example::EXAMPLES {
         assert_eq!(findings(example.text), [""; 0], "{}", example.name);
     }
 }

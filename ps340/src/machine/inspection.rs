@@ -7,6 +7,13 @@ use crate::{
 };
 
 impl Machine {
+    /// Whether anybody takes what stylus or puck of the tablet say, the system aside.
+    pub fn tablet_is_read(&self) -> bool {
+        let objects = &self.memory.objects;
+        let (Some(tablet), location) = (objects.find("TABLETIN"), objects.find("PICK_LOCATION")) else { return false };
+        self.memory.network.arcs(tablet).any(|(_, to)| Some(to.object) != location)
+    }
+
     /// The memory behind the raster screen.
     pub fn frame_buffer(&self) -> &FrameBuffer {
         &self.frame_buffer

@@ -6,7 +6,7 @@
 //! interactive mode. The machine starts in interactive mode, in which KBHANDLER `<4>` speaks as clients expect; with
 //! `--plain-text terminal` it starts as a terminal, where a connected KBHANDLER `<4>` takes the characters from the line.
 
-use super::{HostLine, Machine, PlainText};
+use super::{HostLine, Machine, PlainText, WORK_PER_STEP};
 use crate::{
     line::LineId,
     terminal::{SPECIAL_KEYS, SpecialKey},
@@ -306,6 +306,13 @@ impl Machine {
             let line = [b"\x18", PROMPT.as_bytes(), open.as_bytes(), blank.as_bytes(), &self.keyboard.line].concat();
             self.terminal.feed(&line);
         }
+    }
+
+    /// Gives a program to the machine's own command interpreter, as a text without packets.
+    pub fn run_program(&mut self, text: &[u8]) {
+        self.work_left = WORK_PER_STEP;
+        self.activity();
+        self.interpret(text);
     }
 
     /// Gives text to the machine's own command interpreter.

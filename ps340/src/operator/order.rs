@@ -4,6 +4,7 @@ use super::{
     inspect::{self, Inspection},
     sight::{self, SightOrder},
 };
+use crate::example::{Example, example};
 use crate::machine::{Key, KeyboardMode};
 use clap::ValueEnum;
 
@@ -99,6 +100,8 @@ pub enum Order {
     Log,
     /// Lists the orders, or says all about one.
     Help(Option<&'static OrderRow>),
+    /// Runs a program that ships with the machine, or lists them.
+    Example(Option<&'static Example>),
     /// Ends the machine.
     Quit,
 }
@@ -125,6 +128,7 @@ impl Order {
             | Order::PuckPress(_)
             | Order::PuckRelease
             | Order::PuckAway
+            | Order::Example(Some(_))
             | Order::Type(_) => true,
             Order::Keys
             | Order::Mode(None)
@@ -143,6 +147,7 @@ impl Order {
             | Order::Inspect(_)
             | Order::Log
             | Order::Help(_)
+            | Order::Example(None)
             | Order::Quit => false,
         }
     }
@@ -165,6 +170,9 @@ pub enum OrderError {
         /// What should.
         expected: &'static str,
     },
+    /// There is no such program.
+    #[error("{0}")]
+    Example(String),
     /// There is more on the line.
     #[error("'{0}' is too much")]
     TooMuch(String),
@@ -293,6 +301,12 @@ const ORDERS: &[OrderRow] = &[
         arguments: "[on|off]",
         summary: "replies on this operator line as lines of text, and no longer with \\n in one line",
         read: |words| Ok(Order::Lines(inspect::on_or_off(words)?)),
+    },
+    OrderRow {
+        word: "example",
+        arguments: "[NAME]",
+        summary: "run a program that ships with the machine; alone: list them",
+        read: |words| Ok(Order::Example(words.next().map(example).transpose().map_err(OrderError::Example)?)),
     },
     OrderRow { word: "help", arguments: "[ORDER]", summary: "this list, or one order", read: help },
     OrderRow { word: "quit", arguments: "", summary: "end the machine", read: |_| Ok(Order::Quit) },

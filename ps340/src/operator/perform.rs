@@ -3,6 +3,7 @@
 use super::{Order, OrderRow, inspect::inspect, order::REFUSED, rows, sight};
 use crate::{
     calligraphic,
+    example::EXAMPLES,
     machine::{Event, Key, Machine, TabletEvent},
 };
 use files::Beneath;
@@ -90,6 +91,14 @@ pub fn perform(order: &Order, machine: &mut Machine, files: Option<&Beneath>) ->
         }
         Order::Terminal => return Outcome::Done(Ok(machine.terminal().text())),
         Order::Log => return Outcome::Done(Ok(machine.log().collect::<Vec<_>>().join("\n"))),
+        Order::Example(None) => {
+            let lines = EXAMPLES.iter().map(|example| format!("{:<8} {}", example.name, example.summary()));
+            return Outcome::Done(Ok(lines.collect::<Vec<_>>().join("\n")));
+        }
+        Order::Example(Some(example)) => {
+            machine.run_program(example.text.as_bytes());
+            return Outcome::Done(Ok(example.summary().into()));
+        }
         Order::Help(None) => return Outcome::Done(Ok(help())),
         Order::Help(Some(row)) => return Outcome::Done(Ok(help_on(row))),
         Order::Quit => return Outcome::Quit,

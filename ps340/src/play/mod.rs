@@ -11,12 +11,10 @@
 //! @ picture vector out.png
 //! ```
 
-mod example;
 mod pattern;
 mod player;
 mod script;
 
-pub use example::{EXAMPLES, Example, example};
 pub use player::{End, Failure, Patience, Player, Watcher};
 pub use script::{Expected, Line, Script, ScriptError, ScriptProblem, Step};
 

@@ -1,6 +1,7 @@
 //! Tests of the player.
 
 use super::*;
+use crate::example::{EXAMPLES, example};
 use crate::machine::Settings;
 use files::Beneath;
 

@@ -34,6 +34,10 @@ impl View for CountersView {
         "Counters"
     }
 
+    fn summary(&self) -> &'static str {
+        "counters, rates, and who is attached"
+    }
+
     fn ask(&self, asked: &mut Asked) {
         asked.refresh = true;
     }

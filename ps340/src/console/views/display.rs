@@ -15,6 +15,10 @@ impl View for DisplayView {
         "Display"
     }
 
+    fn summary(&self) -> &'static str {
+        "brightness, contrast, focus and phosphor"
+    }
+
     fn ask(&self, asked: &mut Asked) {
         asked.refresh = true;
     }

@@ -23,6 +23,10 @@ impl View for LineView {
         "Line"
     }
 
+    fn summary(&self) -> &'static str {
+        "the bytes on the host lines, decoded"
+    }
+
     fn ask(&self, asked: &mut Asked) {
         asked.traffic = true;
     }

@@ -10,6 +10,10 @@ impl View for MessagesView {
         "Messages"
     }
 
+    fn summary(&self) -> &'static str {
+        "what the machine reports"
+    }
+
     fn ask(&self, asked: &mut Asked) {
         asked.log = true;
     }

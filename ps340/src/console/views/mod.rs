@@ -17,6 +17,12 @@ use egui::Ui;
 pub trait View {
     /// What its tab says.
     fn title(&self) -> &'static str;
+    /// What it shows, in a sentence.
+    fn summary(&self) -> &'static str;
+    /// Whether it explains, rather than shows the machine.
+    fn is_help(&self) -> bool {
+        false
+    }
     /// Asks the mirror for what the view shows.
     fn ask(&self, asked: &mut Asked);
     /// Shows it.

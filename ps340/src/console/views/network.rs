@@ -1,7 +1,7 @@
 //! The function network: each function with its queues, its latest values and how often it fires.
 
 use super::{Asked, Orders, Shown, Ui, View};
-use crate::shell::FunctionShown;
+use crate::{console::readable::rounded, shell::FunctionShown};
 use egui::{Color32, RichText};
 use std::collections::HashMap;
 
@@ -38,6 +38,10 @@ impl NetworkView {
 impl View for NetworkView {
     fn title(&self) -> &'static str {
         "Network"
+    }
+
+    fn summary(&self) -> &'static str {
+        "functions with their queues, and how often they fire"
     }
 
     fn ask(&self, asked: &mut Asked) {
@@ -94,7 +98,7 @@ fn show_function(ui: &mut Ui, function: &FunctionShown, rate: f64) {
                 (true, 1) => "1 waits".to_owned(),
                 (true, count) => format!("{count} wait"),
             };
-            ui.label(RichText::new(format!("<{number}> {waiting}: {}", input.first)).monospace());
+            ui.label(RichText::new(format!("<{number}> {waiting}: {}", rounded(&input.first))).monospace());
         }
         for arc in &function.arcs {
             ui.label(RichText::new(format!("<{}> to {}", arc.output, arc.to)).monospace().weak());

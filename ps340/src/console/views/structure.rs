@@ -1,6 +1,7 @@
 //! The display structure as a tree.
 
 use super::{Asked, Orders, Shown, Ui, View};
+use crate::console::readable::rounded;
 
 /// The tree, with a filter.
 #[derive(Default)]
@@ -11,6 +12,10 @@ pub struct StructureView {
 impl View for StructureView {
     fn title(&self) -> &'static str {
         "Structure"
+    }
+
+    fn summary(&self) -> &'static str {
+        "the display structure as a tree"
     }
 
     fn ask(&self, asked: &mut Asked) {
@@ -31,7 +36,11 @@ impl View for StructureView {
         let height = ui.text_style_height(&egui::TextStyle::Monospace);
         egui::ScrollArea::both().auto_shrink(false).show_rows(ui, height, lines.len(), |ui, rows| {
             for node in &lines[rows] {
-                ui.add(egui::Label::new(format!("{}{}", "  ".repeat(node.level), node.text)).extend());
+                let readable = rounded(&node.text);
+                let line = ui.add(egui::Label::new(format!("{}{readable}", "  ".repeat(node.level))).extend());
+                if readable != node.text {
+                    line.on_hover_text(&node.text);
+                }
             }
         });
     }

@@ -26,6 +26,10 @@ impl View for TabletView {
         "Tablet"
     }
 
+    fn summary(&self) -> &'static str {
+        "the tablet with its puck"
+    }
+
     fn ask(&self, _asked: &mut Asked) {}
 
     fn show(&mut self, ui: &mut Ui, _shown: &Shown, orders: &mut Orders) {

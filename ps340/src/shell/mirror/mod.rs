@@ -54,6 +54,8 @@ pub struct Shown {
     pub panel: Panel,
     /// Where typed characters go.
     pub mode: KeyboardMode,
+    /// Whether a program takes what stylus or puck of the tablet say.
+    pub tablet_is_read: bool,
     /// What the machine has counted.
     pub counters: Counters,
     /// Hosts that are attached: who, in the order of their lines.
@@ -132,12 +134,14 @@ impl Mirror {
             scene: machine.scene().clone(),
             drawer: machine.screen().drawer().clone(),
             mode: machine.keyboard_mode(),
+            tablet_is_read: machine.tablet_is_read(),
             counters: machine.counters(),
             hosts: hosts.map(str::to_owned).collect(),
             ..Shown::clone(&before)
         };
         let mut is_new = shown.panel != before.panel
             || shown.mode != before.mode
+            || shown.tablet_is_read != before.tablet_is_read
             || shown.scene.settings != before.scene.settings
             || shown.scene.version != before.scene.version
             || shown.hosts != before.hosts;

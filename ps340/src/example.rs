@@ -13,10 +13,10 @@ pub struct Example {
 
 /// Every program.
 pub const EXAMPLES: &[Example] = &[
-    Example { name: "dials", text: include_str!("../../programs/dials.ps300") },
-    Example { name: "pick", text: include_str!("../../programs/pick.ps300") },
-    Example { name: "clock", text: include_str!("../../programs/clock.ps300") },
-    Example { name: "helix", text: include_str!("../../programs/helix.ps300") },
+    Example { name: "dials", text: include_str!("../programs/dials.ps300") },
+    Example { name: "pick", text: include_str!("../programs/pick.ps300") },
+    Example { name: "clock", text: include_str!("../programs/clock.ps300") },
+    Example { name: "helix", text: include_str!("../programs/helix.ps300") },
 ];
 
 impl Example {

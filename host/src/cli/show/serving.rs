@@ -1,0 +1,265 @@
+//! Keys of the workstation, orders from standard input, edits of the script and the rendering that goes on meanwhile.
+
+use super::{Arguments, Failure, Told, edits::Edit};
+use crate::{
+    cli::{progress, say, story},
+    picture::display::DisplayTransform,
+    production::{News, Production, ProductionError, Progressive, Shot},
+    render::Order,
+    scene::Scene,
+    workstation::{
+        Emulator, WorkstationError,
+        network::{KEY_PREFIX, KEYS, Key},
+    },
+};
+use std::{
+    io::BufRead,
+    sync::mpsc,
+    time::{Duration, Instant},
+};
+
+/// How long to wait for a message before looking for whatever else there may be.
+const GLANCE: Duration = Duration::from_millis(50);
+/// The key over which the label tells how far a rendering is.
+const RENDER_KEY: i32 = 1;
+/// Letters of a text in the message line.
+const MESSAGE: usize = 80;
+
+/// Serves the person at a workstation that shows a scene.
+pub(super) struct Server<'a> {
+    production: &'a mut Production,
+    emulator: &'a mut Option<Emulator>,
+    arguments: &'a Arguments,
+    told: &'a mut Told,
+    order: Order,
+    display: DisplayTransform,
+    rendering: Option<Progressive>,
+    /// What the key to render says now.
+    label: String,
+    orders: Orders,
+}
+
+/// Orders from standard input for the operator of a workstation of our own.
+struct Orders {
+    /// None if there are none any more.
+    given: Option<mpsc::Receiver<String>>,
+    /// Orders whose replies are still to come.
+    unanswered: u64,
+    /// When the machine was last seen at work on one.
+    at_work: Instant,
+}
+
+impl<'a> Server<'a> {
+    /// - `scene`: as it is shown.
+    pub(super) fn new(
+        production: &'a mut Production,
+        emulator: &'a mut Option<Emulator>,
+        arguments: &'a Arguments,
+        told: &'a mut Told,
+        scene: &Scene,
+    ) -> Server<'a> {
+        let given = emulator.as_ref().map(|_| read_orders());
+        let orders = Orders { given, unanswered: 0, at_work: Instant::now() };
+        let order = order(scene, arguments);
+        let (display, rendering, label) = (scene.display, None, String::new());
+        Server { production, emulator, arguments, told, order, display, rendering, label, orders }
+    }
+
+    /// Serves until the end.
+    ///
+    /// - `edits`: scenes that take the place of this one.
+    pub(super) fn serve(&mut self, edits: Option<&mpsc::Receiver<Result<Edit, Failure>>>) -> Result<(), Failure> {
+        loop {
+            if self.carry_out_orders()? {
+                return Ok(());
+            }
+            if let Some(edit) = edits.and_then(|edits| edits.try_recv().ok()) {
+                self.replace(edit)?;
+            }
+            self.tell_of_rendering()?;
+            let message = match self.production.session().message(GLANCE, "a key") {
+                Ok(message) => message,
+                Err(WorkstationError::Silent { .. }) => continue,
+                Err(error) => return Err(error.into()),
+            };
+            let number = message.strip_prefix(KEY_PREFIX.as_bytes()).and_then(|n| std::str::from_utf8(n).ok());
+            let number = number.and_then(|n| n.trim().parse::<i32>().ok());
+            match KEYS.iter().find(|row| Some(row.0) == number).map(|row| row.2) {
+                Some(Key::Render) => self.render()?,
+                Some(Key::Cancel) => self.rendering.iter().for_each(Progressive::cancel),
+                Some(Key::Reset) => self.production.reset()?,
+                Some(Key::Camera) => self.told.tell(self.production)?,
+                Some(Key::End) => return Ok(()),
+                None => say!("message: {}", String::from_utf8_lossy(&message)),
+            }
+        }
+    }
+
+    /// Gives orders that were read to the operator, and says his replies; whether that is the end.
+    fn carry_out_orders(&mut self) -> Result<bool, Failure> {
+        let Some(emulator) = self.emulator.as_mut() else { return Ok(false) };
+        let orders = &mut self.orders;
+        match orders.given.as_ref().map(mpsc::Receiver::try_recv) {
+            Some(Ok(order)) if order == "quit" => return Ok(true),
+            Some(Ok(order)) => {
+                emulator.give(&order)?;
+                orders.at_work = if orders.unanswered == 0 { Instant::now() } else { orders.at_work };
+                orders.unanswered += 1;
+            }
+            // With a window, somebody else gives orders. Without one, the end of the orders is the end, once all are answered
+            // and what they began has ended.
+            Some(Err(mpsc::TryRecvError::Disconnected)) if emulator.has_window() => orders.given = None,
+            Some(Err(mpsc::TryRecvError::Disconnected)) if orders.unanswered == 0 && self.rendering.is_none() => {
+                return Ok(true);
+            }
+            Some(Err(_)) | None => {}
+        }
+        if let Some(reply) = emulator.reply()? {
+            orders.unanswered -= 1;
+            orders.at_work = Instant::now();
+            say!("{}", reply.replace("\\n", "\n"));
+        }
+        let session = self.production.session();
+        if orders.unanswered > 0 && orders.at_work.elapsed() > session.patience().order {
+            // Orders such as 'frames 10000' take their time; a machine that lives answers its hosts meanwhile.
+            session.synchronize()?;
+            orders.at_work = Instant::now();
+        }
+        Ok(false)
+    }
+
+    /// Shows a scene in place of the one before, or says why there is none.
+    fn replace(&mut self, edit: Result<Edit, Failure>) -> Result<(), Failure> {
+        progress::clear();
+        let Edit { scene, model, keeps_view } = match edit {
+            Ok(edit) => edit,
+            Err(failure) => {
+                let text = story(&failure.error);
+                say::tell(&text);
+                return Ok(self.production.say(&brief(&text))?);
+            }
+        };
+        if self.rendering.take().is_some() {
+            self.write_label(KEYS[0].1)?;
+        }
+        (self.order, self.display) = (order(&scene, self.arguments), scene.display);
+        self.production.replace(model, keeps_view)?;
+        self.production.say(" ")?;
+        let sent = self.production.sent();
+        if !self.arguments.json {
+            say!("{} vectors shown anew after {:.3} s", sent.lines, sent.seconds);
+        }
+        Ok(())
+    }
+
+    /// Begins to render the view that is set.
+    fn render(&mut self) -> Result<(), Failure> {
+        let matrix = self.production.view()?;
+        self.rendering = Some(self.production.begin_rendering(&matrix, &self.order, &self.display)?);
+        self.write_label("0 %")
+    }
+
+    /// Shows what there is of the image, and tells how far it is.
+    fn tell_of_rendering(&mut self) -> Result<(), Failure> {
+        let Some(rendering) = &self.rendering else { return Ok(()) };
+        for news in rendering.news() {
+            match news {
+                News::Stage(stage) => {
+                    progress::stage(stage);
+                    self.production.say(stage.strip_prefix("while ").unwrap_or(stage))?;
+                }
+                News::Part { shown, rows, samples, seconds_left } => {
+                    self.production.show_rows(&shown, |row| rows[row as usize])?;
+                    let all = self.order.samples;
+                    let left = clock(seconds_left);
+                    self.production.say(&format!("{samples:.1} of {all} samples, {left} left"))?;
+                    self.write_label(&format!("{:.0} %", 100.0 * samples / f64::from(all)))?;
+                }
+                News::End(ended) => {
+                    progress::clear();
+                    self.rendering = None;
+                    self.end_rendering(ended)?;
+                    return self.write_label(KEYS[0].1);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn end_rendering(&mut self, ended: Result<Box<Shot>, ProductionError>) -> Result<(), Failure> {
+        let text = match ended {
+            Ok(shot) => {
+                let (rows, rendering) = (shot.rows(), &shot.rendering);
+                self.production.show_rows(&shot.shown, |row| rows[row as usize])?;
+                let [least, most] = rendering.film.samples();
+                let seconds = rendering.seconds;
+                match rendering.complete {
+                    true => format!("rendered in {seconds:.3} s, exposed by {:+.2} stops", shot.stops),
+                    false if least == most => format!("stopped after {seconds:.3} s at {least} samples"),
+                    false => format!("stopped after {seconds:.3} s at {least} to {most} samples"),
+                }
+            }
+            // The person at the dials may have set a view that shows nothing; that ends nothing.
+            Err(error @ (ProductionError::Render(_) | ProductionError::Thread(_))) => format!("not rendered: {error}"),
+            Err(error) => return Err(error.into()),
+        };
+        say!("{text}");
+        Ok(self.production.say(&brief(&text))?)
+    }
+
+    /// Writes the label over the key that renders, unless it is there already.
+    fn write_label(&mut self, text: &str) -> Result<(), Failure> {
+        if self.label != text {
+            self.label = text.into();
+            self.production.label(RENDER_KEY, text)?;
+        }
+        Ok(())
+    }
+}
+
+/// How a scene is rendered as the arguments say.
+fn order(scene: &Scene, arguments: &Arguments) -> Order {
+    let own = Order::of(&scene.settings);
+    let samples = arguments.samples.unwrap_or(own.samples);
+    // A denoiser tells noise from what is there by two samples at least.
+    let samples = if arguments.denoise { samples.max(2) } else { samples };
+    Order { samples, footprints: samples, denoise: arguments.denoise, threads: arguments.threads, ..own }
+}
+
+/// What a message line has room for, of the first line of a text.
+fn brief(text: &str) -> String {
+    let line = text.lines().next().unwrap_or_default();
+    line.chars().filter(|letter| letter.is_ascii() && !letter.is_control()).take(MESSAGE).collect()
+}
+
+/// Minutes and seconds.
+fn clock(seconds: f64) -> String {
+    let seconds = seconds.ceil() as u64;
+    format!("{}:{:02}", seconds / 60, seconds % 60)
+}
+
+/// The lines of standard input, read by a thread of their own.
+fn read_orders() -> mpsc::Receiver<String> {
+    let (sender, orders) = mpsc::channel();
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            let order = line.trim().to_string();
+            if !order.is_empty() && sender.send(order).is_err() {
+                return;
+            }
+        }
+    });
+    orders
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_has_one_short_line_of_plain_letters() {
+        assert_eq!(brief("a: b\nc"), "a: b");
+        assert_eq!(brief(&"ä\tx".repeat(100)), "x".repeat(MESSAGE));
+        assert_eq!(["0:00", "0:01", "1:01"], [0.0, 0.2, 60.2].map(clock));
+    }
+}

@@ -1,0 +1,163 @@
+//! Images of a view: at once, or in a thread of their own that tells of itself while samples are added.
+
+use super::{ProductionError, Shot};
+use crate::{
+    picture::{Picture, display::DisplayTransform},
+    plan::Plan,
+    render::{
+        Film, Order, RenderError, Watch,
+        metering::Meter,
+        ray_tracing::{Checkpoints, RayTracer},
+    },
+    scene::{Prepared, View},
+};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
+use std::time::{Duration, Instant};
+
+/// How often a part of an image is told of; less often where making it takes long.
+const EVERY: Duration = Duration::from_millis(150);
+
+/// What is told of a rendering.
+#[derive(Debug)]
+pub enum News {
+    /// Another stage of the work began: words such as `while rendering`.
+    Stage(&'static str),
+    /// There is more of the image.
+    Part {
+        /// The image as a display shows it; pixels without samples are black.
+        shown: Picture,
+        /// For each row whether all of its pixels have samples.
+        rows: Vec<bool>,
+        /// Samples that pixels have, the mean.
+        samples: f64,
+        /// Seconds that the samples which are missing will take, about.
+        seconds_left: f64,
+    },
+    /// It has ended.
+    End(Result<Box<Shot>, ProductionError>),
+}
+
+/// A rendering in a thread of its own. It is stopped when this is dropped.
+#[derive(Debug)]
+pub struct Progressive {
+    news: mpsc::Receiver<News>,
+    is_cancelled: Arc<AtomicBool>,
+}
+
+impl Progressive {
+    /// Begins to render.
+    pub(super) fn begin(
+        prepared: Arc<Prepared>,
+        view: View,
+        order: Order,
+        display: DisplayTransform,
+    ) -> Result<Progressive, ProductionError> {
+        let (sender, news) = mpsc::channel();
+        let is_cancelled = Arc::new(AtomicBool::new(false));
+        let cancelled = is_cancelled.clone();
+        let work = move || {
+            // Nobody may be listening any more.
+            let tell = |news| drop(sender.send(news));
+            let stage = |name| tell(News::Stage(name));
+            let watch = Watch { cancelled: &cancelled, stage: &stage, ..Watch::NOBODY };
+            let mut part = |part: News| tell(part);
+            tell(News::End(shot(&prepared, &view, &order, &display, &watch, Some(&mut part)).map(Box::new)));
+        };
+        let thread = std::thread::Builder::new().name("rendering".into());
+        thread.spawn(work).map_err(|error| ProductionError::Thread(error.to_string()))?;
+        Ok(Progressive { news, is_cancelled })
+    }
+
+    /// What is new, oldest first; of parts of the image the latest one only.
+    pub fn news(&self) -> Vec<News> {
+        let mut all: Vec<News> = Vec::new();
+        loop {
+            match self.news.try_recv() {
+                Ok(news) => {
+                    let is_part = |news: Option<&News>| matches!(news, Some(News::Part { .. }));
+                    if is_part(Some(&news)) && is_part(all.last()) {
+                        all.pop();
+                    }
+                    all.push(news);
+                }
+                Err(mpsc::TryRecvError::Empty) => return all,
+                Err(mpsc::TryRecvError::Disconnected) => {
+                    if !matches!(all.last(), Some(News::End(_))) {
+                        all.push(News::End(Err(ProductionError::Thread("its thread failed".into()))));
+                    }
+                    return all;
+                }
+            }
+        }
+    }
+
+    /// Asks it to stop; it then ends with what there is.
+    pub fn cancel(&self) {
+        self.is_cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Progressive {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+/// Ray-traces a view.
+///
+/// - `parts`: told of parts of the image while it grows, if anybody is.
+pub(super) fn shot(
+    prepared: &Prepared,
+    view: &View,
+    order: &Order,
+    display: &DisplayTransform,
+    watch: &Watch<'_>,
+    parts: Option<&mut dyn FnMut(News)>,
+) -> Result<Shot, ProductionError> {
+    let start = Instant::now();
+    let plan = Plan::new(prepared, view);
+    let tracer = RayTracer::watched(prepared, &plan, None, watch)?;
+    let build_seconds = start.elapsed().as_secs_f64();
+    let triangles = prepared.triangles.len().max(1) as f64;
+    let octree_bytes = tracer.octree().map(|octree| octree.bytes() as f64 / triangles);
+    let meter = Meter::new(&prepared.settings, display, order.threads);
+    let stops = meter.stops(&tracer, prepared, std::slice::from_ref(view), watch)?;
+    let pixel_angle = view.pixel_angle(order.width, order.height);
+    let shown = |picture: &Picture| display.shown(picture, stops, pixel_angle);
+    let begin = Instant::now();
+    let film = Film::new(order.width, order.height).map_err(RenderError::from)?;
+    let rendering = match parts {
+        Some(tell) => {
+            let mut keep = |film: &Film| {
+                match film.picture().and_then(|picture| shown(&picture)) {
+                    Ok(shown) => tell(part(film, shown, order, begin)),
+                    // The whole image may not fit into memory either, and then says so.
+                    Err(error) => tracing::warn!("a part of the image is not shown: {error}"),
+                }
+                Ok(())
+            };
+            let checkpoints = Checkpoints { every: EVERY, keep: &mut keep };
+            tracer.go_on(film, view, order, watch, Some(checkpoints))?
+        }
+        None => tracer.go_on(film, view, order, watch, None)?,
+    };
+    let shown = shown(&rendering.picture).map_err(RenderError::from)?;
+    Ok(Shot { rendering, octree_bytes, build_seconds, shown, stops })
+}
+
+/// What there is of an image.
+fn part(film: &Film, shown: Picture, order: &Order, begin: Instant) -> News {
+    let rows = rows_of(film);
+    let taken: u64 = film.tallies().iter().map(|tally| u64::from(tally.count)).sum();
+    let all = film.tallies().len() as u64 * u64::from(order.samples);
+    let seconds_left = begin.elapsed().as_secs_f64() * (all as f64 / taken.max(1) as f64 - 1.0).max(0.0);
+    let samples = taken as f64 / film.tallies().len() as f64;
+    News::Part { shown, rows, samples, seconds_left }
+}
+
+/// For each row whether all of its pixels have samples.
+pub(super) fn rows_of(film: &Film) -> Vec<bool> {
+    let rows = film.tallies().chunks(film.width() as usize);
+    rows.map(|row| row.iter().all(|tally| tally.count > 0)).collect()
+}

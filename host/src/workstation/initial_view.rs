@@ -1,0 +1,72 @@
+//! How a scene is seen on the workstation before dials turn it: its camera, and the point that it is turned about.
+
+use super::WorkstationError;
+use crate::scene::{Camera, Prepared, Settings};
+use glam::{DMat3, DVec3};
+
+/// The view that dials begin from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InitialView {
+    /// The camera.
+    pub camera: Camera,
+    /// The point that dials turn and scale the scene about.
+    pub center: DVec3,
+    /// The longer side of the picture over the shorter one.
+    ///
+    /// The square screen of the workstation shows the whole picture: its sides are the longer side, and a wide picture
+    /// takes a band across its middle. The field of view of a camera is that of the shorter side.
+    pub elongation: f64,
+}
+
+impl InitialView {
+    /// That of a scene: its camera, or one that frames it, and the middle of the scene.
+    ///
+    /// # Errors
+    /// [`WorkstationError::Scene`] for a camera that cannot see.
+    pub fn of(prepared: &Prepared) -> Result<InitialView, WorkstationError> {
+        let camera = prepared.camera;
+        camera.check().map_err(|e| WorkstationError::Scene(e.to_string()))?;
+        Ok(InitialView { camera, center: prepared.bounds.center(), elongation: elongation(&prepared.settings) })
+    }
+
+    /// The axes that dials turn the scene about, as columns: that of dial 1 points to the right in the picture, that of dial
+    /// 2 along the camera's upward direction, so that a scene that stands upright goes round as on a turntable; that of dial
+    /// 3 is square to both, towards the viewer.
+    pub fn axes(&self) -> DMat3 {
+        let [right, ..] = self.picture_axes();
+        let upward = self.camera.up.normalize_or(DVec3::Y);
+        DMat3::from_cols(right, upward, right.cross(upward))
+    }
+
+    /// Unit vectors to the right, up and forward in the picture.
+    pub fn picture_axes(&self) -> [DVec3; 3] {
+        self.camera.axes().unwrap_or([DVec3::X, DVec3::Y, DVec3::NEG_Z])
+    }
+
+    /// How far a turn of dials 5 to 7 moves the scene: by the side of the screen, as it is at the depth of the centre. Scene
+    /// units, above 0.
+    pub fn movement(&self) -> f64 {
+        let half = match self.camera.parallel {
+            Some(parallel) => parallel.height / 2.0,
+            None => {
+                let depth = self.depth();
+                // An eye that has the centre behind it has what it looks at before it.
+                let depth = if depth > 0.0 { depth } else { (self.camera.at - self.camera.from).length() };
+                depth * self.camera.half_tangent()
+            }
+        };
+        (2.0 * half * self.elongation).max(f64::MIN_POSITIVE)
+    }
+
+    /// Depth of the centre along the view, scene units; below 0 behind the eye.
+    pub fn depth(&self) -> f64 {
+        let [.., forward] = self.picture_axes();
+        (self.center - self.camera.from).dot(forward)
+    }
+}
+
+/// The longer side of a scene's picture over the shorter one.
+fn elongation(settings: &Settings) -> f64 {
+    let (width, height) = (f64::from(settings.width), f64::from(settings.height));
+    width.max(height) / width.min(height)
+}
