@@ -5,7 +5,7 @@ use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{
-        Film, Order, RenderError, Watch,
+        Amount, Film, Order, RenderError, Watch,
         metering::Meter,
         ray_tracing::{Checkpoints, RayTracer},
     },
@@ -23,6 +23,8 @@ const EVERY: Duration = Duration::from_millis(150);
 pub enum News {
     /// Another stage of the work began: words such as `while rendering`.
     Stage(&'static str),
+    /// More of a stage before the image is done.
+    Amount(Amount),
     /// There is more of the image.
     Part {
         /// The image as a display shows it; pixels without samples are black.
@@ -60,7 +62,13 @@ impl Progressive {
             // Nobody may be listening any more.
             let tell = |news| drop(sender.send(news));
             let stage = |name| tell(News::Stage(name));
-            let watch = Watch { cancelled: &cancelled, stage: &stage, ..Watch::NOBODY };
+            // How many samples there are, parts of the image tell.
+            let progress = |amount: Amount| {
+                if amount.unit != "samples" {
+                    tell(News::Amount(amount));
+                }
+            };
+            let watch = Watch { cancelled: &cancelled, stage: &stage, progress: &progress, memo: None };
             let mut part = |part: News| tell(part);
             tell(News::End(shot(&prepared, &view, &order, &display, &watch, Some(&mut part)).map(Box::new)));
         };
@@ -69,14 +77,18 @@ impl Progressive {
         Ok(Progressive { news, is_cancelled })
     }
 
-    /// What is new, oldest first; of parts of the image the latest one only.
+    /// What is new, oldest first; of parts and amounts that follow each other, the last one only.
     pub fn news(&self) -> Vec<News> {
         let mut all: Vec<News> = Vec::new();
         loop {
             match self.news.try_recv() {
                 Ok(news) => {
-                    let is_part = |news: Option<&News>| matches!(news, Some(News::Part { .. }));
-                    if is_part(Some(&news)) && is_part(all.last()) {
+                    let is_outdated = match (all.last(), &news) {
+                        (Some(News::Part { .. }), News::Part { .. }) => true,
+                        (Some(News::Amount(_)), News::Amount(_)) => true,
+                        _ => false,
+                    };
+                    if is_outdated {
                         all.pop();
                     }
                     all.push(news);

@@ -94,13 +94,31 @@ impl Order {
     }
 }
 
+/// How much of a stage of the work is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Amount {
+    /// What is done, `0..=all`.
+    pub done: f64,
+    /// All that is to be done.
+    pub all: f64,
+    /// What is counted, such as `samples`.
+    pub unit: &'static str,
+}
+
+impl Amount {
+    /// So many of so many.
+    pub fn of(done: u64, all: u64, unit: &'static str) -> Amount {
+        Amount { done: done as f64, all: all as f64, unit }
+    }
+}
+
 /// Who watches a rendering and may stop it.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     /// Set from outside to stop after the rows that are being rendered.
     pub cancelled: &'a AtomicBool,
-    /// Called after each row with the rows that are done and all rows; from any thread.
-    pub progress: &'a (dyn Fn(u64, u64) + Sync),
+    /// Called when more of the stage is done; from any thread.
+    pub progress: &'a (dyn Fn(Amount) + Sync),
     /// Called when another stage of the work begins, with words such as `while rendering`.
     pub stage: &'a (dyn Fn(&'static str) + Sync),
     /// Where results of long computations are kept, if anywhere.
@@ -112,7 +130,7 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Watch<'_> {
     /// Nobody watches.
-    pub const NOBODY: Watch<'static> = Watch { cancelled: &NEVER, progress: &|_, _| {}, stage: &|_| {}, memo: None };
+    pub const NOBODY: Watch<'static> = Watch { cancelled: &NEVER, progress: &|_| {}, stage: &|_| {}, memo: None };
 
     /// One who may stop what another watches, and sees nothing of it.
     pub fn quiet(&self) -> Watch<'_> {

@@ -43,4 +43,12 @@ pub enum SceneError {
         /// Why.
         source: Box<ShapeError>,
     },
+    /// An object is wrong that a script asks for at a place.
+    #[error("{place}: {source}")]
+    Placed {
+        /// File, line and column of the script.
+        place: String,
+        /// What is wrong.
+        source: Box<SceneError>,
+    },
 }

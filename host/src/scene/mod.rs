@@ -10,6 +10,7 @@ mod error;
 mod exact;
 mod meeting;
 mod motion;
+mod places;
 mod placing;
 mod prepared;
 mod sculpture;
@@ -25,6 +26,7 @@ pub use error::SceneError;
 pub use exact::OnSurface;
 pub use meeting::{Meeting, meetings};
 pub use motion::{Motion, Moved};
+pub use places::{Places, Position};
 pub use placing::{Sides, footprint};
 pub use prepared::{Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, Sheet};
@@ -70,6 +72,9 @@ pub struct Scene {
     pub settings: Settings,
     /// How its pictures are shown.
     pub display: DisplayTransform,
+    /// Where its objects stand in its script.
+    #[serde(skip)]
+    pub places: Places,
 }
 
 /// One object: a shape, placed, of a material.

@@ -8,6 +8,7 @@ use super::{Camera, Made, Motion, Object, Scene, SceneError, Settings, Shape, Sh
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
+use crate::numeric::triangle::MAX_MAGNITUDE;
 use crate::surface::Tolerance;
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 use rustc_hash::FxHashMap;
@@ -103,6 +104,10 @@ impl Prepared {
     /// # Errors
     /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
     pub fn new(scene: &Scene) -> Result<Prepared, SceneError> {
+        Prepared::made(scene).map_err(|error| scene.places.placed(error))
+    }
+
+    fn made(scene: &Scene) -> Result<Prepared, SceneError> {
         scene.check()?;
         let mut prepared = Prepared {
             vertices: Vec::new(),
@@ -152,8 +157,9 @@ impl Prepared {
             .ok_or(SceneError::Limit { what: "vertices", limit: u64::from(u32::MAX) })?;
         self.vertices.extend(mesh.vertices.iter().map(|v| object.transform.transform_point3(*v)));
         let placed = &self.vertices[base as usize..];
-        if let Some(v) = placed.iter().find(|v| !v.is_finite()) {
-            return Err(failed(format!("a vertex is placed at {v}")));
+        let is_near = |v: &DVec3| v.is_finite() && v.abs().max_element() <= MAX_MAGNITUDE;
+        if let Some(v) = placed.iter().find(|v| !is_near(v)) {
+            return Err(failed(format!("a vertex is placed at {v}, farther than {MAX_MAGNITUDE:e} from the origin")));
         }
         let lines = lines.points.iter().map(|point| object.transform.transform_point3(*point));
         let still = Bounds::of(placed.iter().copied().chain(lines));

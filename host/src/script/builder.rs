@@ -4,7 +4,7 @@ use super::definition::{Definition, Definitions};
 use super::folders::Folders;
 use super::function::Done;
 use crate::database::Library;
-use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Scene, Shape};
+use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Position, Scene, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
 use std::collections::HashMap;
@@ -21,6 +21,8 @@ pub(super) struct Builder {
     pub(super) scene: Scene,
     /// Objects by handle; none where one became part of another.
     objects: Vec<Option<Object>>,
+    /// The calls that gave objects their shapes, by handle.
+    positions: Vec<Option<Position>>,
     /// How objects move, by handle.
     motions: Vec<Option<Motion>>,
     /// How many objects of each kind there have been.
@@ -41,6 +43,7 @@ impl Builder {
         Builder {
             scene: Scene::default(),
             objects: Vec::new(),
+            positions: Vec::new(),
             motions: Vec::new(),
             of_kind: HashMap::new(),
             shutter: [0.0, 1.0],
@@ -64,7 +67,27 @@ impl Builder {
             }
             scene.objects.push(object);
         }
+        for (object, position) in self.objects.iter().zip(&self.positions) {
+            if let (Some(object), Some(position)) = (object, position) {
+                scene.places.of.insert(object.name.clone(), *position);
+            }
+        }
         scene
+    }
+
+    /// Notes that a call gave an object its shape.
+    pub(super) fn note(&mut self, handle: Handle, position: Position) {
+        if self.positions.len() < self.objects.len() {
+            self.positions.resize(self.objects.len(), None);
+        }
+        if let Some(noted) = self.positions.get_mut(handle.0) {
+            *noted = Some(position);
+        }
+    }
+
+    /// Whether a call is known that gave an object its shape.
+    pub(super) fn is_noted(&self, handle: Handle) -> bool {
+        self.positions.get(handle.0).is_some_and(Option::is_some)
     }
 
     /// Lets an object move.

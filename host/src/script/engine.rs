@@ -8,12 +8,13 @@ use super::folders::Folders;
 use super::function::{Function, Kind};
 use super::printed::Printed;
 use super::spline::ControlMeaning;
-use super::{Evaluated, Inputs, functions};
+use super::{Evaluated, Inputs, functions, makes_shapes};
 use crate::curve::SplineCurve;
 use crate::illumination::Paint;
 use crate::illumination::distribution::{FacetError, FacetTable};
 use crate::illumination::texture::Number;
 use crate::memory;
+use crate::scene::Position;
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, FnPtr, Map, NativeCallContext};
 use std::cell::RefCell;
@@ -81,7 +82,8 @@ pub(super) fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -
         let (parameter, value, known) = (parameter.clone(), value.clone(), state.borrow().definitions.list());
         return Err(ScriptError::Definition { file: name.to_owned(), parameter, value, known });
     }
-    let scene = state.borrow().finish();
+    let mut scene = state.borrow().finish();
+    scene.places.file = name.to_owned();
     scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
     let printed = printed.take().finish();
     let files = state.borrow().folders.named();
@@ -161,7 +163,15 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
         values
     };
     let bound = Bound::new(function, values, &state.borrow().library).map_err(failed)?;
-    (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)
+    let given = (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)?;
+    let at = context.call_position();
+    if let (Some(handle), Some(line)) = (given.clone().try_cast::<Handle>(), at.line()) {
+        let mut builder = state.borrow_mut();
+        if makes_shapes(function) || !builder.is_noted(handle) {
+            builder.note(handle, Position { line, column: at.position().unwrap_or(1) });
+        }
+    }
+    Ok(given)
 }
 
 /// A function of a script as a table, also in a map of values; other values as they are.

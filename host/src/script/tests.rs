@@ -319,3 +319,16 @@ fn rounded_objects_stay_where_they_are_and_lose_their_corners() {
         "{error}"
     );
 }
+
+#[test]
+fn what_cannot_be_made_is_told_with_its_place() {
+    let problem = |text: &str| {
+        let scene = run(text).scene;
+        crate::scene::Prepared::new(&scene).expect_err("it cannot be made").to_string()
+    };
+    let rounded =
+        "let b = box(2, 1, 1) - cylinder(0.3, 3);\n\n  b.round_edges(0.1)\n    .translate(1, 0, 0);\nsphere(1);";
+    assert!(problem(rounded).starts_with("test.rhai:3:5: difference: "), "{}", problem(rounded));
+    let far = "sphere(1);\nbox(1, 1, 1).name(\"far\").translate(1e200, 0, 0);";
+    assert!(problem(far).starts_with("test.rhai:2:1: far: a vertex is placed at"), "{}", problem(far));
+}

@@ -5,10 +5,10 @@
 use super::StudyError;
 use super::plot::{Axis, Plot, Point, Series};
 use super::sweep::short;
-use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual};
+use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual, seen_share};
 use crate::illumination::distribution::{Distribution, FAMILY};
 use crate::numeric::sampling::{Stream, even};
-use crate::render::{Memo, Watch};
+use crate::render::{Amount, Memo, Watch};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::atomic::Ordering;
@@ -22,6 +22,12 @@ const MOST_EVALUATIONS: u32 = 60_000;
 /// Random pairs of directions for the residual of reciprocity, and their seed.
 const PAIRS: u64 = 20_000;
 const SEED: u64 = 7;
+/// Less than this, and the residual is that of rounding.
+const RECIPROCAL: f64 = 1e-6;
+/// What follows the name of a member for what a viewer sees of it.
+const SEEN: &str = ", seen";
+/// Width of the names in a table.
+const NAMES: usize = 22;
 /// Calls that are timed.
 const TIMED: u32 = 40_000;
 
@@ -43,6 +49,9 @@ pub struct IlluminationRow {
     pub roughness: f64,
     /// The integral of D over the outgoing hemisphere at each incidence; 1 if it is normalised.
     pub shares: Vec<f64>,
+    /// The share of an even sky's light that a viewer sees who looks at each of these angles, where that differs: for a
+    /// member that is not reciprocal. More than 1 makes light in pictures.
+    pub seen: Option<Vec<f64>>,
     /// The greatest error that the cubature states for them.
     pub error: f64,
     /// Greatest |f − f'| / (f + f') with light and viewer exchanged; 0 if it is reciprocal.
@@ -69,7 +78,7 @@ pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<Illumination
             }
             let make = || Ok::<_, StudyError>(row(member.name, m, (member.make)(m)?.as_ref()));
             rows.push(Memo::next(watch.memo, make)?);
-            (watch.progress)(rows.len() as u64, steps);
+            (watch.progress)(Amount::of(rows.len() as u64, steps, "distributions"));
         }
     }
     Ok(IlluminationStudy { incidences: INCIDENCES.to_vec(), rows })
@@ -78,6 +87,9 @@ pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<Illumination
 fn row(name: &str, roughness: f64, distribution: &dyn Distribution) -> IlluminationRow {
     let integrals =
         INCIDENCES.map(|d| emitted_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS));
+    let reciprocity = reciprocity_residual(distribution, PAIRS, SEED);
+    let seen = (reciprocity > RECIPROCAL)
+        .then(|| INCIDENCES.map(|d| seen_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS)));
     let light = light_at(0.5);
     let views: Vec<_> = (0..TIMED).filter_map(|index| distribution.sample(light, even(index, [0.3, 0.7]))).collect();
     let start = Instant::now();
@@ -94,8 +106,9 @@ fn row(name: &str, roughness: f64, distribution: &dyn Distribution) -> Illuminat
         name: name.to_owned(),
         roughness,
         shares: integrals.iter().map(|integral| integral.value).collect(),
-        error: integrals.iter().map(|integral| integral.error).fold(0.0, f64::max),
-        reciprocity: reciprocity_residual(distribution, PAIRS, SEED),
+        seen: seen.map(|seen| seen.iter().map(|integral| integral.value).collect()),
+        error: integrals.iter().chain(seen.iter().flatten()).map(|integral| integral.error).fold(0.0, f64::max),
+        reciprocity,
         evaluation,
         sample,
     }
@@ -108,24 +121,30 @@ impl IlluminationStudy {
         ["D", "m"].into_iter().map(str::to_owned).chain(angles).chain(rest.map(str::to_owned)).collect()
     }
 
-    fn cells(row: &IlluminationRow) -> Vec<f64> {
+    /// Names and numbers of the lines of a row: of the emitted shares, and of the seen ones where these differ.
+    fn lines(row: &IlluminationRow) -> Vec<(String, Vec<f64>)> {
+        let sides = [(row.name.clone(), Some(&row.shares)), (format!("{}{SEEN}", row.name), row.seen.as_ref())];
         let rest = [row.error, row.reciprocity, row.evaluation, row.sample];
-        [row.roughness].into_iter().chain(row.shares.iter().copied()).chain(rest).collect()
+        let cells = |shares: &Vec<f64>| [row.roughness].into_iter().chain(shares.iter().copied()).chain(rest).collect();
+        sides.into_iter().filter_map(|(name, shares)| Some((name, cells(shares?)))).collect()
     }
 
-    /// The study as a table for people: the integral of D at each incidence in degrees, and the rest.
+    /// The study as a table for people: the integral of D at each incidence in degrees, and the rest. A member that is not
+    /// reciprocal has a second line, of what a viewer sees.
     pub fn table(&self) -> String {
         let header = self.header();
         let width = |name: &str| name.len().max(9);
-        let mut text = format!("{:<14}", header[0]);
+        let mut text = format!("{:<NAMES$}", header[0]);
         header[1..].iter().for_each(|name| text.push_str(&format!("{name:>w$}  ", w = width(name))));
         text.push('\n');
         for row in &self.rows {
-            text.push_str(&format!("{:<14}", row.name));
-            for (name, cell) in header[1..].iter().zip(IlluminationStudy::cells(row)) {
-                text.push_str(&format!("{:>w$}  ", short(cell), w = width(name)));
+            for (name, cells) in IlluminationStudy::lines(row) {
+                text.push_str(&format!("{name:<NAMES$}"));
+                for (name, cell) in header[1..].iter().zip(cells) {
+                    text.push_str(&format!("{:>w$}  ", short(cell), w = width(name)));
+                }
+                text.push('\n');
             }
-            text.push('\n');
         }
         text
     }
@@ -134,10 +153,12 @@ impl IlluminationStudy {
     pub fn csv(&self) -> String {
         let mut text = self.header().join(",") + "\n";
         for row in &self.rows {
-            // A name may hold a comma.
-            text.push_str(&format!("\"{}\"", row.name));
-            IlluminationStudy::cells(row).iter().for_each(|cell| text.push_str(&format!(",{cell}")));
-            text.push('\n');
+            for (name, cells) in IlluminationStudy::lines(row) {
+                // A name may hold a comma.
+                text.push_str(&format!("\"{name}\""));
+                cells.iter().for_each(|cell| text.push_str(&format!(",{cell}")));
+                text.push('\n');
+            }
         }
         text
     }
@@ -147,25 +168,31 @@ impl IlluminationStudy {
         let mut all: Vec<f64> = self.rows.iter().map(|row| row.roughness).collect();
         all.dedup();
         let plot = |m: f64| {
-            let of_row = |row: &IlluminationRow| Series {
-                name: row.name.clone(),
+            let of_shares = |name: String, shares: &[f64]| Series {
+                name,
                 points: self
                     .incidences
                     .iter()
-                    .zip(&row.shares)
+                    .zip(shares)
                     // A member that leaves the picture would make the others flat.
-                    .filter(|(_, share)| (LOWEST..HIGHEST).contains(*share))
-                    .map(|(x, y)| Point { x: *x, y: *y, label: String::new() })
+                    .map(|(x, y)| (x, if (LOWEST..HIGHEST).contains(y) { *y } else { f64::NAN }))
+                    .map(|(x, y)| Point { x: *x, y, label: String::new() })
                     .collect(),
             };
+            let of_row = |row: &IlluminationRow| {
+                let seen = row.seen.as_ref().map(|seen| of_shares(format!("{}{SEEN}", row.name), seen));
+                std::iter::once(of_shares(row.name.clone(), &row.shares)).chain(seen).collect::<Vec<_>>()
+            };
             Plot {
-                title: format!("emitted share of the flux, roughness {m}"),
-                x_label: "incidence (degrees)".into(),
-                y_label: "integral of D over the viewer".into(),
-                note: format!("1 is normalised; more creates energy; cut at {LOWEST} and {HIGHEST}"),
+                title: format!("emitted share of the flux, and seen share of an even sky, roughness {m}"),
+                x_label: "angle of light or viewer (degrees)".into(),
+                y_label: "share".into(),
+                note: format!(
+                    "1 is normalised; more creates light; one curve where both are the same; {LOWEST} to {HIGHEST}"
+                ),
                 x_axis: Axis::Linear,
                 y_axis: Axis::Logarithmic,
-                series: self.rows.iter().filter(|row| row.roughness == m).map(of_row).collect(),
+                series: self.rows.iter().filter(|row| row.roughness == m).flat_map(of_row).collect(),
             }
         };
         all.into_iter().map(|m| (m, plot(m))).collect()

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::sync::Once;
 
 /// Size of a plot in points; the PNG has [`PNG_SCALE`] pixels for each.
-const SIZE: (u32, u32) = (760, 500);
+const SIZE: (u32, u32) = (860, 500);
 const PNG_SCALE: u32 = 2;
 /// More points than these are drawn as a curve.
 const CURVE: usize = 24;
@@ -31,6 +31,18 @@ const COLORS: [RGBColor; 10] = [
     RGBColor(0, 0, 90),
     RGBColor(100, 190, 60),
 ];
+
+/// Lengths of the strokes of a line, and of the gaps between them, points; one row for each way to draw a line. Curves of
+/// one colour are drawn in different ways, for there is no common factor of the colours and the ways.
+const STROKES: [(u32, u32); 3] = [(1, 0), (9, 5), (3, 4)];
+/// Space around what a plot shows, as a part of its sides.
+const MARGIN: f64 = 0.02;
+/// Height of a row of the legend, its sample of a line, and the width of a letter, points.
+const ROW: u32 = 20;
+const SAMPLE: u32 = 26;
+const LETTER: f64 = 7.0;
+/// The legend is no wider than this, points.
+const WIDEST_LEGEND: u32 = 300;
 
 /// How an axis is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +127,8 @@ pub struct Plot {
 pub struct Series {
     /// Its name in the legend.
     pub name: String,
-    /// Its points; those that are not above 0 have no place on a logarithmic axis and are left out.
+    /// Its points; those that are no numbers, or not above 0 on a logarithmic axis, have no place there, and no line leads
+    /// past them.
     pub points: Vec<Point>,
 }
 
@@ -180,14 +193,18 @@ impl Plot {
         Ok([svg, png])
     }
 
-    /// The points that have a place on the axes.
-    fn visible<'a>(&self, series: &'a Series) -> impl Iterator<Item = &'a Point> {
+    /// Whether a point has a place on the axes.
+    fn has_place(&self, point: &Point) -> bool {
         let has_place = |axis: Axis, x: f64| x.is_finite() && (axis == Axis::Linear || x > 0.0);
-        let (x_axis, y_axis) = (self.x_axis, self.y_axis);
-        series.points.iter().filter(move |p| has_place(x_axis, p.x) && has_place(y_axis, p.y))
+        has_place(self.x_axis, point.x) && has_place(self.y_axis, point.y)
     }
 
-    /// Least and greatest place on an axis, with a margin; on a logarithmic one at least a factor of four apart.
+    /// The points that have a place on the axes.
+    fn visible<'a>(&self, series: &'a Series) -> impl Iterator<Item = &'a Point> {
+        series.points.iter().filter(|point| self.has_place(point))
+    }
+
+    /// Least and greatest place on an axis, with a small margin; on a logarithmic one at least a factor of four apart.
     fn range(&self, axis: Axis, of: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
         let values = self.series.iter().flat_map(|series| self.visible(series)).map(of);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
@@ -197,11 +214,12 @@ impl Plot {
         match axis {
             Axis::Logarithmic => {
                 let middle = (low * high).sqrt();
-                Some((axis.place(low.min(middle / 2.0) / 1.5), axis.place(high.max(middle * 2.0) * 1.8)))
+                let [low, high] = [low.min(middle / 2.0), high.max(middle * 2.0)].map(|number| axis.place(number));
+                Some((low - MARGIN * (high - low), high + MARGIN * (high - low)))
             }
             Axis::Linear => {
                 let span = if high > low { high - low } else { high.abs().max(1.0) };
-                Some((low - 0.05 * span, high + 0.08 * span))
+                Some((low - MARGIN * span, high + MARGIN * span))
             }
         }
     }
@@ -214,8 +232,6 @@ impl Plot {
         embed_font();
         let failed = |e: &dyn std::fmt::Display| PlotError::Draw(e.to_string());
         let (x0, x1) = self.range(self.x_axis, |p| p.x).ok_or(PlotError::Empty)?;
-        // On even steps curves end anywhere: the legend gets a place of its own beside them.
-        let x1 = if self.x_axis == Axis::Linear { x1 + 0.35 * (x1 - x0) } else { x1 };
         let (y0, y1) = self.range(self.y_axis, |p| p.y).ok_or(PlotError::Empty)?;
         // What is never negative begins at 0.
         let is_above =
@@ -232,9 +248,12 @@ impl Plot {
         let at = |x: u32, y: u32| ((x * scale) as i32, (y * scale) as i32);
         head.draw_text(&self.title, &text(18), at(16, 10)).map_err(|e| failed(&e))?;
         head.draw_text(&self.note, &text(13), at(16, 34)).map_err(|e| failed(&e))?;
+        let longest = self.series.iter().map(|series| series.name.chars().count()).max().unwrap_or(0);
+        let legend_width = (SAMPLE + 24 + (longest as f64 * LETTER) as u32).min(WIDEST_LEGEND);
+        let (body, legend) = body.split_horizontally((SIZE.0 - legend_width) * scale);
         let mut chart = ChartBuilder::on(&body)
             .margin(8 * scale)
-            .margin_right(24 * scale)
+            .margin_right(12 * scale)
             .x_label_area_size(46 * scale)
             .y_label_area_size(74 * scale)
             .build_cartesian_2d(Places { range: x0..x1, ticks: x_ticks }, Places { range: y0..y1, ticks: y_ticks })
@@ -253,20 +272,27 @@ impl Plot {
             .set_all_tick_mark_size(5 * scale)
             .draw()
             .map_err(|e| failed(&e))?;
-        for (series, color) in self.series.iter().zip(COLORS.into_iter().cycle()) {
-            let line: Vec<(f64, f64)> = self.visible(series).map(place).collect();
+        // Rows of the legend come closer where there are many.
+        let row = ROW.min((SIZE.1 - 70) / self.series.len().max(1) as u32);
+        for (index, series) in self.series.iter().enumerate() {
+            let color = COLORS[index % COLORS.len()];
+            let strokes = STROKES[index % STROKES.len()];
             let style = color.stroke_width(2 * scale);
             // Many points are a curve.
-            let dot = if line.len() > CURVE { 1 } else { 4 };
-            let key = move |(x, y): (i32, i32)| PathElement::new([(x, y), (x + 18 * scale as i32, y)], style);
-            chart
-                .draw_series(LineSeries::new(line.iter().copied(), style))
-                .map_err(|e| failed(&e))?
-                .label(series.name.as_str())
-                .legend(key);
-            chart
-                .draw_series(line.iter().map(|p| Circle::new(*p, dot * scale, color.filled())))
-                .map_err(|e| failed(&e))?;
+            let dot = if self.visible(series).count() > CURVE { 1 } else { 4 };
+            for run in series.points.split(|point| !self.has_place(point)) {
+                let line = || run.iter().map(place);
+                let drawn = match strokes {
+                    (_, 0) => chart.draw_series(LineSeries::new(line(), style)).map(drop),
+                    (on, off) => {
+                        chart.draw_series(DashedLineSeries::new(line(), on * scale, off * scale, style)).map(drop)
+                    }
+                };
+                drawn.map_err(|e| failed(&e))?;
+                chart
+                    .draw_series(line().map(|at| Circle::new(at, dot * scale, color.filled())))
+                    .map_err(|e| failed(&e))?;
+            }
             // Errors fall as time grows: below and to the left of the last curve there is room.
             let corner = Pos::new(HPos::Right, VPos::Top);
             let small = TextStyle::from((FONT, points(12))).color(&color).pos(corner);
@@ -274,17 +300,20 @@ impl Plot {
             let beside =
                 |p: &Point| EmptyElement::at(place(p)) + Text::new(p.label.clone(), beside_point, small.clone());
             chart.draw_series(self.visible(series).map(beside)).map_err(|e| failed(&e))?;
+            let middle = 20 + row * index as u32;
+            let (on, off) = strokes;
+            let gap = if off == 0 { SAMPLE } else { on + off };
+            for begin in (0..SAMPLE).step_by(gap as usize) {
+                let end = (begin + if off == 0 { SAMPLE } else { on }).min(SAMPLE);
+                let stroke = PathElement::new([at(begin, middle), at(end, middle)], style);
+                legend.draw(&stroke).map_err(|e| failed(&e))?;
+            }
+            legend
+                .draw(&Circle::new(at(SAMPLE / 2, middle), dot.min(3) * scale, color.filled()))
+                .map_err(|e| failed(&e))?;
+            let name = text(14).pos(Pos::new(HPos::Left, VPos::Center));
+            legend.draw_text(&series.name, &name, at(SAMPLE + 8, middle)).map_err(|e| failed(&e))?;
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.9))
-            .border_style(RGBColor(190, 190, 190).stroke_width(scale))
-            .margin(8 * scale)
-            .legend_area_size(28 * scale)
-            .label_font(text(14))
-            .draw()
-            .map_err(|e| failed(&e))?;
         area.present().map_err(|e| failed(&e))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::StudyError;
 use super::plot::{Axis, Plot, Point, Series};
-use crate::render::{Memo, Watch};
+use crate::render::{Amount, Memo, Watch};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
@@ -99,7 +99,7 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
     let mut rows = Vec::new();
     // The first run warms the machine; its time is not kept.
     let reference = run(finest)?;
-    (watch.progress)(1, steps);
+    (watch.progress)(Amount::of(1, steps, "measurements"));
     let tried = |setting| -> Result<Tried, StudyError> {
         let mut trial = run(setting)?;
         let mut spent = trial.seconds;
@@ -124,7 +124,7 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
         let tried = Memo::next(watch.memo, || tried(setting))?;
         count_names = tried.count_names;
         rows.push(tried.row);
-        (watch.progress)(index as u64 + 2, steps);
+        (watch.progress)(Amount::of(index as u64 + 2, steps, "measurements"));
     }
     Ok(Study {
         setting: knob.setting().to_owned(),

@@ -133,6 +133,9 @@ struct Arguments {
     /// Leaves nothing out; the picture is the same
     #[arg(long)]
     everything: bool,
+    /// Tells how much work it was, too: triangles, rays or spans, radiosity, caught light. --json has all of it
+    #[arg(long)]
+    stats: bool,
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
@@ -168,6 +171,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let fingerprint = state.as_ref().map(|_| Fingerprint::of(&scene, &prepared, &order));
     let memo = intermediate.memo(arguments, fingerprint.as_ref())?;
     let watch = Watch { memo: memo.as_ref(), ..progress::watch() };
+    if order.seconds.is_none() && order.target.is_none() {
+        progress::follow(&format!("{} samples", order.samples));
+    }
     let mut all = Views {
         arguments,
         views: &views,

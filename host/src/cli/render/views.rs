@@ -207,25 +207,34 @@ impl Views<'_> {
             picture.width(),
             picture.height()
         );
-        let memory = memory::readable(memory::peak());
-        say!("{} triangles, built in {build_seconds:.3} s; at most {memory} of memory", self.prepared.triangles.len());
+        let (seconds, threads, memory) = (rendering.seconds, rendering.threads, memory::readable(memory::peak()));
+        say!("rendered in {seconds:.3} s after {build_seconds:.3} s of preparation, on {threads} threads in {memory}");
+        if outputs.iter().any(|output| !Picture::is_exr(output)) {
+            say!("exposed by {:+.2} stops, tone {}", self.stops, self.display.tone.word());
+        }
+        if self.arguments.stats {
+            self.report_statistics(rendering);
+        }
+    }
+
+    /// Says how much work it was.
+    fn report_statistics(&self, rendering: &Rendering) {
+        say!("{} triangles", self.prepared.triangles.len());
         if let Some(balance) = &rendering.balance {
             say!("{balance}");
         }
         self.radiosity.iter().flat_map(Report::lines).for_each(|line| say!("{line}"));
-        let Rendering { rays, spans, seconds, threads, .. } = rendering;
+        let Rendering { rays, spans, .. } = rendering;
         if matches!(self.arguments.renderer, Kind::ScanLine | Kind::Radiosity) {
-            let (all, shadows) = (spans.surfaces, spans.shadows);
-            say!("{all} spans of surfaces, {shadows} of shadow polygons in {seconds:.3} s on {threads} threads");
-            return;
+            return say!("{} spans of surfaces, {} of shadow polygons", spans.surfaces, spans.shadows);
         }
+        let spared = if rays.spared > 0 { format!(", {} more spared", rays.spared) } else { String::new() };
         say!(
-            "{} rays (primary {}, shadow {}, reflected {}; {} spared) in {seconds:.3} s on {threads} threads: {:.2} million a second",
+            "{} rays: {} primary, {} to lights{spared}, {} reflected or refracted; {:.2} million a second",
             rays.total(),
             rays.primary,
             rays.shadow,
             rays.reflected,
-            rays.spared,
             rendering.mega_rays_per_second()
         );
     }

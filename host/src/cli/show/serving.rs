@@ -5,7 +5,7 @@ use crate::{
     cli::{progress, say, story},
     picture::display::DisplayTransform,
     production::{News, Production, ProductionError, Progressive, Shot},
-    render::Order,
+    render::{Amount, Order},
     scene::Scene,
     workstation::{
         Emulator, WorkstationError,
@@ -34,6 +34,8 @@ pub(super) struct Server<'a> {
     order: Order,
     display: DisplayTransform,
     rendering: Option<Progressive>,
+    /// What the rendering does now, in words.
+    stage: &'static str,
     /// What the key to render says now.
     label: String,
     orders: Orders,
@@ -61,8 +63,18 @@ impl<'a> Server<'a> {
         let given = emulator.as_ref().map(|_| read_orders());
         let orders = Orders { given, unanswered: 0, at_work: Instant::now() };
         let order = order(scene, arguments);
-        let (display, rendering, label) = (scene.display, None, String::new());
-        Server { production, emulator, arguments, told, order, display, rendering, label, orders }
+        Server {
+            production,
+            emulator,
+            arguments,
+            told,
+            order,
+            display: scene.display,
+            rendering: None,
+            stage: "",
+            label: String::new(),
+            orders,
+        }
     }
 
     /// Serves until the end.
@@ -166,13 +178,20 @@ impl<'a> Server<'a> {
             match news {
                 News::Stage(stage) => {
                     progress::stage(stage);
-                    self.production.say(stage.strip_prefix("while ").unwrap_or(stage))?;
+                    self.stage = progress::words(stage);
+                    self.production.say(self.stage)?;
+                }
+                News::Amount(amount) => {
+                    progress::update(amount);
+                    self.production.say(&format!("{}: {}", self.stage, progress::describe(amount)))?;
                 }
                 News::Part { shown, rows, samples, seconds_left } => {
                     self.production.show_rows(&shown, |row| rows[row as usize])?;
                     let all = self.order.samples;
-                    let left = clock(seconds_left);
-                    self.production.say(&format!("{samples:.1} of {all} samples, {left} left"))?;
+                    let amount = Amount { done: samples, all: all.into(), unit: "samples" };
+                    let left = progress::clock(seconds_left);
+                    progress::update(amount);
+                    self.production.say(&format!("{}, {left} left", progress::describe(amount)))?;
                     self.write_label(&format!("{:.0} %", 100.0 * samples / f64::from(all)))?;
                 }
                 News::End(ended) => {
@@ -232,12 +251,6 @@ fn brief(text: &str) -> String {
     line.chars().filter(|letter| letter.is_ascii() && !letter.is_control()).take(MESSAGE).collect()
 }
 
-/// Minutes and seconds.
-fn clock(seconds: f64) -> String {
-    let seconds = seconds.ceil() as u64;
-    format!("{}:{:02}", seconds / 60, seconds % 60)
-}
-
 /// The lines of standard input, read by a thread of their own.
 fn read_orders() -> mpsc::Receiver<String> {
     let (sender, orders) = mpsc::channel();
@@ -260,6 +273,5 @@ mod tests {
     fn a_message_has_one_short_line_of_plain_letters() {
         assert_eq!(brief("a: b\nc"), "a: b");
         assert_eq!(brief(&"ä\tx".repeat(100)), "x".repeat(MESSAGE));
-        assert_eq!(["0:00", "0:01", "1:01"], [0.0, 0.2, 60.2].map(clock));
     }
 }

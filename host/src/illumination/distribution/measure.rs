@@ -28,6 +28,23 @@ pub fn emitted_share(distribution: &dyn Distribution, light: DVec3, tolerance: f
     unit_square(weight, tolerance, most)
 }
 
+/// The share of the light of an even sky that a viewer sees: what a surface of this distribution shows in a picture where
+/// light of the same radiance comes from everywhere, the integral of D(light, viewer) (N·L) / (N·V) over all lights.
+///
+/// A reciprocal distribution has the same integrals with light and viewer exchanged, and this is its [`emitted_share`].
+///
+/// - `tolerance`, `most`: as in [`emitted_share`].
+pub fn seen_share(distribution: &dyn Distribution, view: DVec3, tolerance: f64, most: u32) -> Integral {
+    let weight = |point| match distribution.sample(view, point) {
+        Some(light) => {
+            let (density, sampled) = (distribution.density(light, view), distribution.sample_density(view, light));
+            if sampled > 0.0 { density * light.z / (view.z * sampled) } else { 0.0 }
+        }
+        None => 0.0,
+    };
+    unit_square(weight, tolerance, most)
+}
+
 /// Pairs of directions as they occur: light anywhere, viewer where the distribution sends it, or anywhere.
 ///
 /// - `count`: how many. `seed`: of the random numbers.

@@ -1,6 +1,6 @@
 //! Facts about the whole family of distributions, and what each member must have to itself.
 
-use super::measure::{check, emitted_share, light_at, reciprocity_residual};
+use super::measure::{check, emitted_share, light_at, reciprocity_residual, seen_share};
 use super::*;
 use crate::numeric::sampling::{Stream, even};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -227,5 +227,23 @@ fn a_function_that_is_no_distribution_is_refused_with_its_directions() {
     assert!(Tabulated::new("huge", 1000, |_, _| 1.0).is_err());
     for roughness in [0.0, -1.0, f64::NAN, 1e4] {
         assert!(FAMILY[1..].iter().all(|row| (row.make)(roughness).is_err()));
+    }
+}
+
+#[test]
+fn a_viewer_sees_of_what_is_not_reciprocal_more_than_is_emitted() {
+    let make = |name: &str| {
+        let row = FAMILY.iter().find(|row| row.name == name).expect("a member");
+        (row.make)(0.8).expect("a roughness that it knows")
+    };
+    let both = |name: &str| {
+        let (distribution, at) = (make(name), light_at(82f64.to_radians()));
+        [emitted_share, seen_share].map(|share| share(distribution.as_ref(), at, 1e-4, 100_000).value)
+    };
+    let [emitted, seen] = both("improved (7)");
+    assert!((emitted - 0.911).abs() < 2e-3 && (seen - 4.40).abs() < 2e-2, "{emitted} and {seen}");
+    for name in ["Lambert", "GGX", "Beckmann"] {
+        let [emitted, seen] = both(name);
+        assert!((emitted - seen).abs() < 2e-3, "{name}: {emitted} and {seen}");
     }
 }

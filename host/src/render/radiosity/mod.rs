@@ -41,7 +41,7 @@ pub use solver::Unsolvable;
 pub use surface::{Division, Part};
 
 use super::ray_tracing::world::World;
-use super::{RenderError, Watch};
+use super::{Amount, RenderError, Watch};
 use crate::color::Channels;
 use crate::plan::{Plan, Stage};
 use crate::scene::Prepared;
@@ -146,7 +146,7 @@ impl Radiosity {
         for round in 0..ROUNDS {
             let bound = Bound { irradiance: settings.error * elements.mean_irradiance(), finest };
             refine(&sight, &mut elements, &mut links, bound, &stopped);
-            (watch.progress)(2 * round + 1, 2 * ROUNDS);
+            (watch.progress)(Amount::of(2 * round + 1, 2 * ROUNDS, "rounds"));
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
             let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
@@ -159,7 +159,7 @@ impl Radiosity {
             let last = looks.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
             elements.take(&leaves, &irradiance);
-            (watch.progress)(2 * round + 2, 2 * ROUNDS);
+            (watch.progress)(Amount::of(2 * round + 2, 2 * ROUNDS, "rounds"));
             if let (Some(corners), Some(looks)) = (corners, looks) {
                 at_corners = Some((corners, light, looks.is_dark));
                 break;

@@ -39,7 +39,7 @@ impl Report {
                 "{elements} elements of {patches} patches, {links} links, {steps} steps of the solver in {seconds:.3} s; \
                  error of the solver at most {solver_error:.1e}, form factors out of balance by {unbalanced:.1e}"
             ),
-            format!("flux {arrived:.6} = {absorbed:.6} absorbed + {escaped:.6} escaped + {left:.1e} left"),
+            format!("flux {arrived:.6}: {absorbed:.6} absorbed, {escaped:.6} escaped, {left:.1e} left"),
         ]
     }
 }

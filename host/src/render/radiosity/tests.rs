@@ -321,8 +321,9 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
     let room = prepared(vec![cube("room", 2.0, 0.6), sphere("ball", 0.5, 0.8)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
     let plan = Plan::new(&room, &room.view());
     let (cancelled, told) = (AtomicBool::new(false), AtomicU64::new(0));
-    let progress = |done: u64, all: u64| {
-        assert!(done <= all && done >= told.load(Ordering::Relaxed));
+    let progress = |amount: Amount| {
+        let done = amount.done as u64;
+        assert!(amount.done <= amount.all && done >= told.load(Ordering::Relaxed));
         told.store(done, Ordering::Relaxed);
         cancelled.store(true, Ordering::Relaxed);
     };
@@ -343,7 +344,7 @@ fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
     let plan = Plan::new(&room, &room.view());
     let links = |cancelled: bool| {
         let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
-        let progress = |done: u64, _: u64| told.store(done, Ordering::Relaxed);
+        let progress = |amount: Amount| told.store(amount.done as u64, Ordering::Relaxed);
         let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
         let tracer = RayTracer::watched(&room, &plan, None, &watch).expect("a tracer");
         assert!(told.load(Ordering::Relaxed) > 0);

@@ -7,7 +7,7 @@ use super::{Log, RayTracer};
 use crate::memory;
 use crate::picture::PictureError;
 use crate::render::film::{Film, Row, SHARING};
-use crate::render::{Order, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch, denoising};
+use crate::render::{Amount, Order, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch, denoising};
 use crate::scene::View;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -79,7 +79,6 @@ impl RayTracer<'_> {
         let mut due = checkpoints.as_ref().map(|checkpoints| start + checkpoints.every);
         let mut adaptive = film.adaptive(order.target);
         let passes = self.passes(order);
-        let all_rows = passes.len() as u64 * u64::from(order.height);
         let mut rays = RayCounts::default();
         let mut balance = None;
         let mut is_finished = true;
@@ -90,11 +89,17 @@ impl RayTracer<'_> {
             if let Some(adaptive) = &mut adaptive {
                 adaptive.aim(film, *samples, if self.two_way.is_some() { SHARING } else { u32::MAX });
             }
+            let before = number.checked_sub(1).map_or(0, |last| passes[last]);
             let goal = |pixel: usize| match &adaptive {
                 Some(adaptive) => adaptive.goals[pixel].min(order.samples),
                 None => *samples,
             };
-            let is_needed = film.tallies().iter().enumerate().any(|(pixel, tally)| tally.count < goal(pixel));
+            let wanting = film.tallies().iter().enumerate().filter(|(pixel, tally)| tally.count < goal(*pixel)).count();
+            let is_needed = wanting > 0;
+            if adaptive.is_some() {
+                let all = film.tallies().len() as u64;
+                (watch.progress)(Amount::of(all - wanting as u64, all, "pixels"));
+            }
             let caught = match &self.two_way {
                 Some(two_way) if is_needed => {
                     (watch.stage)("while following light from lamps");
@@ -112,7 +117,8 @@ impl RayTracer<'_> {
             balance = balance.or(caught.as_ref().map(CaughtLight::balance));
             let tracer = self.tracer(caught.as_ref(), &eye, !film.guides().is_empty());
             loop {
-                let done = AtomicU64::new(number as u64 * u64::from(order.height));
+                let rows = f64::from(order.height);
+                let rows_done = AtomicU64::new(0);
                 let is_due = || due.is_some_and(|due| Instant::now() >= due);
                 let pauses = || watch.is_cancelled() || is_due() || is_late();
                 let row = |(y, mut row): (usize, Row<'_>)| {
@@ -129,7 +135,19 @@ impl RayTracer<'_> {
                             row.add(x, &sample, &classes);
                         }
                     }
-                    (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all_rows);
+                    let part = (rows_done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / rows;
+                    let done = f64::from(before) + part * f64::from(samples - before);
+                    match (order.seconds, order.target) {
+                        (Some(seconds), _) => {
+                            let done = start.elapsed().as_secs_f64().min(seconds);
+                            (watch.progress)(Amount { done, all: seconds, unit: "seconds" });
+                        }
+                        // How many it takes is not known.
+                        (None, Some(_)) => {}
+                        (None, None) => {
+                            (watch.progress)(Amount { done, all: f64::from(order.samples), unit: "samples" });
+                        }
+                    }
                     (work.counts, true)
                 };
                 let rows: Vec<(RayCounts, bool)> =

@@ -11,7 +11,7 @@ use crate::solid::Primitive;
 use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 pub(super) fn object(shape: Shape, transform: DMat4, material: impl Into<Material>) -> Object {
     Object { name: shape.word().into(), shape, transform, material: Some(material.into()), tolerance: None }
@@ -391,10 +391,10 @@ fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::new(&prepared, &prepared.view());
     let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
-    let cancelled = AtomicBool::new(false);
+    let (cancelled, rows) = (AtomicBool::new(false), AtomicU32::new(0));
     let watch = Watch {
         cancelled: &cancelled,
-        progress: &|done, _| cancelled.store(done >= 5, Ordering::Relaxed),
+        progress: &|_| cancelled.store(rows.fetch_add(1, Ordering::Relaxed) + 1 >= 5, Ordering::Relaxed),
         ..Watch::NOBODY
     };
     let order = Order { threads: NonZeroUsize::new(1), ..Order::of(&scene.settings) };

@@ -30,7 +30,7 @@ use super::eye::Eye;
 use super::film::{Film, Tally};
 use super::radiosity::Radiosity;
 use super::ready::Appearance;
-use super::{Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
+use super::{Amount, Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::{LightPoint, Source};
 use crate::picture::{Filter, Picture};
@@ -291,7 +291,8 @@ impl<'a> ScanLine<'a> {
                 let counts = work.band(self, band, tallies, tools);
                 pixels.iter_mut().zip(&*tallies).for_each(|(pixel, tally)| *pixel = tally.pixel());
                 let rows = (tallies.len() / work.width) as u64;
-                (watch.progress)(done.fetch_add(rows, Ordering::Relaxed) + rows, u64::from(order.height));
+                let done = done.fetch_add(rows, Ordering::Relaxed) + rows;
+                (watch.progress)(Amount::of(done, order.height.into(), "rows"));
                 Some(counts)
             })
             .collect();

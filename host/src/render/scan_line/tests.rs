@@ -440,7 +440,7 @@ fn a_cancelled_picture_keeps_what_was_finished() {
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
     let cancelled = AtomicBool::new(false);
-    let stop = |_: u64, _: u64| cancelled.store(true, Ordering::Relaxed);
+    let stop = |_: Amount| cancelled.store(true, Ordering::Relaxed);
     let watch = Watch { cancelled: &cancelled, progress: &stop, ..Watch::NOBODY };
     let scan = ScanLine::new(&prepared, &plan).expect("ready");
     let drawn = scan.render(&view, &order(&scene, 1), &watch).expect("a part");

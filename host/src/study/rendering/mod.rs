@@ -18,7 +18,7 @@ pub use setup::Technique;
 
 use super::{Options, StudyError};
 use crate::picture::Picture;
-use crate::render::Watch;
+use crate::render::{Amount, Watch};
 use crate::scene::Scene;
 use bend::bend;
 use measure::Reference;
@@ -193,7 +193,7 @@ impl Bench<'_> {
             changes |= *first.get_or_insert_with(|| picture.clone()) != picture;
             found.rows.push(row);
             self.done += 1;
-            (self.watch.progress)(self.done, self.steps);
+            (self.watch.progress)(Amount::of(self.done, self.steps, "measurements"));
         }
         let measured: Vec<Measures> = found.rows.iter().map(|row| row.measures).collect();
         found.bend = bend(&measured, found.reference_error);

@@ -145,8 +145,10 @@ impl KnobStudy {
 
     fn points(&self, of: fn(&RenderRow) -> f64, labels: bool) -> Vec<Point> {
         let label = |row: &RenderRow| if labels { short(row.setting) } else { String::new() };
-        let counts = |row: &&RenderRow| of(row) > NEGLIGIBLE * row.measures.rmse;
-        self.rows.iter().filter(counts).map(|row| Point { x: row.seconds, y: of(row), label: label(row) }).collect()
+        // What was not seen at a setting has no place there, and no line leads past it.
+        let seen = |row: &RenderRow| Some(of(row)).filter(|error| *error > NEGLIGIBLE * row.measures.rmse);
+        let point = |row: &RenderRow| Point { x: row.seconds, y: seen(row).unwrap_or(f64::NAN), label: label(row) };
+        self.rows.iter().map(point).collect()
     }
 }
 

@@ -257,7 +257,7 @@ fn scan_line_is_held_against_ray_tracing_where_it_leaves_nothing_out() {
 #[test]
 fn what_was_finished_before_an_interruption_is_kept() {
     let cancelled = AtomicBool::new(false);
-    let progress = |done: u64, _: u64| cancelled.store(done >= 2, std::sync::atomic::Ordering::Relaxed);
+    let progress = |amount: Amount| cancelled.store(amount.done >= 2.0, std::sync::atomic::Ordering::Relaxed);
     let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
     let found = renderers(&ball(), RAYS, &["samples", "error"], &SMALL, &watch).expect("a part");
     assert!(!found.complete && found.knobs.len() == 1 && found.knobs[0].rows.len() == 2, "{found:?}");

@@ -35,8 +35,8 @@ use crate::memory;
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
-use crate::render::Watch;
 use crate::render::radiosity::mean_diffuse;
+use crate::render::{Amount, Watch};
 use crate::scene::Prepared;
 use aim::{Aimed, Ball};
 use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
@@ -217,7 +217,7 @@ impl<'s> TwoWay<'s> {
             blocks.par_iter_mut().zip(&wanted).filter(|(block, _)| block.is_none()).for_each(|(block, chunk)| {
                 if !pauses() {
                     *block = Some(self.follow(world, u64::from(pass), chunk, ways(chunk)));
-                    (watch.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+                    (watch.progress)(Amount::of(done.fetch_add(1, Ordering::Relaxed) + 1, all, "parts"));
                 }
             });
             let is_finished = blocks.iter().all(Option::is_some);

@@ -1,0 +1,47 @@
+//! Where the objects of a scene stand in its script, for errors that come to light when they are made.
+
+use super::SceneError;
+use std::collections::HashMap;
+
+/// A place in a script.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
+}
+
+/// The calls that gave the objects of a scene their shapes.
+///
+/// It is no part of what the scene is: scenes that differ in it only are equal, and it is not stored.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    /// The script.
+    pub file: String,
+    /// By the name of the object.
+    pub of: HashMap<String, Position>,
+}
+
+impl PartialEq for Places {
+    fn eq(&self, _: &Places) -> bool {
+        true
+    }
+}
+
+impl Places {
+    /// An error with the place where the object that it names got its shape, if that is known.
+    pub(super) fn placed(&self, error: SceneError) -> SceneError {
+        let position = match &error {
+            SceneError::Object { object, .. } | SceneError::Shape { object, .. } => self.of.get(object),
+            _ => None,
+        };
+        match position {
+            Some(Position { line, column }) => {
+                let place = format!("{}:{line}:{column}", self.file);
+                SceneError::Placed { place, source: Box::new(error) }
+            }
+            None => error,
+        }
+    }
+}
