@@ -83,11 +83,10 @@ impl Progressive {
         loop {
             match self.news.try_recv() {
                 Ok(news) => {
-                    let is_outdated = match (all.last(), &news) {
-                        (Some(News::Part { .. }), News::Part { .. }) => true,
-                        (Some(News::Amount(_)), News::Amount(_)) => true,
-                        _ => false,
-                    };
+                    let is_outdated = matches!(
+                        (all.last(), &news),
+                        (Some(News::Part { .. }), News::Part { .. }) | (Some(News::Amount(_)), News::Amount(_))
+                    );
                     if is_outdated {
                         all.pop();
                     }
