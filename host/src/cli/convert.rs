@@ -110,7 +110,7 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
     let prepared = Prepared::new(&scene)?;
     let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
     let shown = InitialView::of(&prepared)
-        .and_then(|initial| structure::commands(&scene, &initial, &prepared.bounds, &drawing))
+        .and_then(|initial| structure::commands(&scene, &initial, &prepared.subject(), &drawing))
         .map_err(|error| Failure::new(Exit::Scene, error))?;
     let mut text = Vec::new();
     for command in std::iter::once(&structure::delete()).chain(&shown.commands) {

@@ -69,7 +69,7 @@ impl Model {
         let begun = Instant::now();
         let own = InitialView::of(&prepared)?;
         let initial = initial.map_or(own, |initial| InitialView { elongation: own.elongation, ..initial });
-        let shown = structure::with_light(scene, &initial, &prepared.bounds, drawing, light)?;
+        let shown = structure::with_light(scene, &initial, &prepared.subject(), drawing, light)?;
         Ok(Model { prepared, initial, shown, is_lit: light.is_some(), begun })
     }
 

@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3};
 pub struct InitialView {
     /// The camera.
     pub camera: Camera,
-    /// The point that dials turn and scale the scene about.
+    /// The point that dials turn and scale the scene about: what the camera looks at.
     pub center: DVec3,
     /// The longer side of the picture over the shorter one.
     ///
@@ -19,14 +19,14 @@ pub struct InitialView {
 }
 
 impl InitialView {
-    /// That of a scene: its camera, or one that frames it, and the middle of the scene.
+    /// That of a scene: by its camera, or one that frames it.
     ///
     /// # Errors
     /// [`WorkstationError::Scene`] for a camera that cannot see.
     pub fn of(prepared: &Prepared) -> Result<InitialView, WorkstationError> {
         let camera = prepared.camera;
         camera.check().map_err(|e| WorkstationError::Scene(e.to_string()))?;
-        Ok(InitialView { camera, center: prepared.bounds.center(), elongation: elongation(&prepared.settings) })
+        Ok(InitialView { camera, center: camera.at, elongation: elongation(&prepared.settings) })
     }
 
     /// The axes that dials turn the scene about, as columns: that of dial 1 points to the right in the picture, that of dial
@@ -48,20 +48,16 @@ impl InitialView {
     pub fn movement(&self) -> f64 {
         let half = match self.camera.parallel {
             Some(parallel) => parallel.height / 2.0,
-            None => {
-                let depth = self.depth();
-                // An eye that has the centre behind it has what it looks at before it.
-                let depth = if depth > 0.0 { depth } else { (self.camera.at - self.camera.from).length() };
-                depth * self.camera.half_tangent()
-            }
+            // Of a view that was kept, the eye may have the centre behind it.
+            None => self.depth(self.center).abs() * self.camera.half_tangent(),
         };
         (2.0 * half * self.elongation).max(f64::MIN_POSITIVE)
     }
 
-    /// Depth of the centre along the view, scene units; below 0 behind the eye.
-    pub fn depth(&self) -> f64 {
+    /// Depth of a point along the view, scene units; below 0 behind the eye.
+    pub fn depth(&self, point: DVec3) -> f64 {
         let [.., forward] = self.picture_axes();
-        (self.center - self.camera.from).dot(forward)
+        (point - self.camera.from).dot(forward)
     }
 }
 

@@ -93,7 +93,7 @@ pub fn delete_objects() -> Command {
 /// Its nodes `CLIP`, `VIEW`, `LOOK`, `T`, `RX`, `RY`, `RZ`, `S` take values from networks; `MATRIX` is an XFORM
 /// MATRIX node below them all, whose matrix takes scene coordinates (z negated) to clip space.
 ///
-/// - `initial`: from where it is seen. `bounds`: a box around the scene.
+/// - `initial`: from where it is seen. `bounds`: a box around what is looked at, over which the depth cue runs.
 ///
 /// # Errors
 /// [`WorkstationError::Scene`], if an object cannot be tessellated.
@@ -177,7 +177,7 @@ fn view(commands: &mut Vec<Command>, initial: &InitialView, bounds: &Bounds, dep
     let (horizontal, vertical) = ([-1.0, 1.0], [-1.0, 1.0]);
     operate(commands, None, Operate::Viewport { horizontal, vertical, intensity: Some([BACK_INTENSITY, 1.0]) });
     operate(commands, Some("CLIP"), Operate::SetDepthClipping(depth_clipping));
-    let boundaries = Some(boundaries(camera, initial.depth(), bounds.diagonal() / 2.0));
+    let boundaries = Some(boundaries(camera, initial.depth(bounds.center()), bounds.diagonal() / 2.0));
     match camera.parallel {
         None => {
             let angle = 2.0 * (camera.half_tangent() * elongation).atan().to_degrees();
@@ -212,10 +212,9 @@ fn view(commands: &mut Vec<Command>, initial: &InitialView, bounds: &Bounds, dep
     operate(commands, Some("MATRIX"), Operate::XformMatrix);
 }
 
-/// Front and back for a scene whose centre lies at `depth` from the eye, and which is no larger than a sphere of `radius`.
+/// Front and back for a scene whose middle lies at `depth` from the eye, and which is no larger than a sphere of `radius`.
 ///
-/// Where the camera does not say, the depth cue runs over that sphere, which the scene does not leave when dials turn it
-/// about its centre. A camera that cuts in front only gets a back so far away that nothing is cut there.
+/// Where the camera does not say, the depth cue runs over that sphere. A camera that cuts in front only gets a back so far away that nothing is cut there.
 fn boundaries(camera: &Camera, depth: f64, radius: f64) -> Boundaries {
     let reach = (depth.abs() + radius).max(f64::MIN_POSITIVE.sqrt());
     match (camera.near > 0.0, camera.far) {
