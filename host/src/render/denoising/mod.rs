@@ -24,6 +24,7 @@ use crate::picture::{Picture, PictureError};
 use plane::{Plane, bell, square};
 use rayon::prelude::*;
 use regression::{GUIDES, Guides, MARGIN, Noisy, filtered};
+use rustc_hash::FxHashMap;
 use std::array::from_fn;
 
 /// How far around a pixel variances are brought in line with what halves tell, pixels.
@@ -42,6 +43,13 @@ const TOLD: f32 = 4.0;
 const DARK: f32 = 0.1;
 /// A pixel has no noise to speak of below this relative standard error: less than a picture of eight bits shows.
 const QUIET: f32 = 1.0 / 512.0;
+
+/// A half of a pixel is an outlier if it is so many times as bright as the brightest of the other halves within
+/// [`OUTLIER_FAR`] pixels; it then counts as that. Halves of fewer than [`OUTLIER_SAMPLES`] samples tell no outliers from
+/// light that is rare.
+const OUTLIER: f32 = 4.0;
+const OUTLIER_FAR: isize = 2;
+const OUTLIER_SAMPLES: f32 = 4.0;
 
 /// Mean radiances of pictures whose squares are numbers of 32 bits.
 const UNITS: std::ops::RangeInclusive<f32> = 1e-15..=1e15;
@@ -74,7 +82,7 @@ pub(super) fn denoised(film: &Film, is_cancelled: &(dyn Fn() -> bool + Sync)) ->
         let (early, part) = (halves.share.of(pixel), part.of(pixel));
         for band in 0..3 {
             let value = early * one[band].of(pixel) + (1.0 - early) * two[band].of(pixel);
-            let noisy = place.radiance[band];
+            let noisy = halves.outliers.get(&pixel).map_or(place.radiance[band], |mean| mean[band] * halves.unit);
             place.radiance[band] = noisy + part * (value * halves.unit - noisy);
         }
     });
@@ -87,6 +95,8 @@ struct Halves {
     late: Noisy,
     /// The share of the samples that the early half has.
     share: Plane,
+    /// Pixels with an outlier, and their means without it.
+    outliers: FxHashMap<usize, [f32; 3]>,
     /// The unit.
     unit: f32,
 }
@@ -109,11 +119,20 @@ impl Halves {
             let early = if first > 0.0 { early[band] / first } else { late };
             [early / unit, late / unit]
         };
+        let lowered = outliers(size, counts, mean);
+        let mean = |pixel: usize, band: usize| {
+            let means = mean(pixel, band);
+            lowered.get(&pixel).map_or(means, |parts| [parts[0] * means[0], parts[1] * means[1]])
+        };
         let early = from_fn(|band| Plane::new(size, MARGIN, |pixel| mean(pixel, band)[0]));
         let late = from_fn(|band| Plane::new(size, MARGIN, |pixel| mean(pixel, band)[1]));
         // As if samples were independent.
         let independent: [Plane; 3] = from_fn(|band| {
             Plane::new(size, 0, |pixel| {
+                if lowered.contains_key(&pixel) {
+                    // The squares of its samples are those of the outlier: it is as uncertain as it is bright.
+                    return mean(pixel, band).map(|half| half * half).iter().sum();
+                }
                 let (count, mean) = (tallies[pixel].count as f32, tallies[pixel].mean()[band] as f32);
                 let squares = guides[pixel].squares[band] / count.max(1.0) - mean * mean;
                 squares.max(0.0) / (count - 1.0).max(1.0) / (unit * unit)
@@ -147,7 +166,14 @@ impl Halves {
             let [first, rest] = counts(pixel);
             first / (first + rest).max(1.0)
         });
-        Some(Halves { early: Noisy::new(early, variances(0)), late: Noisy::new(late, variances(1)), share, unit })
+        let without = |pixel: usize| {
+            let share = share.of(pixel);
+            let mean = |band| mean(pixel, band)[0] * share + mean(pixel, band)[1] * (1.0 - share);
+            (pixel, from_fn(mean))
+        };
+        let outliers = lowered.keys().map(|pixel| without(*pixel)).collect();
+        let [early, late] = [Noisy::new(early, variances(0)), Noisy::new(late, variances(1))];
+        Some(Halves { early, late, share, outliers, unit })
     }
 
     /// Whether a pixel has no noise to speak of.
@@ -197,6 +223,47 @@ impl Halves {
             if unfiltered > 0.0 { unfiltered / (unfiltered + filtered) } else { 0.0 }
         })
     }
+}
+
+/// The pixels of which a half is an outlier, and what is to be made of their halves, as factors.
+///
+/// - `counts`: samples of the halves of a pixel. `mean`: their means in a band.
+fn outliers(
+    [width, height]: [usize; 2],
+    counts: impl Fn(usize) -> [f32; 2] + Sync,
+    mean: impl Fn(usize, usize) -> [f32; 2] + Sync,
+) -> FxHashMap<usize, [f32; 2]> {
+    let luminance = |pixel: usize| {
+        let bands: [[f32; 2]; 3] = from_fn(|band| mean(pixel, band));
+        [0, 1].map(|half| (0..3).map(|band| bands[band][half] * LUMINANCE[band] as f32).sum::<f32>())
+    };
+    let luminances: Vec<[f32; 2]> = (0..width * height).into_par_iter().map(luminance).collect();
+    let around = |at: usize, most: usize| {
+        let from = at.saturating_add_signed(-OUTLIER_FAR);
+        from..(at.saturating_add_signed(OUTLIER_FAR) + 1).min(most)
+    };
+    let lowered = |pixel: usize| {
+        if counts(pixel).iter().any(|count| *count < OUTLIER_SAMPLES) {
+            return None;
+        }
+        let (x, y) = (pixel % width, pixel / width);
+        let own = luminances[pixel];
+        let is_far = |half: usize| own[half] > OUTLIER * own[1 - half];
+        if !is_far(0) && !is_far(1) {
+            return None;
+        }
+        let brightest = |half: usize| {
+            let rows = around(y, height).flat_map(|y| around(x, width).map(move |x| y * width + x));
+            rows.map(|other| luminances[other][half]).fold(0.0, f32::max)
+        };
+        let factor = |half: usize| {
+            let most = OUTLIER * brightest(1 - half);
+            if own[half] > most { brightest(1 - half) / own[half] } else { 1.0 }
+        };
+        let factors = [0, 1].map(factor);
+        (factors != [1.0; 2]).then_some((pixel, factors))
+    };
+    (0..width * height).into_par_iter().filter_map(lowered).collect::<Vec<_>>().into_iter().collect()
 }
 
 /// How many samples are in each half: those up to the last power of two before their number, and the rest.

@@ -180,3 +180,22 @@ fn halves_of_samples_are_what_the_film_holds() {
         assert_eq!(sum[0], (1u32 << early as u32) as f32 - 1.0, "{count}");
     }
 }
+
+#[test]
+fn one_bright_sample_leaves_no_trace_and_what_is_bright_in_both_halves_stays() {
+    let lamp = |x: f64, y: f64| (20.0..23.0).contains(&x) && (20.0..23.0).contains(&y);
+    let wall: Truth<'_> = &|x, y| (DVec3::splat(if lamp(x, y) { 50.0 } else { 0.5 }), DVec3::splat(0.5), DVec3::Z);
+    let mut film = film([48, 40], 15, 0.3, wall, 3);
+    let bright = Sample { radiance: DVec3::splat(5e3), covered: true, albedo: DVec3::splat(0.5), ..Sample::default() };
+    for (x, y) in [(8, 9), (35, 30), (47, 0)] {
+        film.rows_mut()[y].add(x, &bright, &Default::default());
+    }
+    let picture = denoise(&film);
+    for y in 0..40 {
+        for x in 0..48 {
+            let found = f64::from(picture.get(x, y).expect("inside").radiance[0]);
+            let truth = wall(f64::from(x) + 0.5, f64::from(y) + 0.5).0.x;
+            assert!((found / truth - 1.0).abs() < 0.35, "{found} at {x}, {y}");
+        }
+    }
+}
