@@ -96,7 +96,9 @@ fn every_link_of_the_documents_leads_to_a_file() {
     for document in documents {
         let path = root.join(document);
         let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{document}: {error}"));
-        for target in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target) {
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+        let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split_once('"'));
+        for (target, _) in links.chain(pictures) {
             let target = target.split('#').next().unwrap_or_default();
             if !target.is_empty() && !target.starts_with("http") {
                 let file = path.parent().expect("a folder").join(target);
