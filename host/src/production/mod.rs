@@ -274,7 +274,7 @@ impl Production {
         Ok(self.session.synchronize()?)
     }
 
-    /// Says something in the message line of the workstation; nothing empties it. Letters are shown as capitals.
+    /// Says something in the message line of the workstation, which a blank empties.
     ///
     /// # Errors
     /// [`ProductionError::Workstation`].

@@ -64,7 +64,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
 /// Whether a function gives an object its shape, rather than a place, a material or a name.
 fn makes_shapes(function: &Function) -> bool {
     let families = [solids::FUNCTIONS, shaping::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS];
-    families.into_iter().flatten().any(|row| std::ptr::eq(row, function))
+    families.into_iter().flatten().any(|row| row.name == function.name)
 }
 
 /// A scene that ships with the program.

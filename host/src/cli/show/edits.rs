@@ -32,12 +32,24 @@ pub(super) struct Edit {
 type Stamp = Option<(SystemTime, u64)>;
 
 /// Files, and what they were when they were looked at last.
-struct Watched(Vec<(PathBuf, Stamp)>);
+#[derive(Default)]
+pub(super) struct Watched(Vec<(PathBuf, Stamp)>);
 
 impl Watched {
-    fn new(files: impl IntoIterator<Item = PathBuf>) -> Watched {
-        let stamped = |file: PathBuf| (stamp(&file), file);
-        Watched(files.into_iter().map(stamped).map(|(stamp, file)| (file, stamp)).collect())
+    /// The script, or mesh, as it is before it is read.
+    pub(super) fn of(script: &str) -> Watched {
+        let mut watched = Watched::default();
+        watched.follow(source::file(script).map(Path::to_path_buf));
+        watched
+    }
+
+    /// Watches these files from now on. One that was watched already has changed if it is not as it was then: it may have
+    /// been saved while it was read.
+    fn follow(&mut self, files: impl IntoIterator<Item = PathBuf>) {
+        let before = std::mem::take(&mut self.0);
+        let known = |file: &Path| before.iter().find(|(other, _)| other == file).map(|(_, stamp)| *stamp);
+        let stamped = |file: PathBuf| (known(&file).unwrap_or_else(|| stamp(&file)), file);
+        self.0 = files.into_iter().map(stamped).map(|(stamp, file)| (file, stamp)).collect();
     }
 
     /// Whether one of them has changed since they were looked at last.
@@ -65,16 +77,18 @@ fn files(script: &str, read: &[PathBuf]) -> Vec<PathBuf> {
 /// Tells of the scene whenever it was made anew, or why it could not be, in a thread of its own that ends when nobody
 /// listens.
 ///
-/// - `files_read`: by the scene as it is shown now. `camera`: that its script asks for. `initial`: from where it is seen.
+/// - `watched`: the script. `files_read`: by the scene as it is shown now. `camera`: that its script asks for. `initial`: from
+///   where it is seen.
 pub(super) fn watch(
     arguments: &Arguments,
+    mut watched: Watched,
     files_read: &[PathBuf],
     camera: Option<Camera>,
     initial: InitialView,
 ) -> mpsc::Receiver<Result<Edit, Failure>> {
     let (sender, edits) = mpsc::channel();
     let arguments = arguments.clone();
-    let mut watched = Watched::new(files(&arguments.script, files_read));
+    watched.follow(files(&arguments.script, files_read));
     let (mut camera, mut initial) = (camera, initial);
     thread::spawn(move || {
         loop {
@@ -86,7 +100,7 @@ pub(super) fn watch(
                 thread::sleep(GLANCE);
             }
             let edit = load(&arguments.script, &arguments.definitions).and_then(|evaluated| {
-                watched = Watched::new(files(&arguments.script, &evaluated.files));
+                watched.follow(files(&arguments.script, &evaluated.files));
                 let asked = evaluated.scene.camera;
                 let keeps_view = asked == camera;
                 let scene = source::lit(&arguments.script, evaluated)?.scene;
@@ -111,7 +125,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let [one, two] = ["one", "two"].map(|name| folder.path().join(name));
         fs::write(&one, "1").expect("written");
-        let mut watched = Watched::new([one.clone(), two.clone()]);
+        let mut watched = Watched::default();
+        watched.follow([one.clone(), two.clone()]);
         let changes = |watched: &mut Watched| [watched.have_changed(), watched.have_changed()];
         assert_eq!(changes(&mut watched), [false, false]);
         fs::write(&one, "12").expect("written");
@@ -119,6 +134,10 @@ mod tests {
         fs::write(&two, "").expect("written");
         assert_eq!(changes(&mut watched), [true, false]);
         fs::remove_file(&one).expect("removed");
+        assert_eq!(changes(&mut watched), [true, false]);
+        // What is saved before the files are followed anew has changed, too.
+        fs::write(&one, "1").expect("written");
+        watched.follow([one]);
         assert_eq!(changes(&mut watched), [true, false]);
     }
 }

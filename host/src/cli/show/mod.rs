@@ -13,6 +13,7 @@ use crate::{
     workstation::{Drawing, Emulator, InitialView, Lines, Patience, Session, network::KEYS},
 };
 use clap::{Args, FromArgMatches};
+use edits::Watched;
 use files::Destination;
 use protocol::address::Address;
 use serving::Server;
@@ -94,11 +95,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::new(Exit::Usage, anyhow::anyhow!(text)));
     }
     let file = arguments.camera.as_ref().map(Destination::of).transpose()?;
+    let watched = arguments.watch.then(|| Watched::of(&arguments.script));
     let evaluated = load(&arguments.script, &arguments.definitions)?;
     let camera = evaluated.scene.camera;
     let Evaluated { scene, files, .. } = source::lit(&arguments.script, evaluated)?;
     let (model, light) = modelled(&scene, arguments, None)?;
-    let edits = arguments.watch.then(|| edits::watch(arguments, &files, camera, *model.initial()));
+    let edits = watched.map(|watched| edits::watch(arguments, watched, &files, camera, *model.initial()));
     let patience = arguments.waits.patience();
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
