@@ -19,7 +19,7 @@ pub struct InitialView {
 }
 
 impl InitialView {
-    /// That of a scene: by its camera, or one that frames it.
+    /// The view of a scene by its camera, or by one that frames it.
     ///
     /// # Errors
     /// [`WorkstationError::Scene`] for a camera that cannot see.
