@@ -287,6 +287,9 @@ impl Film {
     /// This film, which keeps what a denoiser needs from now on; it has to be asked for before the first sample.
     pub fn with_guides(mut self) -> Film {
         self.guides = bytemuck::zeroed_vec(self.tallies.len());
+        prefer_large_pages(&mut self.guides);
+        // See [`Film::untouched`] for why they are written.
+        self.guides.par_chunks_mut(1 << 14).for_each(|guides| guides.fill(Guide::default()));
         self
     }
 

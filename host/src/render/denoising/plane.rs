@@ -6,6 +6,9 @@ use rayon::prelude::*;
 /// Pixels of a row that are worked on at once.
 pub(super) const LANES: usize = 16;
 
+/// So many rows are summed up at once: sums across them stay in the cache.
+const STRIP: usize = 32;
+
 /// One number for each pixel. Beyond its edges the nearest pixel is repeated.
 #[derive(Clone, Debug)]
 pub(super) struct Plane {
@@ -78,29 +81,37 @@ impl Plane {
     /// - `kernel`: how much a pixel counts in rows and in columns by its distance from the middle, the first at 0.
     pub(super) fn convolved(&self, kernel: &[f32]) -> Plane {
         let (width, height) = (self.width, self.height);
-        let along = |values: &dyn Fn(isize) -> f32, at: usize| {
-            let at = at as isize;
-            let pairs = kernel.iter().enumerate().skip(1);
-            kernel[0] * values(at)
-                + pairs.map(|(far, part)| part * (values(at - far as isize) + values(at + far as isize))).sum::<f32>()
-        };
-        let mut across = zeros(width * height);
-        across.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| {
-            let own = &self.from(0, y as isize)[..width];
-            let value = |x: isize| own[x.clamp(0, width as isize - 1) as usize];
-            row.iter_mut().enumerate().for_each(|(x, place)| *place = along(&value, x));
-        });
-        let mut sums = zeros(width * height);
-        sums.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| {
-            for (far, part) in kernel.iter().enumerate() {
-                let rows = [y.saturating_sub(far), (y + far).min(height - 1)];
-                for other in &rows[..if far == 0 { 1 } else { 2 }] {
-                    let other = &across[other * width..][..width];
-                    row.iter_mut().zip(other).for_each(|(sum, value)| *sum += part * value);
+        let far = kernel.len() - 1;
+        let mut result = zeros(width * height);
+        let strips = result.par_chunks_mut(STRIP * width).enumerate();
+        strips.for_each_init(<[Vec<f32>; 2]>::default, |[row, across], (strip, sums)| {
+            let rows = strip * STRIP..(strip * STRIP + sums.len() / width);
+            let first = rows.start.saturating_sub(far);
+            let last = (rows.end + far).min(height);
+            across.resize((last - first) * width, 0.0);
+            for (y, across) in (first..last).zip(across.chunks_exact_mut(width)) {
+                let own = &self.from(0, y as isize)[..width];
+                // With the pixels at both ends repeated.
+                row.clear();
+                row.extend(std::iter::repeat_n(own[0], far));
+                row.extend_from_slice(own);
+                row.extend(std::iter::repeat_n(own[width - 1], far));
+                across.iter_mut().zip(own).for_each(|(sum, value)| *sum = kernel[0] * value);
+                for (distance, part) in kernel.iter().enumerate().skip(1) {
+                    let pairs = row[far - distance..].iter().zip(&row[far + distance..]);
+                    across.iter_mut().zip(pairs).for_each(|(sum, (before, after))| *sum += part * (before + after));
+                }
+            }
+            for (y, sums) in rows.zip(sums.chunks_exact_mut(width)) {
+                let row = |y: usize| &across[(y - first) * width..][..width];
+                sums.iter_mut().zip(row(y)).for_each(|(sum, value)| *sum = kernel[0] * value);
+                for (distance, part) in kernel.iter().enumerate().skip(1) {
+                    let pairs = row(y.saturating_sub(distance)).iter().zip(row((y + distance).min(height - 1)));
+                    sums.iter_mut().zip(pairs).for_each(|(sum, (above, below))| *sum += part * (above + below));
                 }
             }
         });
-        Plane { margin: 0, stride: width, values: sums, ..*self }
+        Plane { margin: 0, stride: width, values: result, ..*self }
     }
 }
 

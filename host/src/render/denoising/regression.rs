@@ -7,6 +7,7 @@
 use super::plane::{LANES, Plane, square};
 use processes::widest::{self, Work};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::LazyLock;
 
 /// How far neighbors are looked for, pixels to each side.
@@ -48,11 +49,14 @@ static NEIGHBORS: LazyLock<Vec<[isize; 2]>> = LazyLock::new(|| {
     all.filter(|[x, y]| x.abs().max(y.abs()) <= NEAR || (x + 2 * y).rem_euclid(SPARSE) == 0).collect()
 });
 
+/// A plane for each band.
+pub(super) type Bands = [Plane; 3];
+
 /// A picture with its noise.
 pub(super) struct Noisy {
-    pub(super) bands: [Plane; 3],
+    pub(super) bands: Bands,
     /// The variance in each.
-    pub(super) variances: [Plane; 3],
+    pub(super) variances: Bands,
     /// The greatest variance with which a neighbor of each pixel counts in full, and one over that of each pixel; as means
     /// over the bands.
     reliable: [Plane; 2],
@@ -60,7 +64,7 @@ pub(super) struct Noisy {
 
 impl Noisy {
     /// - `bands`: of a picture whose mean is 1. `variances`: in each of them.
-    pub(super) fn new(bands: [Plane; 3], variances: [Plane; 3]) -> Noisy {
+    pub(super) fn new(bands: Bands, variances: Bands) -> Noisy {
         let size = [bands[0].width, bands[0].height];
         let mean = |pixel: usize| variances.iter().map(|band| band.of(pixel)).sum::<f32>() / 3.0 + LEAST_VARIANCE;
         let over = Plane::new(size, MARGIN, |pixel| 1.0 / mean(pixel));
@@ -80,35 +84,53 @@ pub(super) struct Guides {
 /// A picture, of which each pixel is found by those around it.
 ///
 /// - `other`: of the same scene, with independent noise; it tells how much neighbors count.
-/// - `is_quiet`: whether a pixel has no noise to speak of. Where all of some pixels in a row are quiet, they stay as they
+/// - `quiet`: which pixels have no noise to speak of. Where all of some pixels in a row are quiet, they stay as they
 ///   are, and nothing is computed.
 /// - `is_cancelled`: asked from time to time; what is left then stays as it was.
 pub(super) fn filtered(
     picture: &Noisy,
     other: &Noisy,
     guides: &Guides,
-    is_quiet: &(dyn Fn(usize) -> bool + Sync),
+    quiet: &[bool],
     is_cancelled: &(dyn Fn() -> bool + Sync),
-) -> [Plane; 3] {
+) -> Bands {
     let [width, height] = [picture.bands[0].width, picture.bands[0].height];
     let mut rows: Vec<[f32; 3]> = vec![[0.0; 3]; width * height];
-    rows.par_chunks_mut(TILE_HEIGHT * width).enumerate().for_each(|(row, pixels)| {
+    let room = || vec![[0.0; LANES]; NEIGHBORS.len() * TILE_HEIGHT * TILE_WIDTH / LANES];
+    rows.par_chunks_mut(TILE_HEIGHT * width).enumerate().for_each_init(room, |weights, (row, pixels)| {
         let first = row * TILE_HEIGHT * width;
-        let quiet: Vec<bool> = (0..pixels.len()).map(|pixel| is_quiet(first + pixel)).collect();
+        let quiet = &quiet[first..][..pixels.len()];
         for (pixel, place) in pixels.iter_mut().enumerate() {
             *place = [0, 1, 2].map(|band| picture.bands[band].of(first + pixel));
         }
-        let mut weights = vec![[0.0; LANES]; NEIGHBORS.len() * TILE_HEIGHT * TILE_WIDTH / LANES];
         for x in (0..width).step_by(TILE_WIDTH) {
-            let size = [TILE_WIDTH.min(width - x), pixels.len() / width];
-            let is_all_quiet = quiet.chunks_exact(width).all(|row| row[x..x + size[0]].iter().all(|quiet| *quiet));
-            if !is_all_quiet && !is_cancelled() {
-                let (at, weights) = ([x, row * TILE_HEIGHT], &mut weights);
-                widest::run(Filtering { picture, other, guides, quiet: &quiet, at, size, weights, pixels });
+            let columns = x..width.min(x + TILE_WIDTH);
+            let Some([columns, rows]) = noisy_part(quiet, width, columns) else { continue };
+            if !is_cancelled() {
+                let from = rows.start * width;
+                let (quiet, pixels) = (&quiet[from..], &mut pixels[from..]);
+                let at = [columns.start, row * TILE_HEIGHT + rows.start];
+                let size = [columns.len(), rows.len()];
+                widest::run(Filtering { picture, other, guides, quiet, at, size, weights, pixels });
             }
         }
     });
     [0, 1, 2].map(|band| Plane::new([width, height], 0, |pixel| rows[pixel][band]))
+}
+
+/// The least rectangle of columns and rows that holds all noisy pixels of a tile; none if all are quiet.
+///
+/// - `quiet`: of rows of a picture. `width`: of these. `columns`: of the tile.
+fn noisy_part(quiet: &[bool], width: usize, columns: Range<usize>) -> Option<[Range<usize>; 2]> {
+    let is_noisy = |row: usize, column: usize| !quiet[row * width + column];
+    let rows = 0..quiet.len() / width;
+    let hull = |noisy: &mut dyn DoubleEndedIterator<Item = usize>| {
+        let first = noisy.next()?;
+        Some(first..noisy.next_back().unwrap_or(first) + 1)
+    };
+    let of_rows = hull(&mut rows.clone().filter(|row| columns.clone().any(|column| is_noisy(*row, column))))?;
+    let of_columns = hull(&mut columns.clone().filter(|column| of_rows.clone().any(|row| is_noisy(row, *column))))?;
+    Some([of_columns, of_rows])
 }
 
 /// One number for each of some pixels in a row.

@@ -1,5 +1,6 @@
 //! Facts about denoising, by films whose noise is known.
 
+use super::halves::halves;
 use super::*;
 use crate::render::Sample;
 use crate::render::guide::Guide;
@@ -197,5 +198,21 @@ fn one_bright_sample_leaves_no_trace_and_what_is_bright_in_both_halves_stays() {
             let truth = wall(f64::from(x) + 0.5, f64::from(y) + 0.5).0.x;
             assert!((found / truth - 1.0).abs() < 0.35, "{found} at {x}, {y}");
         }
+    }
+}
+
+#[test]
+fn edges_that_samples_meet_by_chance_are_left_and_noise_on_them_is_filtered() {
+    // Discs: what a pixel at an edge is depends on where its samples lie, and no other pixel tells.
+    let discs: Truth<'_> = &|x, y| {
+        let far = |at: f64| at.rem_euclid(20.0) - 10.0;
+        let (is_inside, kind) = (far(x).hypot(far(y)) < 7.3, ((x / 20.0).floor() + 3.0 * (y / 20.0).floor()) % 7.0);
+        let value = if is_inside { 0.1 + 0.1 * kind } else { 0.9 };
+        (DVec3::splat(value), DVec3::splat(value), DVec3::Z)
+    };
+    let wall: Truth<'_> = &|_, _| (DVec3::splat(0.5), DVec3::splat(0.5), DVec3::Z);
+    for (truth, noise, is_left) in [(discs, 0.0, true), (wall, 0.4, false)] {
+        let film = film([160, 120], 4, noise, truth, 12);
+        assert_eq!(denoise(&film) == film.picture().expect("small"), is_left);
     }
 }

@@ -1,0 +1,56 @@
+//! What guides the regression, of the samples of a film.
+
+use super::super::film::{Film, Tally};
+use super::super::guide::Guide;
+use super::plane::Plane;
+use super::regression::{GUIDES, Guides, MARGIN};
+use std::array::from_fn;
+
+/// The least ridge of what guides: the variance of its mean is the ridge otherwise, so that what is noisy explains less.
+const LEAST_RIDGE: f32 = 1e-5;
+/// What guides the regression.
+pub(super) fn guides(film: &Film) -> Guides {
+    let size = [film.width() as usize, film.height() as usize];
+    let (tallies, guides) = (film.tallies(), film.guides());
+    let count = |pixel: usize| tallies[pixel].count.max(1) as f32;
+    let distance = |pixel: usize| {
+        let Tally { elements, distances, .. } = &tallies[pixel];
+        (*elements > 0).then(|| (distances / f64::from(*elements)).max(f64::MIN_POSITIVE))
+    };
+    let (sum, seen) = (0..tallies.len())
+        .filter_map(distance)
+        .fold((0.0, 0.0f64), |(sum, seen), distance| (sum + distance.ln(), seen + 1.0));
+    let typical = sum / seen.max(1.0);
+    let values: [Plane; GUIDES] = from_fn(|guide| {
+        Plane::new(size, MARGIN, |pixel| match guide {
+            0..3 => guides[pixel].albedo[guide] / count(pixel),
+            3..6 => guides[pixel].normal[guide - 3] / count(pixel),
+            _ => distance(pixel).map_or(0.0, |distance| (distance.ln() - typical) as f32),
+        })
+    });
+    // Of a mean, by the squares of what it is of.
+    let variance = |mean_squared: f32, squares: f32, count: f32| {
+        (squares / count - mean_squared).max(0.0) / (count - 1.0).max(1.0)
+    };
+    let ridge = |variance: f32| variance.max(LEAST_RIDGE);
+    let of_vector = |pixel: usize, sum: [f32; 3], squares: f32| {
+        let mean_squared = sum.map(|sum| (sum / count(pixel)).powi(2)).iter().sum();
+        variance(mean_squared, squares, count(pixel)) / 3.0
+    };
+    let ridges = [
+        Plane::new(size, MARGIN, |pixel| {
+            let Guide { albedo, albedo_squares, .. } = guides[pixel];
+            ridge(of_vector(pixel, albedo, albedo_squares))
+        }),
+        Plane::new(size, MARGIN, |pixel| {
+            let Guide { normal, normal_squares, .. } = guides[pixel];
+            ridge(of_vector(pixel, normal, normal_squares))
+        }),
+        Plane::new(size, MARGIN, |pixel| {
+            let mean = distance(pixel).unwrap_or(1.0) as f32;
+            let squares = guides[pixel].distance_squares;
+            ridge(variance(mean * mean, squares, tallies[pixel].elements.max(1) as f32) / (mean * mean))
+        }),
+    ];
+    Guides { values, ridges }
+}
