@@ -5,11 +5,11 @@
 //! Light is found once for each pixel and surface, shadows for each sample.
 //!
 //! *Not modelled*: only light that comes straight from lights is seen. Mirrors, metals and glass show lights, and for all
-//! else around them the ambient light, the same radiance from everywhere. Light goes straight through glass, which throws the
+//! else around them the ambient light, the same radiance from everywhere, and a blurred sky. Light goes straight through glass, which throws the
 //! shadow of an opaque body, and through what is transparent without bending it; the shadow of that is as weak as it lets
 //! light through (where a pattern says how much, as in the middle of its first triangle). A light with a size is represented
-//! by points of it, in number the `light_samples` of the scene, and is itself no obstacle to others; a sky is background only;
-//! a lens is a pinhole.
+//! by points of it, in number the `light_samples` of the scene, and is itself no obstacle to others; a sky lights surfaces by
+//! the direction of their normals, without shadows; a lens is a pinhole.
 //!
 //! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and light, and
 //! for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
@@ -20,6 +20,7 @@ mod reach;
 mod screen;
 mod shade;
 mod shadow;
+mod sky_light;
 mod spans;
 mod surfaces;
 #[cfg(test)]
@@ -44,6 +45,7 @@ use reach::Reach;
 use screen::{Screen, Viewpoint};
 use shade::{Desk, Shader};
 use shadow::Shadow;
+use sky_light::SkyLight;
 use spans::{Lines, MOST_LINES, rooks};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -92,6 +94,8 @@ pub struct ScanLine<'a> {
     /// What each group of casters lets through, comb by comb; the first is opaque.
     passing: Vec<Vec<Channels>>,
     lamps: Vec<Lamp>,
+    /// None without a sky, and where a solution is shown.
+    sky_light: Option<SkyLight>,
     /// In the place of lamps and shadows.
     solution: Option<&'a Radiosity>,
 }
@@ -160,7 +164,8 @@ impl<'a> ScanLine<'a> {
                 lamps.push(Lamp { source, point, light });
             }
         }
-        Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps, solution })
+        let sky_light = if solution.is_none() { SkyLight::new(&appearance) } else { None };
+        Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps, sky_light, solution })
     }
 
     /// What of the scene the pictures do not show, in words.
@@ -169,10 +174,12 @@ impl<'a> ScanLine<'a> {
         if self.solution.is_some() {
             left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
         } else if self.plan.needs(Stage::Reflection) {
-            left_out.push("mirrors, metals and coats show lights and ambient light only, and glass bends nothing");
+            left_out.push(
+                "mirrors, metals and coats show lights, ambient light and a blurred sky only, and glass bends nothing",
+            );
         }
         if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
-            left_out.push("the sky is seen, but lights nothing");
+            left_out.push("the light of the sky throws no shadows");
         }
         if self.appearance.prepared.settings.filter != Filter::Box {
             left_out.push("pixels are means over their areas: the filter is a box");
@@ -226,6 +233,7 @@ impl<'a> ScanLine<'a> {
             appearance: &self.appearance,
             casters: &self.casters,
             lamps: &self.lamps,
+            sky_light: self.sky_light.as_ref(),
             solution: self.solution,
             enclosed,
             passing: &self.passing,

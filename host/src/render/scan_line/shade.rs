@@ -3,6 +3,7 @@
 use super::Lamp;
 use super::casters::Casters;
 use super::enclosed::Enclosed;
+use super::sky_light::SkyLight;
 use super::surfaces::{Found, Part, Pixel, Surface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
@@ -48,6 +49,8 @@ pub(super) struct Shader<'a> {
     pub(super) appearance: &'a Appearance<'a>,
     pub(super) casters: &'a Casters<'a>,
     pub(super) lamps: &'a [Lamp],
+    /// The light of skies, if there are some.
+    pub(super) sky_light: Option<&'a SkyLight>,
     /// The light of all surfaces, if lamps are not asked.
     pub(super) solution: Option<&'a Radiosity>,
     /// For each lamp with shadows.
@@ -410,6 +413,12 @@ impl<'a> Shader<'a> {
         if let Some(ambient) = &self.appearance.ambient {
             own += (optics.ambient(sighting) + optics.surrounded(&from_outside(found, sighting)))
                 * ambient.of(sighting.comb);
+        }
+        if let Some(sky) = self.sky_light {
+            let normal = if element.normal.dot(found.towards) > 0.0 { -element.normal } else { element.normal };
+            let mirrored = found.towards.reflect(normal);
+            own += optics.diffuse(sighting) * sky.radiance(normal, sighting.comb);
+            own += optics.surrounded(&from_outside(found, sighting)) * sky.radiance(mirrored, sighting.comb);
         }
         own
     }

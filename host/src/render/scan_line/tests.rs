@@ -456,3 +456,26 @@ fn rooks_are_one_in_each_column() {
         assert!(offsets.iter().zip(even).all(|(a, b)| (a - b).abs() < 1e-15), "{samples}: {offsets:?}");
     }
 }
+
+#[test]
+fn a_sky_lights_what_nothing_shades_as_ray_tracing_finds_it() {
+    use crate::illumination::light::{Panorama, SkyMap};
+    // Brighter above, and in one quarter.
+    let panorama = Panorama::of(32, 16, |x, y| {
+        DVec3::new(1.0, 0.9, 0.8) * (0.2 + (16.0 - f64::from(y)) / 8.0 + f64::from(u8::from(x / 8 == 1)))
+    });
+    let map = SkyMap { panorama: Some(std::sync::Arc::new(panorama.expect("small"))), ..SkyMap::default() };
+    let sky = |map: Option<SkyMap>| crate::illumination::Light::Sky { map, radiance: Color::grey(0.5), turned: 20.0 };
+    let mirror = Material::from(Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) });
+    for (name, map, material, most) in [
+        ("even", None, diffuse(0.8).into(), 1e-3),
+        ("even in a mirror", None, mirror, 2e-3),
+        ("with a map", Some(map), diffuse(0.8).into(), 0.015),
+    ] {
+        let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, material);
+        let mut scene = scene(vec![ball], vec![sky(map)], camera(DVec3::new(2.0, 1.0, 4.0), DVec3::ZERO));
+        scene.ambient = Bands::ZERO;
+        let [mean, ..] = compared(&scene, None);
+        assert!(mean < most, "{name}: off by {mean} in the mean");
+    }
+}

@@ -1,0 +1,79 @@
+//! The light of skies on what is drawn without rays: from all around, and without shadows.
+
+use super::super::ready::Appearance;
+use crate::color::Channels;
+use crate::illumination::light::Source;
+use crate::numeric::sequence::Sequence;
+use glam::DVec3;
+
+/// Directions by which a sky is summed up, for each comb of wavelengths.
+const DIRECTIONS: u32 = 4096;
+/// What a cosine around the normal leaves of spherical harmonics of degree 0, 1 and 2.
+const KEPT: [f64; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
+
+/// The irradiance of all skies of a scene, discs aside, by the direction of the normal.
+///
+/// E(n)/π is held as the sum of nine spherical harmonics. For an even sky it is exact; a clear one is off by a few percent.
+///
+/// *Not modelled*: what stands between the sky and a surface.
+///
+/// # Source
+/// Ramamoorthi and Hanrahan 2001, "An efficient representation for irradiance environment maps".
+pub(super) struct SkyLight {
+    /// For each comb, the coefficients of E(n)/π.
+    coefficients: Vec<[Channels; 9]>,
+}
+
+impl SkyLight {
+    /// That of the lights that are made ready; none without a sky.
+    pub(super) fn new(appearance: &Appearance<'_>) -> Option<SkyLight> {
+        let skies: Vec<&Source> =
+            appearance.sources.iter().map(|(_, source)| source).filter(|source| source.is_sky()).collect();
+        let sequence = Sequence::new(0, 0);
+        let of_comb = |comb: usize| {
+            let mut sums = [Channels::ZERO; 9];
+            for sky in &skies {
+                for index in 0..DIRECTIONS {
+                    let Some(beam) = sky.beam(DVec3::ZERO, None, sequence.point(index, 0), comb) else { continue };
+                    let harmonics = harmonics(beam.towards);
+                    for ((sum, harmonic), kept) in sums.iter_mut().zip(harmonics).zip(KEPT) {
+                        *sum += beam.irradiance * (harmonic * kept / f64::from(DIRECTIONS));
+                    }
+                }
+            }
+            sums
+        };
+        let combs = 0..appearance.wavelengths.combs();
+        (!skies.is_empty()).then(|| SkyLight { coefficients: combs.map(of_comb).collect() })
+    }
+
+    /// The radiance of an even sky that lights a surface as much as the skies of the scene do: E(n)/π.
+    ///
+    /// - `normal`: unit length.
+    pub(super) fn radiance(&self, normal: DVec3, comb: usize) -> Channels {
+        let terms = self.coefficients[comb].iter().zip(harmonics(normal));
+        let sum = terms.fold(Channels::ZERO, |sum, (coefficient, harmonic)| sum + *coefficient * harmonic);
+        // Nine terms swing below 0 opposite to a small bright place.
+        sum.map(|value| value.max(0.0))
+    }
+}
+
+/// The real spherical harmonics of degree 0, 1 and 2 in a direction of unit length.
+fn harmonics(DVec3 { x, y, z }: DVec3) -> [f64; 9] {
+    const ZERO: f64 = 0.282_094_791_773_878_1;
+    const ONE: f64 = 0.488_602_511_902_919_9;
+    const TWO: f64 = 1.092_548_430_592_079_2;
+    const TWO_ZERO: f64 = 0.315_391_565_252_520_05;
+    const TWO_TWO: f64 = 0.546_274_215_296_039_6;
+    [
+        ZERO,
+        ONE * y,
+        ONE * z,
+        ONE * x,
+        TWO * x * y,
+        TWO * y * z,
+        TWO_ZERO * (3.0 * z * z - 1.0),
+        TWO * x * z,
+        TWO_TWO * (x * x - y * y),
+    ]
+}
