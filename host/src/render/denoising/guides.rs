@@ -8,6 +8,7 @@ use std::array::from_fn;
 
 /// The least ridge of what guides: the variance of its mean is the ridge otherwise, so that what is noisy explains less.
 const LEAST_RIDGE: f32 = 1e-5;
+
 /// What guides the regression.
 pub(super) fn guides(film: &Film) -> Guides {
     let size = [film.width() as usize, film.height() as usize];

@@ -117,10 +117,8 @@ impl Halves {
         let half = |half: usize| {
             let of_half = |pixel: usize| counts(pixel).iter().sum::<f32>() / counts(pixel)[half].max(1.0);
             let bands = from_fn(|band| Plane::new(size, MARGIN, |pixel| means[pixel][band][half]));
-            Noisy::new(
-                bands,
-                from_fn(|band| Plane::new(size, MARGIN, |pixel| variances[band].of(pixel) * of_half(pixel))),
-            )
+            let variance = |band: usize, pixel: usize| variances[band].of(pixel) * of_half(pixel);
+            Noisy::new(bands, from_fn(|band| Plane::new(size, MARGIN, |pixel| variance(band, pixel))))
         };
         let [early, late] = [half(0), half(1)];
         Some(Halves { early, late, share, outliers, unit })
