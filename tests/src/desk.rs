@@ -8,7 +8,11 @@ use std::{
     io::{BufRead, BufReader, Write},
     net::TcpStream,
     process::{Child, ChildStdout, Command, Stdio},
-    sync::{Arc, Mutex, mpsc},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicU16, Ordering},
+        mpsc,
+    },
     time::{Duration, Instant},
 };
 
@@ -22,6 +26,12 @@ impl Drop for Running {
         let _ = self.0.wait();
     }
 }
+
+/// The displays that tests may take.
+const FIRST_DISPLAY: u16 = 90;
+const LAST_DISPLAY: u16 = 190;
+/// The first display that the next test tries.
+static NEXT_DISPLAY: AtomicU16 = AtomicU16::new(FIRST_DISPLAY);
 
 /// An X server of its own.
 #[derive(Debug)]
@@ -39,13 +49,21 @@ impl Display {
             eprintln!("the window is not tested: Xvfb or xdotool is not installed");
             return None;
         }
-        let mut server = Command::new("Xvfb");
-        server.args(["-displayfd", "1", "-screen", "0", "1280x860x24", "-nolisten", "tcp"]);
-        let mut child = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("Xvfb starts");
-        let out = child.stdout.take().expect("piped");
-        let mut line = String::new();
-        BufReader::new(out).read_line(&mut line).expect("Xvfb says its number");
-        Some(Display { name: format!(":{}", line.trim()), _server: Running(child) })
+        // Tests run beside each other. A server that looks for a free number by itself may take away the socket of
+        // one that is only just starting; a server that is told its number fails if another one has locked it.
+        for number in NEXT_DISPLAY.fetch_add(1, Ordering::Relaxed)..=LAST_DISPLAY {
+            let mut server = Command::new("Xvfb");
+            server.args([&format!(":{number}"), "-displayfd", "1", "-screen", "0", "1280x860x24", "-nolisten", "tcp"]);
+            let mut child = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("Xvfb starts");
+            let out = child.stdout.take().expect("piped");
+            let display = Display { name: format!(":{number}"), _server: Running(child) };
+            let mut line = String::new();
+            BufReader::new(out).read_line(&mut line).expect("what Xvfb says is text");
+            if line.trim() == number.to_string() {
+                return Some(display);
+            }
+        }
+        panic!("no display from :{FIRST_DISPLAY} to :{LAST_DISPLAY} is free");
     }
 
     fn command(&self, program: &str) -> Command {

@@ -3,7 +3,7 @@
 use super::{Exit, Failure, progress, say};
 use crate::mesh;
 use crate::octree::Octree;
-use crate::scene::Scene;
+use crate::scene::{Scene, Studio};
 use crate::script::{self, Definition, Evaluated, Inputs};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -40,26 +40,24 @@ pub(super) fn is_mesh(name: &Path) -> bool {
     mesh::Format::of(name).is_some() || Octree::is_file(name)
 }
 
-/// The scene that the command line names, to be looked at: one that has only triangles is put into a studio, and one that
+/// The scene that the command line names, to be looked at: a mesh and a script that asks for it in a studio, and one that
 /// has no light is lit, of which a line tells.
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`], if the script is wrong or the mesh cannot be read.
 pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
-    lit(name, load(name, definitions)?)
+    lit(load(name, definitions)?)
 }
 
-/// What [`load`] gave for a name, to be looked at, as [`load_lit`] says it.
+/// What [`load`] gave, to be looked at, as [`load_lit`] says it.
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`].
-pub(super) fn lit(name: &str, evaluated: Evaluated) -> Result<Evaluated, Failure> {
-    if is_mesh(Path::new(name)) {
-        return Ok(Evaluated { scene: evaluated.scene.in_studio()?, ..evaluated });
-    }
+pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, Failure> {
     let count = evaluated.scene.lights.len();
+    let has_light = evaluated.scene.studio == Some(Studio::Lit);
     let scene = evaluated.scene.lit()?;
-    if scene.lights.len() > count {
+    if scene.lights.len() > count && !has_light {
         say::tell("the scene has no light of its own: it is lit as in a studio");
     }
     Ok(Evaluated { scene, ..evaluated })

@@ -4,7 +4,7 @@
 //! than above and below, fills the shadows and gives what is polished something to reflect; and a weaker, warmer light from
 //! below takes the place of what the floor of a studio sends back.
 
-use super::{Camera, Object, Prepared, Scene, SceneError};
+use super::{Camera, Object, Prepared, Scene, SceneError, Studio};
 use crate::color::Color;
 use crate::illumination::Bands;
 use crate::illumination::light::{Light, Panorama, Patch, SkyMap};
@@ -37,13 +37,21 @@ const KEY_STAND: Stand = Stand { place: DVec3::new(-2.4, 2.8, 2.4), side: 2.0 };
 const BOUNCE_STAND: Stand = Stand { place: DVec3::new(2.0, -2.2, 1.0), side: 2.4 };
 
 impl Scene {
+    /// The scene as it is looked at: in its studio, and lit.
+    ///
+    /// # Errors
+    /// [`SceneError`] if its triangles cannot be made.
+    pub fn lit(self) -> Result<Scene, SceneError> {
+        if self.studio == Some(Studio::Lit) { self.in_studio() } else { self.in_default_light()?.in_studio() }
+    }
+
     /// The scene, with lights if it is dark: if it has no light, no ambient light and no material that emits. A background
     /// that it has is its sky; what is seen from within its bounds, as a room, is lit from the eye. A scene without
     /// triangles stays as it is.
     ///
     /// # Errors
     /// [`SceneError`] if its triangles cannot be made.
-    pub fn lit(mut self) -> Result<Scene, SceneError> {
+    fn in_default_light(mut self) -> Result<Scene, SceneError> {
         let is_emissive = |object: &Object| object.materials(&[]).0.iter().any(|m| m.emission != Color::BLACK);
         let has_light = !self.lights.is_empty() || self.ambient != Bands::ZERO;
         if !has_light && !self.objects.is_empty() && !self.objects.iter().any(is_emissive) {

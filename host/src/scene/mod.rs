@@ -31,6 +31,7 @@ pub use placing::{Sides, footprint};
 pub use prepared::{Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, Sheet};
 pub use shape::{Made, Rounded, Shape, ShapeError};
+pub use studio::Studio;
 pub use view::{Camera, Lens, Parallel, Projection, View};
 
 use crate::illumination::{Bands, Light, Material};
@@ -72,6 +73,8 @@ pub struct Scene {
     pub settings: Settings,
     /// How its pictures are shown.
     pub display: DisplayTransform,
+    /// The studio in which it is looked at: [`Scene::lit`] puts it there.
+    pub studio: Option<Studio>,
     /// Where its objects stand in its script.
     #[serde(skip)]
     pub places: Places,

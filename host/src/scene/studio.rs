@@ -10,6 +10,7 @@ use crate::illumination::light::{Light, Patch};
 use crate::illumination::material::{Body, Classic};
 use crate::surface::SplineSurface;
 use glam::{DMat4, DVec3};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Diagonal of what stands in the studio, in its own units.
@@ -20,29 +21,40 @@ const ASIDE: f64 = 16.0;
 const PROFILE: [[f64; 2]; 8] =
     [[12.0, 0.0], [4.0, 0.0], [-2.0, 0.0], [-5.0, 0.0], [-7.5, 0.4], [-8.6, 3.0], [-9.0, 8.0], [-9.0, 14.0]];
 
+/// What stands around objects that are looked at, besides what their scene has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Studio {
+    /// A sweep.
+    Bare,
+    /// A sweep, a window of daylight, a soft box and a pale sky.
+    Lit,
+}
+
 impl Scene {
     /// The mesh of a file as the only object: of a mesh file, or of an octree that was kept.
     pub fn of_mesh(path: &Path) -> Scene {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let shape = Shape::Mesh { path: path.to_owned() };
         let object = Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance: None };
-        Scene { objects: vec![object], ..Scene::default() }
+        Scene { objects: vec![object], studio: Some(Studio::Lit), ..Scene::default() }
     }
 
-    /// The objects of the scene where they are, on a grey floor that bends up into a wall behind them, under a pale sky, with
-    /// a window of daylight and a soft box, seen from the front and a little from above. What the studio has stands around
-    /// them, as large as they ask for.
+    /// The objects of the scene where they are, in its studio, which is as large as they ask for: on a grey floor that bends
+    /// up into a wall behind them, in the light of the studio, and seen from the front and a little from above if there is no
+    /// camera. A scene without a studio or without triangles stays as it is.
     ///
     /// # Errors
     /// [`SceneError`] if their triangles cannot be made.
-    pub fn in_studio(mut self) -> Result<Scene, SceneError> {
-        let bounds = Prepared::new(&self)?.bounds;
+    pub(super) fn in_studio(mut self) -> Result<Scene, SceneError> {
+        let Some(studio) = self.studio.take() else { return Ok(self) };
+        let bounds = Prepared::new(&self)?.subject();
+        if bounds.is_empty() {
+            return Ok(self);
+        }
         let unit = (bounds.diagonal() / DIAGONAL).max(f64::MIN_POSITIVE);
         let center = bounds.center();
         let lowest = DVec3::new(center.x, bounds.min.y, center.z);
-        let middle = DVec3::Y * (center.y - lowest.y) / unit;
-        let place = |x: f64, y: f64, z: f64| lowest + DVec3::new(x, y, z) * unit;
-        let along = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * unit;
+        let middle = center.y - lowest.y;
         let grey = Body::Classic(Classic { diffuse: Color::grey(0.5).into(), ..Classic::default() });
         self.objects.push(Object {
             name: "sweep".into(),
@@ -51,15 +63,12 @@ impl Scene {
             material: Some(grey.into()),
             tolerance: None,
         });
-        let window =
-            Patch::Rectangle { corner: place(-5.0, 1.5, 2.0), across: along(1.0, 4.5, 0.0), up: along(0.0, 0.0, 4.0) };
-        let window = Light::Area { patch: window, radiance: Color::grey(3.0) };
-        let lamp = soft_box(place(3.5, 4.0, 4.0), place(0.0, middle.y, 0.0), 1.4 * unit, Bands::splat(1.6));
-        let sky = Light::Sky { map: None, radiance: Color::grey(0.35), turned: 0.0 };
-        self.lights.extend([window, lamp, sky]);
-        self.camera = Some(Camera {
-            from: place(0.0, middle.y + 1.45, 7.0),
-            at: place(0.0, middle.y, 0.0),
+        if studio == Studio::Lit {
+            self.lights.extend(lights(lowest, middle, unit));
+        }
+        self.camera.get_or_insert(Camera {
+            from: center + DVec3::new(0.0, 1.45, 7.0) * unit,
+            at: center,
             up: DVec3::Y,
             field_of_view: 26.0,
             near: 0.0,
@@ -69,6 +78,22 @@ impl Scene {
         });
         Ok(self)
     }
+}
+
+/// A window of daylight, a soft box and a pale sky.
+///
+/// - `lowest`: the middle of the floor under the objects.
+/// - `middle`: how far over it their middle is.
+/// - `unit`: of the studio.
+fn lights(lowest: DVec3, middle: f64, unit: f64) -> [Light; 3] {
+    let place = |x: f64, y: f64, z: f64| lowest + DVec3::new(x, y, z) * unit;
+    let along = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * unit;
+    let window =
+        Patch::Rectangle { corner: place(-5.0, 1.5, 2.0), across: along(1.0, 4.5, 0.0), up: along(0.0, 0.0, 4.0) };
+    let window = Light::Area { patch: window, radiance: Color::grey(3.0) };
+    let lamp = soft_box(place(3.5, 4.0, 4.0), lowest + DVec3::Y * middle, 1.4 * unit, Bands::splat(1.6));
+    let sky = Light::Sky { map: None, radiance: Color::grey(0.35), turned: 0.0 };
+    [window, lamp, sky]
 }
 
 /// The sweep in the units of the studio, its floor under the origin.
@@ -95,14 +120,21 @@ mod tests {
             let shape = Shape::Solid(Primitive::Box { size: DVec3::splat(size) });
             let transform = DMat4::from_translation(shift);
             let object = Object { name: "a".into(), shape, transform, material: None, tolerance: None };
-            let bare = Scene { objects: vec![object.clone()], ..Scene::default() };
+            let bare = Scene { objects: vec![object.clone()], studio: Some(Studio::Bare), ..Scene::default() };
+            let lit = Scene { studio: Some(Studio::Lit), ..bare.clone() };
             let bounds = Prepared::new(&bare).expect("a box").bounds;
-            let scene = bare.in_studio().expect("a studio");
+            let scene = lit.lit().expect("a studio");
             assert_eq!(scene.objects[0], object);
             let camera = scene.camera.expect("it is seen");
             let distance = camera.from.distance(bounds.center()) / bounds.diagonal();
             assert!((2.5..3.5).contains(&distance), "{distance}");
             assert!(scene.lights.len() == 3 && Prepared::new(&scene).is_ok());
+            // Lights of its own, or the default ones, which stand beside the objects rather than beside the sweep.
+            let by_default = bare.clone().lit().expect("a box");
+            let alone = Scene { studio: None, ..bare.clone() }.lit().expect("a box");
+            assert_eq!((by_default.objects.len(), &by_default.lights), (2, &alone.lights));
+            let own = vec![Light::Point { at: DVec3::Y, intensity: Color::grey(1.0) }];
+            assert_eq!(Scene { lights: own.clone(), ..bare }.lit().expect("a box").lights, own);
         }
     }
 }

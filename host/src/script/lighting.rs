@@ -9,7 +9,7 @@ use crate::color::{Color, Spectrum, light_of_temperature};
 use crate::illumination::Light;
 use crate::illumination::light::{Goniometry, Panorama, Patch, SkyMap};
 use crate::memory;
-use crate::scene::MAX_LIGHTS;
+use crate::scene::{MAX_LIGHTS, Studio};
 use glam::DVec3;
 use rhai::Dynamic;
 use std::f64::consts::PI;
@@ -110,6 +110,22 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let color = color_of_light(builder, bound, vector("factor", DVec3::ONE))?;
             let (down, front) = (vector("down", DVec3::NEG_Y), vector("front", DVec3::Z));
             add(builder, Light::Luminaire { at: vector("at", DVec3::ZERO), down, front, goniometry, color })
+        },
+    },
+    Function {
+        name: "studio",
+        summary: "Shows the objects in a studio as large as they are: on a grey floor that bends up into a wall behind them, beside a window, under a soft box and a pale sky; with a camera if there is none. Pictures have it; tessellate, check and octree leave it out.",
+        parameters: &[parameter(
+            "light",
+            Kind::Flag,
+            Is("true"),
+            "whether the window, the soft box and the sky are there",
+        )],
+        example: "studio();",
+        action: |builder, bound| {
+            let is_lit = bound.flag("light").unwrap_or(true);
+            builder.scene.studio = Some(if is_lit { Studio::Lit } else { Studio::Bare });
+            Ok(Dynamic::UNIT)
         },
     },
     Function {

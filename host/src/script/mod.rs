@@ -172,7 +172,7 @@ pub const EMBEDDED: [Embedded; 21] = [
     },
     Embedded {
         name: "vases",
-        summary: "a copper vase under daylight by three forms of Cook and Torrance's idea, side by side",
+        summary: "a copper vase in one light by three forms of Cook and Torrance's idea, side by side",
         text: include_str!("../../scenes/vases.rhai"),
     },
     Embedded {

@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::ray_tracing::RayTracer;
 use crate::render::{Order, Renderer};
-use crate::scene::{Object, Prepared, Scene, Shape};
+use crate::scene::{Object, Prepared, Scene, Shape, Studio};
 use crate::solid::Primitive;
 use crate::study::{Axis, Plot, Point, Series};
 use files::{Destination, Folder};
@@ -102,7 +102,7 @@ fn curve(record: &Record, curves: &Curves) -> Plot {
 
 /// A picture of an object in the studio.
 fn render(object: Object, file: &Destination) -> Result<PathBuf, Failure> {
-    let mut scene = Scene { objects: vec![object], ..Scene::default() }.in_studio()?;
+    let mut scene = Scene { objects: vec![object], studio: Some(Studio::Lit), ..Scene::default() }.lit()?;
     (scene.settings.width, scene.settings.height, scene.settings.samples) = (360, 360, 48);
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
