@@ -223,7 +223,7 @@ fn survive(rounds: usize, seed: u64) {
     let references = references(folder);
     let inputs = contents(folder);
     let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let (mut interrupted, mut resumed) = (0, 0);
+    let (mut interrupted, mut resumable, mut resumed) = (0, 0, 0);
     // Those that take longer come in every fourth turn.
     let turns = (0..).flat_map(|turn| (0..CASES.len()).map(move |number| (turn, number)));
     let is_long = std::env::var_os("PERIS_LONG").is_some();
@@ -234,6 +234,7 @@ fn survive(rounds: usize, seed: u64) {
     for (round, (_, number)) in turns.filter(in_turn).take(rounds).enumerate() {
         let (case, (whole, took)) = (&CASES[number], &references[number]);
         let Case { arguments, files, resume, .. } = case;
+        resumable += usize::from(!resume.is_empty());
         let is_older: bool = random.random();
         for file in *files {
             let path = folder.join(file);
@@ -310,7 +311,9 @@ fn survive(rounds: usize, seed: u64) {
             std::fs::remove_file(folder.join(name)).expect("removed");
         }
     }
-    assert!(interrupted > rounds / 4 && resumed > rounds / 30, "{interrupted} interrupted, {resumed} resumed");
+    // How many can be resumed depends on how fast the machine is: what takes long comes seldom.
+    let is_tried = interrupted > rounds / 4 && resumed > resumable / 4;
+    assert!(is_tried, "{interrupted} interrupted, {resumed} of {resumable} resumed");
 }
 
 #[test]
