@@ -103,9 +103,8 @@ pub(super) fn watch(
                 watched.follow(files(&arguments.script, &evaluated.files));
                 let asked = evaluated.scene.camera;
                 let keeps_view = asked == camera;
-                let count = evaluated.scene.objects.len();
                 let scene = source::lit(evaluated)?.scene;
-                let (model, _) = modelled(&scene, count, &arguments, keeps_view.then_some(initial))?;
+                let (model, _) = modelled(&scene, &arguments, keeps_view.then_some(initial))?;
                 (camera, initial) = (asked, *model.initial());
                 Ok(Edit { scene, model, keeps_view })
             });

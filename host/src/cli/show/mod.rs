@@ -98,9 +98,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let watched = arguments.watch.then(|| Watched::of(&arguments.script));
     let evaluated = load(&arguments.script, &arguments.definitions)?;
     let camera = evaluated.scene.camera;
-    let count = evaluated.scene.objects.len();
     let Evaluated { scene, files, .. } = source::lit(evaluated)?;
-    let (model, light) = modelled(&scene, count, arguments, None)?;
+    let (model, light) = modelled(&scene, arguments, None)?;
     let edits = watched.map(|watched| edits::watch(arguments, watched, &files, camera, *model.initial()));
     let patience = arguments.waits.patience();
     let (mut emulator, line) = match &arguments.to {
@@ -147,23 +146,22 @@ impl Arguments {
 
 /// The scene ready to be shown as the arguments say, with the light of its surfaces if that is to be shown.
 ///
-/// - `count`: how many of its first objects are its own; what a studio adds is drawn only where the light that it sends on
-///   is shown.
 /// - `initial`: from where it is seen, instead of by its own camera.
 fn modelled(
     scene: &Scene,
-    count: usize,
     arguments: &Arguments,
     initial: Option<InitialView>,
 ) -> Result<(Model, Option<Tiling>), Failure> {
-    if !arguments.radiosity {
-        let own = Scene { objects: scene.objects[..count].to_vec(), ..scene.clone() };
-        return Ok((Model::new(&own, &arguments.drawing(), None, initial)?, None));
-    }
-    super::warn_of_emptiness(scene);
-    let light = tiling(scene, arguments.threads, &progress::watch())?;
-    progress::clear();
-    Ok((Model::new(scene, &arguments.drawing(), Some(&light), initial)?, Some(light)))
+    let light = if arguments.radiosity {
+        super::warn_of_emptiness(scene);
+        let light = tiling(scene, arguments.threads, &progress::watch())?;
+        progress::clear();
+        Some(light)
+    } else {
+        None
+    };
+    let model = Model::new(scene, &arguments.drawing(), light.as_ref(), initial)?;
+    Ok((model, light))
 }
 
 /// Starts a PS 340 of our own, with a window if there is a display to open it on.
