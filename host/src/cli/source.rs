@@ -55,9 +55,9 @@ pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluate
 /// A [`Failure`] with [`super::Exit::Scene`].
 pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, Failure> {
     let count = evaluated.scene.lights.len();
-    let has_light = evaluated.scene.studio == Some(Studio::Lit);
+    let is_lit_by_studio = evaluated.scene.studio == Some(Studio::Lit);
     let scene = evaluated.scene.lit()?;
-    if scene.lights.len() > count && !has_light {
+    if scene.lights.len() > count && !is_lit_by_studio {
         say::tell("the scene has no light of its own: it is lit as in a studio");
     }
     Ok(Evaluated { scene, ..evaluated })
