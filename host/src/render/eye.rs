@@ -6,6 +6,9 @@ use crate::numeric::sampling::disk;
 use crate::scene::{Camera, Lens, Projection, View};
 use glam::{DMat3, DVec3, DVec4};
 
+/// A ray from the origin into the picture, in the place of one that an eye does not have.
+pub(super) const AHEAD: Ray = Ray { origin: DVec3::ZERO, direction: DVec3::NEG_Z };
+
 /// Rounding errors of the largest coordinate within which an eye is on a surface: it sees what is beyond.
 const ON_SURFACE_ULPS: f64 = 32.0;
 

@@ -67,7 +67,9 @@ impl<'a> Appearance<'a> {
         };
         appearance.add_materials(plan)?;
         for (number, light) in prepared.lights.iter().enumerate().filter(|(number, _)| plan.keeps_light(*number)) {
-            appearance.sources.push((number, Source::new(light, &appearance.wavelengths)));
+            appearance
+                .sources
+                .push((number, Source::new(light, &appearance.wavelengths).with_portals(&prepared.portals)));
         }
         appearance.add_emitters(plan);
         appearance.passing = appearance.optics.iter().any(Optics::is_passable);
@@ -152,16 +154,17 @@ impl<'a> Appearance<'a> {
 
     /// Radiance where there is nothing: of the skies, or the background without any.
     ///
+    /// - `ray`: from where it is seen, of unit length.
     /// - `normal`: of the element from which it is seen, if there is one.
     /// - `part`: how much a sky counts that would have drawn the direction with a density.
     pub(super) fn beyond(
         &self,
-        direction: DVec3,
+        ray: &Ray,
         normal: Option<DVec3>,
         comb: usize,
         part: impl Fn(&Source, f64) -> f64,
     ) -> Channels {
-        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky(direction, normal, comb)?)));
+        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky(ray, normal, comb)?)));
         let sum = skies.map(|(sky, glow)| glow.radiance * part(sky, glow.density)).reduce(|a, b| a + b);
         sum.unwrap_or_else(|| self.background.of(comb))
     }

@@ -34,6 +34,7 @@ pub use shape::{Made, Rounded, Shape, ShapeError};
 pub use studio::Studio;
 pub use view::{Camera, Lens, Parallel, Projection, View};
 
+use crate::illumination::light::Patch;
 use crate::illumination::{Bands, Light, Material};
 use crate::octree::MAX_POINT_DEPTH;
 use crate::picture::Filter;
@@ -45,6 +46,8 @@ use serde::{Deserialize, Serialize};
 pub const MAX_OBJECTS: usize = 100_000;
 /// Most lights in a scene.
 pub const MAX_LIGHTS: usize = 10_000;
+/// Most portals in a scene: each is looked at for every direction to a sky.
+pub const MAX_PORTALS: usize = 1_000;
 /// Most samples in a pixel.
 pub const MAX_SAMPLES: u32 = 65_536;
 /// Most ways of light that are followed at a time: caught, they take up to 1.2 GB.
@@ -63,6 +66,9 @@ pub struct Scene {
     pub motions: Vec<(u32, Motion)>,
     /// What lights it.
     pub lights: Vec<Light>,
+    /// Rectangles through which the light of skies comes in, their normals pointing inwards. They change the noise of
+    /// pictures, not what these show.
+    pub portals: Vec<Patch>,
     /// Radiance that arrives from everywhere, W/(m² sr); only diffuse reflection answers it.
     pub ambient: Bands,
     /// Radiance where a ray meets nothing, W/(m² sr).
@@ -213,6 +219,12 @@ impl Scene {
         self.check_motions()?;
         for (index, light) in self.lights.iter().enumerate() {
             light.check().map_err(|problem| SceneError::Light { number: index + 1, problem: problem.to_string() })?;
+        }
+        if self.portals.len() > MAX_PORTALS {
+            return Err(SceneError::Limit { what: "portals", limit: MAX_PORTALS as u64 });
+        }
+        for (index, portal) in self.portals.iter().enumerate() {
+            portal.check().map_err(|problem| SceneError::Setting(format!("portal {}: {problem}", index + 1)))?;
         }
         check_power("ambient light", self.ambient).map_err(SceneError::Setting)?;
         check_power("background", self.background).map_err(SceneError::Setting)?;

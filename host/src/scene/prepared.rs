@@ -5,6 +5,7 @@ use super::placing;
 use super::shape::GROUND;
 use super::shared::Shared;
 use super::{Camera, Made, Motion, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
+use crate::illumination::light::Patch;
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
@@ -41,6 +42,8 @@ pub struct Prepared {
     pub objects: Vec<PreparedObject>,
     /// The lights.
     pub lights: Vec<Light>,
+    /// Rectangles through which the light of skies comes in.
+    pub portals: Vec<Patch>,
     /// Ambient radiance.
     pub ambient: Bands,
     /// Background radiance.
@@ -119,6 +122,7 @@ impl Prepared {
             material_of: Vec::new(),
             objects: Vec::new(),
             lights: scene.lights.clone(),
+            portals: scene.portals.clone(),
             ambient: scene.ambient,
             background: scene.background,
             camera: Camera::framing(&Bounds::EMPTY),

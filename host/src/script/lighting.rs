@@ -7,9 +7,9 @@ use super::function::{Done, Function, Kind, Parameter, parameter};
 use crate::color::srgb::LUMINANCE;
 use crate::color::{Color, Spectrum, light_of_temperature};
 use crate::illumination::Light;
-use crate::illumination::light::{Goniometry, Panorama, Patch, SkyMap};
+use crate::illumination::light::{Goniometry, Panorama, Patch, SkyDisc, SkyMap};
 use crate::memory;
-use crate::scene::{MAX_LIGHTS, Studio};
+use crate::scene::{MAX_LIGHTS, MAX_PORTALS, Studio};
 use glam::DVec3;
 use rhai::Dynamic;
 use std::f64::consts::PI;
@@ -55,14 +55,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[
             parameter("direction", Kind::Vector, Required, "where the light goes"),
             parameter("irradiance", Kind::Powers, Is("pi"), "of a surface that faces it, W/m²"),
+            parameter(
+                "diameter",
+                Kind::Number(0.0, 90.0),
+                Is("0"),
+                "of the disc in the sky from which it comes, degrees, 0.53 for the sun: edges of shadows are then as soft as its light makes them",
+            ),
             SPECTRUM,
         ],
         example: "directional_light(#{ direction: [-1, -2, -1], irradiance: 2 });",
-        action: |builder, bound| {
-            let direction = bound.vector("direction").unwrap_or_default();
-            let irradiance = color_of_light(builder, bound, bound.vector("irradiance").unwrap_or(DVec3::splat(PI)))?;
-            add(builder, Light::Directional { direction, irradiance })
-        },
+        action: directional_light,
     },
     Function {
         name: "spot_light",
@@ -209,6 +211,26 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
     Function {
+        name: "portal",
+        summary: "Tells of an opening through which the light of the sky comes into a room, a rectangle whose sides turn counter-clockwise seen from within: rays look for the sky there, and pictures of the room have less noise. It has no light of its own.",
+        parameters: &[
+            parameter("corner", Kind::Vector, Required, "a corner"),
+            parameter("across", Kind::Vector, Required, "from the corner along one side"),
+            parameter("up", Kind::Vector, Required, "from the corner along the other side"),
+        ],
+        example: "portal(#{ corner: [3, 1, -1], across: [0, 0, 2], up: [0, 1.5, 0] });",
+        action: |builder, bound| {
+            if builder.scene.portals.len() >= MAX_PORTALS {
+                return Err(format!("more than {MAX_PORTALS} portals"));
+            }
+            let vector = |name: &str| bound.vector(name).unwrap_or_default();
+            let portal = Patch::Rectangle { corner: vector("corner"), across: vector("across"), up: vector("up") };
+            portal.check().map_err(|error| error.to_string())?;
+            builder.scene.portals.push(portal);
+            Ok(Dynamic::UNIT)
+        },
+    },
+    Function {
         name: "ambient",
         summary: "Sets the ambient light, which reaches every surface from everywhere.",
         parameters: &[parameter("radiance", Kind::Powers, Required, "its radiance, W/(m² sr)")],
@@ -229,6 +251,22 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
 ];
+
+fn directional_light(builder: &mut Builder, bound: &Bound) -> Done {
+    let direction = bound.vector("direction").unwrap_or_default();
+    let irradiance = bound.vector("irradiance").unwrap_or(DVec3::splat(PI));
+    let radius = (0.5 * bound.number("diameter").unwrap_or(0.0)).to_radians();
+    if radius <= 0.0 {
+        let irradiance = color_of_light(builder, bound, irradiance)?;
+        return add(builder, Light::Directional { direction, irradiance });
+    }
+    let towards = -direction.try_normalize().ok_or("its direction has no length")?;
+    let disc = SkyDisc { towards, radius };
+    // A surface that faces the disc is lit by its radiance times the projected solid angle.
+    let radiance = color_of_light(builder, bound, irradiance / (PI * radius.sin().powi(2)))?;
+    let map = SkyMap { file: "a disc in the sky".into(), panorama: None, disc: Some(disc) };
+    add(builder, Light::Sky { map: Some(map), radiance, turned: 0.0 })
+}
 
 /// The strength of a light that is given, or its power over what one unit of strength emits.
 fn either(builder: &Builder, bound: &Bound, strength: &str, flux: f64) -> Result<Color, String> {

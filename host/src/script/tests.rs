@@ -2,12 +2,14 @@
 
 use super::*;
 use crate::color::Color;
+use crate::illumination::light::{Patch, SkyDisc, SkyMap};
 use crate::illumination::material::{Body, Form, Shaped};
 use crate::illumination::{Light, Material};
 use crate::scene::Shape;
 use crate::solid::Primitive;
 use crate::surface::Tolerance;
 use glam::DVec3;
+use std::f64::consts::PI;
 
 pub(super) fn run(text: &str) -> Evaluated {
     evaluate(text, "test.rhai", Path::new(""), &Inputs::default()).unwrap_or_else(|e| panic!("{e}"))
@@ -43,6 +45,24 @@ fn a_script_builds_what_it_says() {
     assert_eq!(scene.settings.width, 32);
     assert_eq!((scene.settings.samples, scene.settings.seed, scene.settings.reflection_depth), (4, 9, 2));
     assert_eq!(made.printed, ["made 2"]);
+}
+
+#[test]
+fn a_parallel_light_may_come_from_a_disc_in_the_sky_and_that_of_a_sky_through_portals() {
+    let made = run("
+        directional_light(#{ direction: [0, -2, 0], irradiance: 3, diameter: 60 });
+        portal(#{ corner: [1, 0, 0], across: [0, 0, 2], up: [0, 2, 0] });
+    ");
+    let disc = SkyDisc { towards: DVec3::Y, radius: 30.0f64.to_radians() };
+    let map = SkyMap { file: "a disc in the sky".into(), panorama: None, disc: Some(disc) };
+    // Of a cap of 30 degrees, a surface that faces it sees a quarter of pi.
+    let [Light::Sky { map: Some(seen), radiance, .. }] = &made.scene.lights[..] else { panic!("one disc") };
+    assert_eq!(seen, &map);
+    assert!((radiance.range()[1] - 3.0 / (0.25 * PI)).abs() < 1e-12, "{radiance:?}");
+    let corner = DVec3::X;
+    assert_eq!(made.scene.portals, [Patch::Rectangle { corner, across: DVec3::Z * 2.0, up: DVec3::Y * 2.0 }]);
+    assert!(problem("portal(#{ corner: [0, 0, 0], across: [1, 0, 0], up: [2, 0, 0] });").2.contains("no area"));
+    assert!(problem("directional_light(#{ direction: [0, 0, 0], diameter: 1 });").2.contains("no length"));
 }
 
 #[test]

@@ -53,7 +53,7 @@ impl Source {
                 place(at, Some(normal), triangles.area)
             }
             Kind::Sky(sky) => {
-                let (towards, density) = sky.draw(uniform, None)?;
+                let (towards, density) = sky.start(uniform)?;
                 let irradiance = sky.radiance(towards, comb) * density.recip();
                 Some(Start::Parallel { direction: -towards, irradiance })
             }

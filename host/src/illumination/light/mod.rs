@@ -5,6 +5,7 @@ mod emission;
 mod goniometry;
 mod panorama;
 mod patch;
+mod portal;
 mod sky;
 mod source;
 #[cfg(test)]

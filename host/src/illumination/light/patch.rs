@@ -63,7 +63,11 @@ impl Patch {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), LightError> {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`LightError`], if one is not finite, or if it has no area.
+    pub fn check(&self) -> Result<(), LightError> {
         let area = self.area();
         let finite = match *self {
             Patch::Rectangle { corner, across, up } => corner.is_finite() && across.is_finite() && up.is_finite(),
@@ -149,6 +153,14 @@ impl Patch {
         }
     }
 
+    /// Whether a point is on the side of a rectangle on which this emits; of other patches, always.
+    pub(super) fn is_before(&self, point: DVec3) -> bool {
+        match *self {
+            Patch::Rectangle { corner, across, up } => (point - corner).dot(across.cross(up)) > 0.0,
+            Patch::Disc { .. } | Patch::Sphere { .. } => true,
+        }
+    }
+
     /// Draws a point that lights a point; none where it does not light it.
     ///
     /// A sphere and a rectangle are drawn evenly by solid angle, a disc by its area.
@@ -156,7 +168,7 @@ impl Patch {
         match *self {
             Patch::Rectangle { corner, across, up } => {
                 let normal = self.normal()?;
-                if (point - corner).dot(normal) <= 0.0 {
+                if !self.is_before(point) {
                     return None;
                 }
                 if let Some(seen) = self.seen_rectangle(point) {

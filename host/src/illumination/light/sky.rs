@@ -1,7 +1,8 @@
 //! Light from all around: one radiance, or a picture of it.
 
 use super::panorama::Panorama;
-use super::{SkyDisc, SkyMap};
+use super::portal::{Chosen, Portals};
+use super::{Patch, SkyDisc, SkyMap};
 use crate::color::{Channels, Color, Curve, Wavelengths};
 use crate::numeric::sampling::{cosine_hemisphere, sphere};
 use glam::{DVec2, DVec3};
@@ -23,6 +24,7 @@ pub struct Sky {
     disc: Option<Disc>,
     /// Cosine and sine of the turn about the upright axis.
     turned: DVec2,
+    portals: Portals,
 }
 
 /// A picture of the sky, from which directions are drawn as bright as they are.
@@ -58,7 +60,7 @@ impl Sky {
             None => wavelengths.light(radiance),
         };
         let (sin, cos) = turned.to_radians().sin_cos();
-        Sky { factor, map, disc, turned: DVec2::new(cos, sin) }
+        Sky { factor, map, disc, turned: DVec2::new(cos, sin), portals: Portals::default() }
     }
 
     /// Radiance from a direction, unit length.
@@ -70,24 +72,42 @@ impl Sky {
         }
     }
 
-    /// A direction, about as bright as it is, and its density, 1/sr.
-    ///
-    /// - `normal`: of the element that is lit, unit length; a sky of one radiance is then drawn by its cosine above it.
-    pub(super) fn draw(&self, [x, y]: [f64; 2], normal: Option<DVec3>) -> Option<(DVec3, f64)> {
-        if let Some(disc) = &self.disc {
-            return Some((self.forth(disc.draw([x, y])), disc.density));
-        }
-        let Some(map) = &self.map else {
-            let towards = normal.map_or_else(|| sphere([x, y]), |normal| cosine_hemisphere([x, y], normal));
-            return Some((towards, self.density(towards, normal))).filter(|(_, density)| *density > 0.0);
-        };
-        let at = map.draw([x, y])?;
-        let towards = self.forth(direction(at));
-        Some((towards, self.density(towards, normal))).filter(|(_, density)| *density > 0.0)
+    /// The sky, of which directions are drawn through portals from where these are; a disc of it is small enough without.
+    pub(super) fn with_portals(self, portals: &[Patch]) -> Sky {
+        let portals = if self.disc.is_some() { Portals::default() } else { Portals::new(portals) };
+        Sky { portals, ..self }
     }
 
-    /// The density of a direction, 1/sr; the normal as in [`Sky::draw`].
-    pub(super) fn density(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
+    /// A direction to light a point from, and its density, 1/sr.
+    ///
+    /// - `normal`: of the element that is lit, unit length; a sky of one radiance is then drawn by its cosine above it.
+    /// - `uniform`: a point of the unit square.
+    pub(super) fn draw(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
+        let towards = match self.portals.draw(point, uniform) {
+            Chosen::Through(towards) => towards,
+            Chosen::Anywhere(uniform) => self.draw_anywhere(normal, uniform)?,
+            Chosen::None => return None,
+        };
+        Some((towards, self.density(point, towards, normal))).filter(|(_, density)| *density > 0.0)
+    }
+
+    /// The density with which [`Sky::draw`] draws a direction, 1/sr.
+    pub(super) fn density(&self, point: DVec3, towards: DVec3, normal: Option<DVec3>) -> f64 {
+        self.portals.density(point, towards, self.density_anywhere(towards, normal))
+    }
+
+    /// A direction, about as bright as it is; the normal as in [`Sky::draw`].
+    fn draw_anywhere(&self, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<DVec3> {
+        match (&self.disc, &self.map, normal) {
+            (Some(disc), ..) => Some(self.forth(disc.draw(uniform))),
+            (None, Some(map), _) => Some(self.forth(direction(map.draw(uniform)?))),
+            (None, None, Some(normal)) => Some(cosine_hemisphere(uniform, normal)),
+            (None, None, None) => Some(sphere(uniform)),
+        }
+    }
+
+    /// The density with which [`Sky::draw_anywhere`] draws a direction, 1/sr.
+    fn density_anywhere(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
         if let Some(disc) = &self.disc {
             return if self.is_beside(towards) { 0.0 } else { disc.density };
         }
@@ -97,6 +117,12 @@ impl Sky {
         let back = self.back(towards);
         let sine = back.x.hypot(back.z);
         if sine > 0.0 { map.density(place(back)) / (sine * PI * TAU) } else { 0.0 }
+    }
+
+    /// A direction from which light sets out into the scene, about as bright as it is, and its density, 1/sr.
+    pub(super) fn start(&self, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
+        let towards = self.draw_anywhere(None, uniform)?;
+        Some((towards, self.density_anywhere(towards, None))).filter(|(_, density)| *density > 0.0)
     }
 
     /// Whether it has the same radiance in all directions.

@@ -106,6 +106,16 @@ impl Source {
         Source { strength, kind }
     }
 
+    /// The light; of one that is a sky, directions are then drawn through portals from where these are.
+    ///
+    /// - `portals`: rectangles whose normals, across x up, point inwards.
+    pub fn with_portals(self, portals: &[Patch]) -> Source {
+        match self.kind {
+            Kind::Sky(sky) if !portals.is_empty() => Source { kind: Kind::Sky(sky.with_portals(portals)), ..self },
+            _ => self,
+        }
+    }
+
     /// Triangles that emit the same radiance on both sides; none without area.
     pub fn of_triangles(corners: Vec<[DVec3; 3]>, radiance: Curve) -> Option<Source> {
         let mut area = 0.0;
@@ -158,7 +168,7 @@ impl Source {
                 Some(Beam { towards, distance, irradiance: strength() * density.recip(), density: Some(density) })
             }
             Kind::Sky(sky) => {
-                let (towards, density) = sky.draw(uniform, normal)?;
+                let (towards, density) = sky.draw(point, normal, uniform)?;
                 let irradiance = sky.radiance(towards, comb) * density.recip();
                 Some(Beam { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
             }
@@ -235,15 +245,21 @@ impl Source {
         Some(Glow { t, radiance, density: patch.density(ray.origin, ray.direction / length, t * length) })
     }
 
-    /// What is seen of a sky in a direction, unit length; none of another light, and beside a disc.
+    /// What is seen of a sky; none of another light, and beside a disc.
     ///
+    /// - `ray`: of unit length, from the point from which it is seen.
     /// - `normal`: of the element from which it is seen, as in [`Source::beam`].
-    pub fn sky(&self, towards: DVec3, normal: Option<DVec3>, comb: usize) -> Option<Glow> {
+    pub fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<Glow> {
+        let Ray { origin, direction: towards } = *ray;
         let Kind::Sky(sky) = &self.kind else { return None };
         if sky.is_beside(towards) {
             return None;
         }
-        Some(Glow { t: f64::INFINITY, radiance: sky.radiance(towards, comb), density: sky.density(towards, normal) })
+        Some(Glow {
+            t: f64::INFINITY,
+            radiance: sky.radiance(towards, comb),
+            density: sky.density(origin, towards, normal),
+        })
     }
 
     /// The density with which [`Source::beam`] draws a direction in which emitting triangles are met, 1/sr.

@@ -210,12 +210,12 @@ fn map() -> SkyMap {
 fn a_sky_of_one_radiance_lights_a_plane_with_pi_times_it() {
     let sky = source(Light::Sky { map: None, radiance: Color::grey(2.0), turned: 0.0 });
     assert!((irradiance(&sky, DVec3::ZERO, DVec3::Y) - 2.0 * PI).abs() < 1e-3);
-    assert_eq!(sky.sky(DVec3::X, None, 0).expect("a sky").radiance.0[0], 2.0);
+    assert_eq!(sky.sky(&from_origin(DVec3::X), None, 0).expect("a sky").radiance.0[0], 2.0);
     // By the cosine above an element, each direction brings as much.
     for uniform in [[0.1, 0.2], [0.7, 0.9], [0.99, 0.5]] {
         let beam = sky.beam(DVec3::ZERO, Some(DVec3::Y), uniform, 0).expect("light");
         assert!((beam.irradiance.0[0] * beam.towards.y - 2.0 * PI).abs() < 1e-9);
-        assert_eq!(sky.sky(beam.towards, Some(DVec3::Y), 0).map(|glow| glow.density), beam.density);
+        assert_eq!(sky.sky(&from_origin(beam.towards), Some(DVec3::Y), 0).map(|glow| glow.density), beam.density);
     }
 }
 
@@ -226,26 +226,28 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     let drawn = irradiance(&sky, DVec3::ZERO, DVec3::new(0.6, 0.8, 0.0));
     let term = |uniform| {
         let towards = sphere(uniform);
-        sky.sky(towards, None, 0).map_or(0.0, |glow| glow.radiance.0[0])
+        sky.sky(&from_origin(towards), None, 0).map_or(0.0, |glow| glow.radiance.0[0])
             * towards.dot(DVec3::new(0.6, 0.8, 0.0)).max(0.0)
     };
     let even = 4.0 * PI * unit_square(term, 1e-4, 400_000).value;
     assert!((drawn / even - 1.0).abs() < 2e-3, "{drawn} {even}");
     // The density integrates to 1.
-    let all =
-        4.0 * PI * unit_square(|u| sky.sky(sphere(u), None, 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000).value;
+    let all = 4.0
+        * PI
+        * unit_square(|u| sky.sky(&from_origin(sphere(u)), None, 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000)
+            .value;
     assert!((all - 1.0).abs() < 2e-3, "{all}");
     let mut stream = Stream::new(2, 2);
     for _ in 0..100 {
         let beam = sky.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
-        let glow = sky.sky(beam.towards, None, 0).expect("a sky");
+        let glow = sky.sky(&from_origin(beam.towards), None, 0).expect("a sky");
         assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
     }
     let ahead = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 0.0 });
     // In the middle of column 4 of row 1, which is 60 degrees from the zenith, and straight up, where row 0 is.
     let towards = |degrees: f64, turn: f64| {
         let ((sine, cosine), (across, along)) = (degrees.to_radians().sin_cos(), turn.to_radians().sin_cos());
-        ahead.sky(DVec3::new(sine * across, cosine, -sine * along), None, 0).expect("a sky").radiance.0[0]
+        ahead.sky(&from_origin(DVec3::new(sine * across, cosine, -sine * along)), None, 0).expect("a sky").radiance.0[0]
     };
     let pixel = |x: usize, y: usize| ((y * 8 + x) % 5) as f64;
     assert!((towards(60.0, 22.5) - pixel(4, 1)).abs() < 1e-9 && (towards(60.0, 112.5) - pixel(6, 1)).abs() < 1e-9);
@@ -266,10 +268,12 @@ fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
         let beam = sun.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
         let angle = beam.towards.cross(disc.towards).length().asin();
         assert!(angle <= disc.radius * (1.0 + 1e-9) && (beam.towards.length() - 1.0).abs() < 1e-12);
-        let seen = sun.sky(beam.towards, None, 0).expect("it is there");
+        let seen = sun.sky(&from_origin(beam.towards), None, 0).expect("it is there");
         assert_eq!(Some(seen.density), beam.density);
     }
-    assert!(sun.sky(-disc.towards, None, 0).is_none() && sun.sky(DVec3::Y, None, 0).is_none());
+    assert!(
+        sun.sky(&from_origin(-disc.towards), None, 0).is_none() && sun.sky(&from_origin(DVec3::Y), None, 0).is_none()
+    );
     let [point] = sun.points(7)[..] else { panic!("one point") };
     let beam = sun.beam_from(&point, DVec3::ZERO, 0).expect("light");
     assert!((beam.irradiance.0[0] - 2.0).abs() < 1e-6 && (beam.towards - disc.towards).length() < 1e-12);
@@ -303,4 +307,56 @@ fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits
 
 fn area_glow(patch: &Patch, ray: &Ray) -> Option<Glow> {
     area(*patch).glow(ray, 0.0, f64::INFINITY, 0)
+}
+
+/// A ray from the origin.
+fn from_origin(direction: DVec3) -> Ray {
+    Ray { origin: DVec3::ZERO, direction }
+}
+
+#[test]
+fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
+    let rectangle = |corner: DVec3, across: DVec3, up: DVec3| Patch::Rectangle { corner, across, up };
+    let portals = [
+        // Behind the origin, ahead of it, and one that is no right-angled one.
+        rectangle(DVec3::new(-1.0, 0.0, 2.0), DVec3::X, DVec3::Y),
+        rectangle(DVec3::new(-0.5, 0.2, -1.0), DVec3::X, DVec3::Y),
+        rectangle(DVec3::new(1.0, 0.3, 0.0), DVec3::Z, DVec3::new(0.0, 1.0, -0.5)),
+    ];
+    let normal = DVec3::new(0.3, 0.9, -0.3).normalize();
+    for map in [Some(map()), None] {
+        let sky = source(Light::Sky { map, radiance: Color::grey(1.0), turned: 30.0 });
+        let seen = sky.clone().with_portals(&portals);
+        // Drawn with the normal, and without.
+        for known in [Some(normal), None] {
+            let mean = |source: &Source| {
+                let term = |uniform| {
+                    let beam = source.beam(DVec3::ZERO, known, uniform, 0);
+                    beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
+                };
+                unit_square(term, 1e-4, 400_000).value
+            };
+            let (plain, portal) = (mean(&sky), mean(&seen));
+            assert!((portal / plain - 1.0).abs() < 3e-3, "{portal} {plain}");
+            let density = |u| seen.sky(&from_origin(sphere(u)), known, 0).map_or(0.0, |glow| glow.density);
+            let all = 4.0 * PI * unit_square(density, 1e-4, 400_000).value;
+            assert!((all - 1.0).abs() < 3e-3, "{all}");
+        }
+        let mut stream = Stream::new(5, 1);
+        let mut through = 0;
+        for _ in 0..1000 {
+            let Some(beam) = seen.beam(DVec3::ZERO, Some(normal), stream.point(), 0) else { continue };
+            let glow = seen.sky(&from_origin(beam.towards), Some(normal), 0).expect("a sky");
+            assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
+            let at = beam.towards / -beam.towards.z;
+            through += i32::from(beam.towards.z < 0.0 && at.x.abs() < 0.5 && (0.2..1.2).contains(&at.y));
+        }
+        assert!((380..560).contains(&through), "{through} of 1000 go ahead");
+        // Where there is none before a point, nothing changes.
+        let below = DVec3::new(0.0, -5.0, 9.0);
+        assert_eq!(
+            seen.beam(below, None, [0.3, 0.4], 0).map(|beam| beam.towards),
+            seen.with_portals(&[]).beam(below, None, [0.3, 0.4], 0).map(|beam| beam.towards)
+        );
+    }
 }

@@ -48,7 +48,7 @@ pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
 pub use two_way::{Balance, Shelf, widest_disc};
 
-use super::eye::Eye;
+use super::eye::{AHEAD, Eye};
 use super::film::{ByClass, Film, SHARING, Sample};
 use super::radiosity::{Exitance, Radiosity};
 use super::{Order, RenderError, Renderer, Rendering, Watch};
@@ -179,7 +179,7 @@ impl<'a> RayTracer<'a> {
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
-            let background = self.world.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0);
+            let background = self.world.appearance.beyond(&AHEAD, None, comb, |_, _| 1.0);
             let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.seen(comb, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
             return (Sample { radiance, weight, albedo: DVec3::splat(weight), ..Sample::default() }, classes, comb);

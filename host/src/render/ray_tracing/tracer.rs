@@ -259,9 +259,9 @@ impl<'a> Tracer<'a> {
                     let radiance = match leg.for_lights && !self.direct.has_sky() {
                         true => Channels::ZERO,
                         false => {
-                            self.world.appearance.beyond(direction.normalize(), leg.normal, comb, |sky, density| {
-                                self.part(&leg, sky, density)
-                            })
+                            let ray = Ray { direction: direction.normalize(), ..leg.sight.ray };
+                            let part = |sky: &Source, density| self.part(&leg, sky, density);
+                            self.world.appearance.beyond(&ray, leg.normal, comb, part)
                         }
                     };
                     seen.add(leg.course.of_lamps(), leg.passed * radiance);

@@ -27,7 +27,7 @@ mod surfaces;
 mod tests;
 mod visibility;
 
-use super::eye::Eye;
+use super::eye::{AHEAD, Eye};
 use super::film::{Film, Tally};
 use super::radiosity::Radiosity;
 use super::ready::Appearance;
@@ -226,7 +226,7 @@ impl<'a> ScanLine<'a> {
         let (has_surfaces, has_sky) = (sources().any(Source::is_surface), sources().any(Source::is_beyond));
         let wavelengths = &self.appearance.wavelengths;
         let background = || {
-            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(DVec3::NEG_Z, None, comb, |_, _| 1.0));
+            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(&AHEAD, None, comb, |_, _| 1.0));
             (0..wavelengths.combs()).map(seen).sum::<DVec3>() / wavelengths.combs() as f64
         };
         Shader {

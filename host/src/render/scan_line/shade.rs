@@ -9,9 +9,10 @@ use super::visibility::{NONE, Strip};
 use crate::color::Channels;
 use crate::illumination::optics::{Interior, Mixture, Side, Sighting};
 use crate::illumination::texture::Place;
+use crate::numeric::ray::Ray;
 use crate::numeric::triangle::weights;
 use crate::render::element::Element;
-use crate::render::eye::{Eye, Sight};
+use crate::render::eye::{AHEAD, Eye, Sight};
 use crate::render::film::{Sample, Tally};
 use crate::render::radiosity::diffuse;
 use crate::render::radiosity::{Part as Light, Radiosity};
@@ -307,8 +308,11 @@ impl<'a> Shader<'a> {
         if glow.is_some() {
             return sum + passed * shines();
         }
-        let direction = self.eye.ray(at, [0.5; 2]).map_or(DVec3::NEG_Z, |sight| sight.ray.direction.normalize());
-        sum + passed * self.appearance.beyond(direction, None, comb, |_, _| 1.0)
+        let ray = self
+            .eye
+            .ray(at, [0.5; 2])
+            .map_or(AHEAD, |Sight { ray, .. }| Ray { direction: ray.direction.normalize(), ..ray });
+        sum + passed * self.appearance.beyond(&ray, None, comb, |_, _| 1.0)
     }
 
     /// In how many volumes of a group of casters a sample is.
