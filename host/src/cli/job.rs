@@ -5,9 +5,9 @@ use super::{Definitions, Failure, Row, SCRIPT_HELP, Waits, interrupts, load, loa
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
-    render::Order,
+    render::{Order, Technique},
     scene::Scene,
-    study::{Options, Technique, renderers},
+    study::{Options, renderers},
     workstation::{Drawing, Emulator, Session},
 };
 use clap::{Args, FromArgMatches};

@@ -3,8 +3,9 @@
 use super::source::stem;
 use super::study::memo;
 use super::{Definitions, Failure, SCRIPT_HELP, load_lit, progress};
+use crate::render::Technique;
 use crate::render::Watch;
-use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, Technique, renderers};
+use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, renderers, studied, usual};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use files::Folder;
@@ -25,7 +26,7 @@ struct Arguments {
     #[arg(short, long, value_name = "NAME,...", value_delimiter = ',', value_parser = PossibleValuesParser::new(RENDER_KNOBS.iter().map(|knob| knob.name)), hide_possible_values = true)]
     knob: Vec<String>,
     /// Who makes the pictures [default: scan-line, and two-way if the scene asks for it, otherwise ray-tracing]
-    #[arg(long, value_name = "RENDERER", value_delimiter = ',', value_parser = PossibleValuesParser::new(Technique::ALL.map(Technique::option)))]
+    #[arg(long, value_name = "RENDERER", value_delimiter = ',', value_parser = PossibleValuesParser::new(studied().map(|technique| technique.row().option)))]
     renderer: Vec<String>,
     /// Folder for the table (.csv) and the plots (.svg and .png); it is made if need be
     #[arg(short, long, value_name = "DIR", default_value = ".")]
@@ -53,7 +54,7 @@ struct Arguments {
 /// The sub-command.
 pub(super) fn command() -> Command {
     let line = |knob: &RenderKnob| {
-        let by: Vec<&str> = knob.techniques.iter().map(|technique| technique.word()).collect();
+        let by: Vec<&str> = knob.techniques.iter().map(|technique| technique.row().word).collect();
         format!("\n  {:<16} {} ({})", knob.name, knob.sets, by.join(", "))
     };
     let knobs: String = RENDER_KNOBS.iter().map(line).collect();
@@ -69,10 +70,10 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     let Arguments { width, samples, settings, threads, .. } = arguments;
     let options = Options { width, samples, settings, threads };
-    let usual = Technique::usual(&scene.settings);
-    let techniques = Technique::ALL.into_iter().filter(|technique| match arguments.renderer.is_empty() {
+    let usual = usual(&scene.settings);
+    let techniques = studied().filter(|technique| match arguments.renderer.is_empty() {
         true => usual.contains(technique),
-        false => arguments.renderer.iter().any(|name| name == technique.option()),
+        false => arguments.renderer.iter().any(|name| name == technique.row().option),
     });
     let names = RENDER_KNOBS
         .iter()

@@ -9,7 +9,7 @@ pub use progressive::{News, Progressive};
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
-    render::{Order, RenderError, Rendering, Watch, radiosity::Radiosity, tiles::Tiling},
+    render::{Order, RenderError, Rendering, Watch, World, radiosity::Radiosity, tiles::Tiling},
     scene::{Camera, Prepared, Projection, Scene, SceneError, View},
     workstation::{Drawing, InitialView, Session, Shown, WorkstationError, network, raster, structure, tiles},
 };
@@ -316,7 +316,7 @@ pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -
     let plan = Plan::new(&prepared, &prepared.view());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, |n| n.get())).build();
     let tiling = pool.map_err(RenderError::from)?.install(|| {
-        let solution = Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, watch)?;
+        let solution = Radiosity::new(&World::new(&prepared, &plan)?, &plan, &prepared.settings.into(), None, watch)?;
         Tiling::new(&solution, &prepared, &plan, MOST_CORNERS)
     })?;
     match tiling.corners() {

@@ -5,9 +5,7 @@ use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{
-        Amount, Film, Order, RenderError, Watch,
-        metering::Meter,
-        ray_tracing::{Checkpoints, RayTracer},
+        Amount, Film, Order, RenderError, Task, Watch, metering::Meter, ray_tracer_watched, ray_tracing::Checkpoints,
     },
     scene::{Prepared, View},
 };
@@ -128,10 +126,10 @@ pub(super) fn shot(
 ) -> Result<Shot, ProductionError> {
     let start = Instant::now();
     let plan = Plan::new(prepared, view);
-    let tracer = RayTracer::watched(prepared, &plan, None, watch)?;
+    let (tracer, _) = ray_tracer_watched(&Task { watch: *watch, ..Task::new(prepared, &plan) })?;
     let build_seconds = start.elapsed().as_secs_f64();
     let triangles = prepared.triangles.len().max(1) as f64;
-    let octree_bytes = tracer.octree().map(|octree| octree.bytes() as f64 / triangles);
+    let octree_bytes = tracer.world().octree().map(|octree| octree.bytes() as f64 / triangles);
     let meter = Meter::new(&prepared.settings, display, order.threads);
     let stops = meter.stops(&tracer, prepared, std::slice::from_ref(view), watch)?;
     let pixel_angle = view.pixel_angle(order.width, order.height);

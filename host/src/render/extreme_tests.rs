@@ -1,6 +1,6 @@
 //! Facts about both renderers at the extremes: each is held against a closed form, a limit, or an invariance.
 
-use super::ray_tracing::RayTracer;
+use super::ray_tracer;
 use super::scan_line::ScanLine;
 use super::{Order, Renderer, Rendering, Watch};
 use crate::color::{Beyond, Color, Spectrum};
@@ -76,7 +76,7 @@ fn render(scene: &Scene, by_rays: bool) -> Rendering {
     let plan = Plan::new(&prepared, &view);
     let order = Order::of(&scene.settings);
     let rendering = match by_rays {
-        true => RayTracer::new(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY),
+        true => ray_tracer(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY),
         false => ScanLine::new(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY),
     };
     let rendering = rendering.expect("a picture");
@@ -154,7 +154,7 @@ fn no_roughness_and_no_angle_creates_light() {
             scene.settings.interreflection = true;
             let prepared = Prepared::new(&scene).expect("a scene");
             let plan = Plan::new(&prepared, &prepared.view());
-            let tracer = RayTracer::new(&prepared, &plan).expect("ready");
+            let tracer = ray_tracer(&prepared, &plan).expect("ready");
             for degrees in [0.0, 60.0, 89.0, 89.9999] {
                 let view = View::Camera(at_angle(degrees));
                 let rendering = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture");

@@ -1,7 +1,7 @@
 //! What guides the denoising of a pixel, beside its tally: what its samples saw behind mirrors and glass, how far they are
 //! apart, and their first half.
 
-use super::film::{Sample, Tally};
+use super::tally::{Sample, Tally};
 use serde::{Deserialize, Serialize};
 
 /// Sums over the samples of a pixel for a denoiser.

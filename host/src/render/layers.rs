@@ -1,7 +1,8 @@
 //! Films as EXR files with layers: what is known of each pixel beside its radiance.
 
-use super::film::{Class, Film, Tally};
+use super::film::Film;
 use super::guide::Guide;
+use super::tally::{Class, Tally};
 use crate::picture::{Picture, PictureError, Pixel, Provenance, encoder};
 use crate::scene::Prepared;
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, WritableImage};

@@ -11,7 +11,7 @@
 //! corners, darkest and brightest are means over a tenth of the pixels, and the brightest pixels are not led beyond the white
 //! of the tone curve as long as the rest does not become too dark.
 
-use super::film::Tally;
+use super::tally::Tally;
 use super::{Film, Order, RenderError, Renderer, Watch};
 use crate::color::srgb::LUMINANCE;
 use crate::picture::display::{DisplayTransform, Exposure, MIDDLE_GREY, Tone};

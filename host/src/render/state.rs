@@ -5,8 +5,9 @@
 //! (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
 use super::Order;
-use super::film::{Adaptive, Film, Tally};
+use super::film::{Adaptive, Film};
 use super::guide::Guide;
+use super::tally::Tally;
 use crate::picture::PictureError;
 use crate::picture::display::DisplayTransform;
 use crate::scene::{Prepared, Scene};
@@ -18,6 +19,17 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Time between checkpoints at least, in times that writing one took.
+const LEAST_WORK: u32 = 10;
+
+/// When the next checkpoint is due after one that began at a time and is written now: where writing takes long, later, so
+/// that most of the time goes into the work.
+pub(super) fn after(every: Duration, begin: Instant) -> Instant {
+    let now = Instant::now();
+    now + every.max((now - begin) * LEAST_WORK)
+}
 
 /// What such a file begins with; the version follows.
 const MAGIC: [u8; 7] = *b"PERISF\x00";

@@ -20,7 +20,8 @@ mod tests;
 pub use illumination::{IlluminationRow, IlluminationStudy, illumination};
 pub use plot::{Axis, Plot, PlotError, Point, Series};
 pub use rendering::{
-    Bend, KnobStudy, Measures, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, Technique, renderers,
+    Bend, KnobStudy, Measures, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, renderers, studied,
+    usual,
 };
 pub use sweep::{Knob, Row, Study, Trial, sweep};
 

@@ -3,7 +3,7 @@
 use super::{Knob, Options, Study, StudyError, Trial, resized, sweep};
 use crate::picture::{Picture, difference};
 use crate::plan::Plan;
-use crate::render::ray_tracing::RayTracer;
+use crate::render::ray_tracer;
 use crate::render::{Order, Renderer, Watch};
 use crate::scene::{Prepared, Scene};
 use std::time::Instant;
@@ -70,7 +70,7 @@ impl Knob for Tessellation {
         let start = Instant::now();
         let prepared = Prepared::new(&scene)?;
         let plan = Plan::new(&prepared, &prepared.view());
-        let tracer = RayTracer::new(&prepared, &plan)?;
+        let tracer = ray_tracer(&prepared, &plan)?;
         let build = start.elapsed().as_secs_f64();
         let order = Order { threads: self.options.threads, ..Order::of(&scene.settings) };
         let rendering = tracer.render(&prepared.view(), &order, watch)?;

@@ -7,7 +7,7 @@ use crate::database::{Content, Curves, Record};
 use crate::illumination::material::Material;
 use crate::picture::Picture;
 use crate::plan::Plan;
-use crate::render::ray_tracing::RayTracer;
+use crate::render::ray_tracer;
 use crate::render::{Order, Renderer};
 use crate::scene::{Object, Prepared, Scene, Shape, Studio};
 use crate::solid::Primitive;
@@ -108,7 +108,7 @@ fn render(object: Object, file: &Destination) -> Result<PathBuf, Failure> {
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
     let order = Order::of(&prepared.settings);
-    let rendering = RayTracer::new(&prepared, &plan)?.render(&view, &order, &progress::watch())?;
+    let rendering = ray_tracer(&prepared, &plan)?.render(&view, &order, &progress::watch())?;
     rendering.picture.write(file)?;
     Ok(file.path().to_owned())
 }

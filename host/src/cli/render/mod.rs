@@ -11,13 +11,11 @@ use crate::picture::display::DisplayTransform;
 use crate::picture::{Filter, Picture};
 use crate::plan::Plan;
 use crate::render::metering::Meter;
-use crate::render::radiosity::Radiosity;
-use crate::render::ray_tracing::{RayTracer, Shelf};
-use crate::render::scan_line::ScanLine;
-use crate::render::{Film, Fingerprint, Order, RenderError, Renderer, Watch};
+use crate::render::two_way::Shelf;
+use crate::render::{Film, Fingerprint, Made, Order, RENDERERS, Ready, RenderError, Task, Technique, Watch};
 use crate::scene::{Camera, MAX_SAMPLES, Prepared, Settings, View};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, FromArgMatches, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, FromArgMatches};
 use files::Destination;
 use saved::{Intermediate, Saved};
 use std::num::NonZeroUsize;
@@ -35,21 +33,6 @@ pub(super) const ROW: Row = Row {
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
 
-/// Who makes the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    /// All light: mirrors, glass, rough surfaces, soft shadows
-    RayTracing,
-    /// All light, with that of lamps followed through mirrors and glass first: caustics
-    TwoWay,
-    /// Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show
-    /// lights and ambient light only, and glass bends nothing
-    ScanLine,
-    /// Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are
-    /// not seen
-    Radiosity,
-}
-
 #[derive(Args, Debug)]
 struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
@@ -60,8 +43,8 @@ struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// Who makes the picture
-    #[arg(long, value_name = "RENDERER", value_enum, default_value_t = Kind::RayTracing)]
-    renderer: Kind,
+    #[arg(long, value_name = "RENDERER", value_parser = renderers(), default_value = RENDERERS[0].option)]
+    renderer: Technique,
     /// Columns, instead of those of the scene; alone, the rows follow
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
     width: Option<u32>,
@@ -186,34 +169,22 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         saved: None,
         comes_bit_by_bit: false,
     };
-    let ended = match arguments.renderer {
-        Kind::Radiosity => {
-            progress::stage("while solving for radiosity");
-            let settings = prepared.settings.into();
-            let solution = in_pool(arguments, || Radiosity::new(&prepared, &plan, &settings, None, &watch))?;
-            all.radiosity = Some(solution.report);
-            let scan_line = ScanLine::showing(&solution, &prepared, &plan)?;
-            scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by radiosity, {what}")));
-            all.stops = meter.stops(&scan_line, &prepared, &views[..1], &watch)?;
-            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
-        }
-        Kind::ScanLine => {
-            let scan_line = ScanLine::new(&prepared, &plan)?;
-            scan_line.left_out(&views[0]).iter().for_each(|what| warn(&format!("by scan line, {what}")));
-            all.stops = meter.stops(&scan_line, &prepared, &views[..1], &watch)?;
-            all.render(&mut |view, _, _| Ok(scan_line.render(view, &order, &watch)?))
-        }
-        Kind::RayTracing | Kind::TwoWay => {
-            if let (Some(state), Some(fingerprint)) = (&state, fingerprint) {
-                all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
-            }
-            let tracer = in_pool(arguments, || RayTracer::watched(&prepared, &plan, shelf.as_ref(), &watch))?;
-            all.radiosity = tracer.radiosity().map(|solution| solution.report);
-            if let Some(pixel) = arguments.pixel {
-                progress::stage("while sampling the pixel");
-                return pixel::explain(arguments, &tracer, &views[0], &order, pixel);
-            }
-            all.stops = meter.stops(&tracer, &prepared, &views[..1], &watch)?;
+    let row = arguments.renderer.row();
+    if let (true, Some(state), Some(fingerprint)) = (row.adds_samples, &state, fingerprint) {
+        all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
+    }
+    let task = Task { prepared: &prepared, plan: &plan, shelf: shelf.as_ref(), watch };
+    let Ready { renderer, radiosity } = in_pool(arguments, || arguments.renderer.prepare(&task))?;
+    all.radiosity = radiosity;
+    if let (Some(pixel), Made::BySamples(tracer)) = (arguments.pixel, &renderer) {
+        progress::stage("while sampling the pixel");
+        return pixel::explain(arguments, tracer, &views[0], &order, pixel);
+    }
+    renderer.any().left_out(&views[0]).iter().for_each(|what| warn(&format!("by {}, {what}", row.word)));
+    all.stops = meter.stops(renderer.any(), &prepared, &views[..1], &watch)?;
+    let ended = match &renderer {
+        Made::Whole(renderer) => all.render(&mut |view, _, _| Ok(renderer.render(view, &order, &watch)?)),
+        Made::BySamples(tracer) => {
             all.comes_bit_by_bit = true;
             all.render(&mut |view, film, checkpoints| {
                 let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
@@ -236,9 +207,7 @@ impl Arguments {
         settings.filter = self.filter.unwrap_or(settings.filter);
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.tolerance = self.tolerance.or(settings.tolerance);
-        settings.two_way |= self.renderer == Kind::TwoWay;
-        // Surfaces out of view send light, too.
-        settings.interreflection |= self.renderer == Kind::Radiosity;
+        (self.renderer.row().require)(settings);
     }
 
     /// How pictures are to be made. Where errors or the clock decide about samples, the scene does not.
@@ -292,31 +261,29 @@ impl Arguments {
 
     /// Refuses what a renderer does not know.
     fn check(&self) -> Result<(), Failure> {
+        let row = self.renderer.row();
         let given = [
             ("--error", self.error.is_some()),
             ("--seconds", self.seconds.is_some()),
-            // The light that surfaces send each other takes long, and can be gone on with.
-            ("--resume", self.resume.is_some() && self.renderer != Kind::Radiosity),
+            ("--resume", self.resume.is_some() && !row.solves),
             ("--pixel", self.pixel.is_some()),
             ("--denoise", self.denoise),
         ];
-        if self.light.is_some() && matches!(self.renderer, Kind::ScanLine | Kind::Radiosity) {
-            let message = "--light is of two-way ray tracing only";
-            return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
-        }
-        let word = match self.renderer {
-            Kind::RayTracing | Kind::TwoWay => return Ok(()),
-            Kind::ScanLine => "scan line",
-            Kind::Radiosity => "radiosity",
-        };
-        match given.iter().find(|(_, given)| *given) {
-            Some((name, _)) => {
-                let message = format!("{word} has no {name}: it takes all samples at once");
-                Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
+        let message = match given.iter().find(|(_, given)| *given) {
+            _ if self.light.is_some() && !row.follows_light => "--light is of two-way ray tracing only".to_owned(),
+            Some((name, _)) if !row.adds_samples => {
+                format!("{} has no {name}: it takes all samples at once", row.word)
             }
-            None => Ok(()),
-        }
+            _ => return Ok(()),
+        };
+        Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
     }
+}
+
+/// Reads the name of a renderer.
+fn renderers() -> impl TypedValueParser<Value = Technique> {
+    let values = RENDERERS.iter().map(|row| PossibleValue::new(row.option).help(row.help));
+    PossibleValuesParser::new(values).map(|option| Technique::of_option(&option).unwrap_or(RENDERERS[0].technique))
 }
 
 /// Makes something on as many threads as are asked for.

@@ -1,6 +1,6 @@
 //! Files from which an interrupted rendering goes on: its film, and beside it what was found before there was one.
 
-use super::{Arguments, Kind};
+use super::Arguments;
 use crate::cli::Failure;
 use crate::plan::{Plan, Stage};
 use crate::render::{Film, Fingerprint, Memo, Order, State, StateError};
@@ -87,9 +87,9 @@ impl Intermediate {
             name.push(ending);
             Some(PathBuf::from(name))
         };
-        let is_traced = matches!(arguments.renderer, Kind::RayTracing | Kind::TwoWay);
-        let is_followed = is_traced && arguments.light.is_none() && plan.needs(Stage::CaughtLight);
-        let is_solved = arguments.renderer == Kind::Radiosity || (is_traced && plan.needs(Stage::Radiosity));
+        let row = arguments.renderer.row();
+        let is_followed = row.follows_light && arguments.light.is_none() && plan.needs(Stage::CaughtLight);
+        let is_solved = row.solves || (row.adds_samples && plan.needs(Stage::Radiosity));
         Intermediate {
             light: is_followed.then(|| beside(".light")).flatten(),
             radiosity: is_solved.then(|| beside(".radiosity")).flatten(),

@@ -1,7 +1,7 @@
 //! Views that are rendered one after the other, each written and reported on.
 
+use super::Arguments;
 use super::saved::Saved;
-use super::{Arguments, Kind};
 use crate::cli::interrupts::{self, Keeping};
 use crate::cli::source::stem;
 use crate::cli::{Exit, Failure, progress, say, warn};
@@ -12,7 +12,6 @@ use crate::render::radiosity::Report;
 use crate::render::ray_tracing::Checkpoints;
 use crate::render::{Film, Rendering};
 use crate::scene::{Prepared, View};
-use clap::ValueEnum;
 use files::Destination;
 use serde_json::Value;
 use std::path::Path;
@@ -153,8 +152,7 @@ impl Views<'_> {
 
     /// What the files of a view tell of how it was made.
     fn provenance(&self, rendering: &Rendering) -> Provenance {
-        let renderer = self.arguments.renderer.to_possible_value();
-        let renderer = renderer.as_ref().map_or("", |value| value.get_name());
+        let renderer = self.arguments.renderer.row().option;
         let source = stem(&self.arguments.script);
         let seed = self.prepared.settings.seed;
         let provenance = rendering.provenance((source, renderer), seed, self.display, self.stops);
@@ -225,7 +223,7 @@ impl Views<'_> {
         }
         self.radiosity.iter().flat_map(Report::lines).for_each(|line| say!("{line}"));
         let Rendering { rays, spans, .. } = rendering;
-        if matches!(self.arguments.renderer, Kind::ScanLine | Kind::Radiosity) {
+        if !self.arguments.renderer.row().adds_samples {
             return say!("{} spans of surfaces, {} of shadow polygons", spans.surfaces, spans.shadows);
         }
         let spared = if rays.spared > 0 { format!(", {} more spared", rays.spared) } else { String::new() };

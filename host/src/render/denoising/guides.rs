@@ -1,7 +1,8 @@
 //! What guides the regression, of the samples of a film.
 
-use super::super::film::{Film, Tally};
+use super::super::film::Film;
 use super::super::guide::Guide;
+use super::super::tally::Tally;
 use super::plane::Plane;
 use super::regression::{GUIDES, Guides, MARGIN};
 use std::array::from_fn;

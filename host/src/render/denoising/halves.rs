@@ -1,7 +1,8 @@
 //! The samples of a film in two halves: what each pixel is in both, how noisy that is, and where one holds an outlier.
 
-use super::super::film::{Film, Tally};
+use super::super::film::Film;
 use super::super::guide::Guide;
+use super::super::tally::Tally;
 use super::plane::{Plane, bell, square};
 use super::regression::{Bands, MARGIN, Noisy};
 use crate::color::srgb::LUMINANCE;

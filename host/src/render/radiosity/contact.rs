@@ -1,10 +1,18 @@
 //! Where surfaces touch or pass through each other: elements end there, so that none is partly inside of something.
 
-use super::hierarchy::normal_and_area;
+use super::hierarchy::{Hierarchy, normal_and_area};
 use super::sight::Sight;
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use rayon::prelude::*;
+
+/// The longest edge of an element that is cut and from which another surface rises, in shortest ones.
+const NEAR_CREASES: f64 = 4.0;
+/// The longest edge of an element that is cut, in shortest ones: light changes quickly where surfaces meet.
+const NEAR_LINES: f64 = 2.0;
+/// As many lines are cut along while an element may still be divided into four, and at the most.
+const FEW_LINES: usize = 3;
+const MOST_LINES: usize = 12;
 
 /// Surfaces touch that are nearer than this, in diagonals of the scene.
 const TOUCHING: f64 = 1e-7;
@@ -243,6 +251,44 @@ fn fan(polygon: &[DVec3]) -> Vec<[DVec3; 3]> {
     let worst = |first: usize| about(first).map(shape).fold(f64::INFINITY, f64::min);
     let best = (0..count).max_by(|a, b| worst(*a).total_cmp(&worst(*b)).then(b.cmp(a))).unwrap_or(0);
     about(best).filter(|corners| normal_and_area(*corners).1 > 0.0).collect()
+}
+
+impl Hierarchy {
+    /// Divides patches so that no line leads through an element, where that can be had with elements as short as the
+    /// finest.
+    ///
+    /// - `finest`: a length.
+    pub(super) fn cut(&mut self, contacts: &Contacts, finest: f64) {
+        let on = |patch: &u32| contacts.on(self.patches[*patch as usize].triangle).to_vec();
+        let is_alone = |patch: &u32| self.nodes[self.node_of[*patch as usize] as usize].patch == *patch;
+        let alone = (0..self.patches.len() as u32).filter(is_alone);
+        let lined = alone.map(|patch| (self.node_of[patch as usize], on(&patch)));
+        let mut waiting: Vec<(u32, Vec<[DVec3; 2]>)> = lined.collect();
+        while let Some((place, mut lines)) = waiting.pop() {
+            let node = self.nodes[place as usize];
+            lines.retain(|line| contacts.crosses(line, &node.corners, node.normal));
+            let length = node.longest_edge();
+            let creases = contacts.creases(self.patches[node.patch as usize].triangle);
+            let is_at_crease = || creases.iter().any(|line| contacts.touches(line, &node.corners, node.normal));
+            if lines.is_empty() {
+                if length > NEAR_CREASES * finest && is_at_crease() {
+                    self.divide(place);
+                    waiting.extend(self.nodes[place as usize].children().map(|child| (child as u32, Vec::new())));
+                }
+                continue;
+            }
+            if length >= 2.0 * finest && (length > NEAR_LINES * finest || lines.len() > FEW_LINES) {
+                self.divide(place);
+                waiting.extend(self.nodes[place as usize].children().map(|child| (child as u32, lines.clone())));
+            } else if lines.len() <= MOST_LINES {
+                let parts = contacts.cut(node.corners, &lines);
+                if parts.len() > 1 {
+                    self.divide_into(place, &parts);
+                    self.nodes[place as usize].is_cut = true;
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Corners of elements: those that lie at the same place of a smooth surface are one.
 
-use super::hierarchy::{Hierarchy, NONE};
+use super::hierarchy::{Hierarchy, NONE, key};
 use crate::scene::Prepared;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -53,12 +53,6 @@ pub(super) struct Corners {
     pub(super) of: Vec<[u32; 3]>,
     /// Of each leaf, how alike normals must be.
     like: Vec<f64>,
-}
-
-/// A number for each point: equal points have one, others another.
-pub(super) fn key(point: DVec3) -> [u64; 3] {
-    // Adding 0 turns -0 into 0.
-    point.to_array().map(|x| (x + 0.0).to_bits())
 }
 
 impl Corners {

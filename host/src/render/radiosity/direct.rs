@@ -1,6 +1,5 @@
 //! Light that comes to elements straight from lights.
 
-use super::elements::Exitance;
 use super::hierarchy::{Node, Patch};
 use super::sight::Sight;
 use crate::color::Channels;
@@ -8,6 +7,16 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+
+/// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all combs: light that
+/// surfaces send beside what they reflect of lights and of each other, as what two-way ray tracing caught, times their
+/// reflectance.
+///
+/// Told the triangle, whether it is its outer side, and the point. It is asked at points next to the corners of elements
+/// and to the middles of their edges, from many threads, and elements are divided where it is not linear between them, down
+/// to the finest: what is smaller than [`Settings::finest`](super::Settings) is to be spread over that much before. Light
+/// of it that other surfaces send back is in the irradiance of the solution; it itself is not.
+pub type Exitance<'a> = &'a (dyn Fn(u32, bool, DVec3) -> Channels + Sync);
 
 /// How much shorter a ray to a triangle that emits is, so that it does not meet it.
 const SHORT: f64 = 1.0 - 1e-7;

@@ -1,23 +1,15 @@
 //! Elements with what they reflect, and the light that comes to them.
 
-use super::direct::{Around, Lit, bend, of_parts};
+use super::direct::{Around, Exitance, Lit, bend, of_parts};
 use super::hierarchy::{Hierarchy, Node, Patch, normal_and_area};
 use super::sight::Sight;
 use crate::color::Channels;
-use crate::illumination::optics::{Optics, Side, Sighting};
-use crate::illumination::texture::Place;
+use crate::render::world::mean_diffuse;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all combs: light that
-/// surfaces send beside what they reflect of lights and of each other, as what two-way ray tracing caught, times their
-/// reflectance.
-///
-/// Told the triangle, whether it is its outer side, and the point. It is asked at points next to the corners of elements
-/// and to the middles of their edges, from many threads, and elements are divided where it is not linear between them, down
-/// to the finest: what is smaller than [`Settings::finest`](super::Settings) is to be spread over that much before. Light
-/// of it that other surfaces send back is in the irradiance of the solution; it itself is not.
-pub type Exitance<'a> = &'a (dyn Fn(u32, bool, DVec3) -> Channels + Sync);
+/// Elements at the most.
+const MOST_ELEMENTS: usize = 2_000_000;
 
 /// Nodes with what is known of them.
 pub(super) struct Elements<'a> {
@@ -105,7 +97,7 @@ impl<'a> Elements<'a> {
             };
             let divided: Vec<u32> = (from..nodes.len()).filter(varies).map(|node| node as u32).collect();
             from = nodes.len();
-            if divided.is_empty() || from > super::MOST_ELEMENTS {
+            if divided.is_empty() || from > MOST_ELEMENTS {
                 break;
             }
             self.divide(sight, divided);
@@ -188,19 +180,4 @@ fn reflectance(sight: &Sight<'_>, patch: &Patch, ([a, b, c], middle): ([DVec3; 3
     let sides = [(b - a) * 0.5f64.sqrt(), (c - a) * 0.5f64.sqrt()];
     let place = optics.is_textured().then(|| prepared.place(triangle, weights, sides));
     mean_diffuse(optics, place.as_ref(), appearance.wavelengths.combs()).map(|part| part.clamp(0.0, 1.0))
-}
-
-/// The part of light that a material reflects diffusely at a place, in the mean over all combs of wavelengths.
-pub(in crate::render) fn mean_diffuse(optics: &Optics, place: Option<&Place>, combs: usize) -> Channels {
-    let mixture = place.map(|place| optics.mix(place));
-    let sum = (0..combs).fold(Channels::ZERO, |sum, comb| {
-        let painting = mixture.as_ref().map(|mixture| mixture.at(comb));
-        sum + diffuse(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()))
-    });
-    sum * (combs as f64).recip()
-}
-
-/// The part of light that a material reflects diffusely.
-pub(in crate::render) fn diffuse(optics: &Optics, comb: usize, painted: &[Channels]) -> Channels {
-    optics.diffuse(&Sighting { view: DVec3::Z, comb, side: Side::AIR, lane: 0, painted })
 }

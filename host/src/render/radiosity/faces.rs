@@ -1,8 +1,8 @@
 //! Light over face clusters: that of several of them that hang together, the more of each the nearer it is, so that no
 //! outline of one is seen.
 
-use super::corners::{Corners, key};
-use super::hierarchy::{Hierarchy, NONE, normal_and_area};
+use super::corners::Corners;
+use super::hierarchy::{Hierarchy, NONE, key, normal_and_area};
 use crate::color::Channels;
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;

@@ -4,8 +4,6 @@
 //! that a cluster receives may be spread over all of it. A smooth piece of a surface of many small triangles is one
 //! element: a cluster that is not divided, a face cluster.
 
-use super::contact::Contacts;
-use super::corners::key;
 use super::form_factor::Convex;
 use super::pieces::Pieces;
 use crate::color::Channels;
@@ -24,13 +22,6 @@ const FEWEST: usize = 4;
 const FACING: f64 = 0.35;
 /// Points that stand for a node where visibility is asked for.
 pub(super) const POINTS: usize = 4;
-/// As many lines are cut along while an element may still be divided into four, and at the most.
-const FEW_LINES: usize = 3;
-const MOST_LINES: usize = 12;
-/// The longest edge of an element that is cut, in shortest ones: light changes quickly where surfaces meet.
-const NEAR_LINES: f64 = 2.0;
-/// The longest edge of an element that is cut and from which another surface rises, in shortest ones.
-const NEAR_CREASES: f64 = 4.0;
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -269,48 +260,12 @@ impl Hierarchy {
         }
     }
 
-    fn divide_into(&mut self, node: u32, parts: &[[DVec3; 3]]) {
+    pub(super) fn divide_into(&mut self, node: u32, parts: &[[DVec3; 3]]) {
         let child = self.nodes.len() as u32;
         let parent = &mut self.nodes[node as usize];
         (parent.child, parent.children) = (child, parts.len() as u32);
         let Node { patch, is_dark, .. } = *parent;
         self.nodes.extend(parts.iter().map(|corners| Node { is_dark, ..Node::triangle(*corners, patch) }));
-    }
-
-    /// Divides patches so that no line leads through an element, where that can be had with elements as short as the
-    /// finest.
-    ///
-    /// - `finest`: a length.
-    pub(super) fn cut(&mut self, contacts: &Contacts, finest: f64) {
-        let on = |patch: &u32| contacts.on(self.patches[*patch as usize].triangle).to_vec();
-        let is_alone = |patch: &u32| self.nodes[self.node_of[*patch as usize] as usize].patch == *patch;
-        let alone = (0..self.patches.len() as u32).filter(is_alone);
-        let lined = alone.map(|patch| (self.node_of[patch as usize], on(&patch)));
-        let mut waiting: Vec<(u32, Vec<[DVec3; 2]>)> = lined.collect();
-        while let Some((place, mut lines)) = waiting.pop() {
-            let node = self.nodes[place as usize];
-            lines.retain(|line| contacts.crosses(line, &node.corners, node.normal));
-            let length = node.longest_edge();
-            let creases = contacts.creases(self.patches[node.patch as usize].triangle);
-            let is_at_crease = || creases.iter().any(|line| contacts.touches(line, &node.corners, node.normal));
-            if lines.is_empty() {
-                if length > NEAR_CREASES * finest && is_at_crease() {
-                    self.divide(place);
-                    waiting.extend(self.nodes[place as usize].children().map(|child| (child as u32, Vec::new())));
-                }
-                continue;
-            }
-            if length >= 2.0 * finest && (length > NEAR_LINES * finest || lines.len() > FEW_LINES) {
-                self.divide(place);
-                waiting.extend(self.nodes[place as usize].children().map(|child| (child as u32, lines.clone())));
-            } else if lines.len() <= MOST_LINES {
-                let parts = contacts.cut(node.corners, &lines);
-                if parts.len() > 1 {
-                    self.divide_into(place, &parts);
-                    self.nodes[place as usize].is_cut = true;
-                }
-            }
-        }
     }
 
     /// Leaves the dark out: what is left of nodes has the area of what is not dark.
@@ -449,6 +404,12 @@ fn representatives(part: &[u32], own: &[Node]) -> [[DVec3; 2]; POINTS] {
     let last = &own[part[part.len() - 1] as usize];
     found[next..].fill([last.middle, last.normal]);
     found
+}
+
+/// A number for each point: equal points have one, others another.
+pub(super) fn key(point: DVec3) -> [u64; 3] {
+    // Adding 0 turns -0 into 0.
+    point.to_array().map(|x| (x + 0.0).to_bits())
 }
 
 #[cfg(test)]

@@ -34,13 +34,12 @@ mod surface;
 mod tests;
 mod visible;
 
-pub use elements::Exitance;
-pub(in crate::render) use elements::{diffuse, mean_diffuse};
+pub use direct::Exitance;
 pub use report::Report;
-pub use solver::Unsolvable;
-pub use surface::{Division, Part};
+pub use surface::Division;
 
-use super::ray_tracing::world::World;
+use super::indirect::{IndirectLight, Part};
+use super::world::World;
 use super::{Amount, RenderError, Watch};
 use crate::color::Channels;
 use crate::plan::{Plan, Stage};
@@ -57,8 +56,6 @@ use solver::solve;
 use std::time::Instant;
 use surface::SurfaceLight;
 
-/// Elements at the most.
-const MOST_ELEMENTS: usize = 2_000_000;
 /// How often links are looked at with the light that was found.
 const ROUNDS: u64 = 3;
 /// How often light is followed once more as each element sees it.
@@ -112,10 +109,12 @@ impl Radiosity {
     ///
     /// When it is stopped, nothing is divided any more and the light is that of the elements as they are.
     ///
+    /// - `world`: of which the plan is.
+    ///
     /// # Errors
-    /// [`RenderError`], when the octree cannot be built, a material is impossible, or light grows without end.
+    /// [`RenderError`], when light grows without end.
     pub fn new(
-        prepared: &Prepared,
+        world: &World<'_>,
         plan: &Plan,
         settings: &Settings,
         exitance: Option<Exitance<'_>>,
@@ -123,8 +122,8 @@ impl Radiosity {
     ) -> Result<Radiosity, RenderError> {
         let start = Instant::now();
         let stopped = || watch.is_cancelled();
-        let world = World::new(prepared, plan)?;
-        let sight = Sight::new(&world, watch.memo);
+        let prepared = world.prepared();
+        let sight = Sight::new(world, watch.memo);
         let shadows = plan.needs(Stage::Shadows);
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
@@ -177,19 +176,17 @@ impl Radiosity {
         Ok(Radiosity { light, report })
     }
 
-    /// Irradiance at a place of a side of a triangle, W/m²: in bands, or in spectra the means over eight parts of the
-    /// wavelengths.
-    ///
-    /// - `outside`: whether it is the outer side. `weights`: of the corners, each 0..=1, their sum 1.
-    pub fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: Part) -> Channels {
-        self.light.at(triangle, outside, weights, part)
-    }
-
     /// How a side of a triangle is divided into elements; none where no light comes.
     ///
-    /// - `outside`: as in [`Radiosity::irradiance`].
+    /// - `outside`: whether it is the outer side.
     pub fn division(&self, triangle: u32, outside: bool) -> Option<Division> {
         self.light.division(triangle, outside)
+    }
+}
+
+impl IndirectLight for Radiosity {
+    fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: Part) -> Channels {
+        self.light.at(triangle, outside, weights, part)
     }
 }
 

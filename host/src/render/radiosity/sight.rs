@@ -1,12 +1,12 @@
 //! What elements see: whether something is between two points, and what is met in all directions.
 
-use super::super::ray_tracing::world::World;
 use super::hierarchy::{Node, Patch};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::cosine_hemisphere;
 use crate::numeric::sequence::Sequence;
 use crate::render::Memo;
+use crate::render::world::World;
 use glam::DVec3;
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -7,6 +7,7 @@
 
 use super::exchange::Exchange;
 use crate::color::{Channels, LANES};
+use crate::render::Unsolvable;
 
 /// Aggregates of the coarse level, and where a rough solution will do.
 const AGGREGATES: usize = 24;
@@ -26,22 +27,6 @@ pub(super) struct Solved {
     pub(super) steps: u32,
     /// A bound of the error of any irradiance, as a part of the greatest.
     pub(super) error: f64,
-}
-
-/// Why there is no solution.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Unsolvable {
-    /// Light that nothing takes away.
-    #[error("light comes to surfaces that reflect all of it and from which none escapes: it would grow without end")]
-    NoLoss,
-    /// A value that is not finite, or a fraction that is none.
-    #[error("reflectance {reflectance} or exitance {exitance} is out of range")]
-    Value {
-        /// The greatest reflectance.
-        reflectance: f64,
-        /// The greatest exitance, W/m².
-        exitance: f64,
-    },
 }
 
 /// What is to be solved.

@@ -8,17 +8,9 @@ use super::elements::Elements;
 use super::faces;
 use super::hierarchy::{Hierarchy, NONE};
 use crate::color::Channels;
+use crate::render::indirect::Part;
 use crate::scene::Prepared;
 use glam::DVec3;
-
-/// Which part of the light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// All of it.
-    All,
-    /// Only what other surfaces reflect.
-    Indirect,
-}
 
 /// Irradiance over all surfaces.
 #[derive(Clone, Debug, Default)]

@@ -6,6 +6,7 @@ use crate::color::Color;
 use crate::illumination::material::Classic;
 use crate::illumination::{Light, Material, Paint};
 use crate::mesh::Mesh;
+use crate::render::Unsolvable;
 use crate::scene::{Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
@@ -37,7 +38,8 @@ fn prepared(objects: Vec<Object>, lights: Vec<Light>) -> Prepared {
 
 fn solved(prepared: &Prepared, settings: &Settings, exitance: Option<Exitance<'_>>) -> Radiosity {
     let plan = Plan::new(prepared, &prepared.view());
-    Radiosity::new(prepared, &plan, settings, exitance, &Watch::NOBODY).expect("a solution")
+    Radiosity::new(&World::new(prepared, &plan).expect("a world"), &plan, settings, exitance, &Watch::NOBODY)
+        .expect("a solution")
 }
 
 fn coarse() -> Settings {
@@ -109,7 +111,7 @@ fn light_that_nothing_takes_away_is_refused_and_no_light_is_none() {
     let plan = Plan::new(&mirror, &mirror.view());
     let of = |exitance: f64| {
         let inside = move |_: u32, _: bool, _: DVec3| Channels::splat(exitance);
-        Radiosity::new(&mirror, &plan, &coarse(), Some(&inside), &Watch::NOBODY)
+        Radiosity::new(&World::new(&mirror, &plan).expect("a world"), &plan, &coarse(), Some(&inside), &Watch::NOBODY)
     };
     assert!(matches!(of(1.0), Err(RenderError::Radiosity(Unsolvable::NoLoss))));
     let dark = of(0.0).expect("no light is an answer");
@@ -328,7 +330,8 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
         cancelled.store(true, Ordering::Relaxed);
     };
     let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
-    let stopped = Radiosity::new(&room, &plan, &coarse(), None, &watch).expect("a solution");
+    let stopped = Radiosity::new(&World::new(&room, &plan).expect("a world"), &plan, &coarse(), None, &watch)
+        .expect("a solution");
     assert!(told.load(Ordering::Relaxed) > 0);
     let whole = solved(&room, &coarse(), None);
     assert!(stopped.report.links < whole.report.links);
@@ -337,7 +340,7 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
 
 #[test]
 fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
-    use crate::render::ray_tracing::RayTracer;
+    use crate::render::{Task, ray_tracer_watched};
     use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
     let mut room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
     (room.settings.radiosity, room.settings.patch_error) = (true, 0.02);
@@ -346,9 +349,9 @@ fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
         let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
         let progress = |amount: Amount| told.store(amount.done as u64, Ordering::Relaxed);
         let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
-        let tracer = RayTracer::watched(&room, &plan, None, &watch).expect("a tracer");
+        let (_, report) = ray_tracer_watched(&Task { watch, ..Task::new(&room, &plan) }).expect("a tracer");
         assert!(told.load(Ordering::Relaxed) > 0);
-        tracer.radiosity().expect("a solution").report.links
+        report.expect("a solution").links
     };
     assert!(links(true) < links(false));
 }

@@ -1,7 +1,8 @@
 //! What sees what: which patches light can come to, and how much of what elements see exchanges light.
 
 use super::contact::Contacts;
-use super::elements::{Elements, Exitance};
+use super::direct::Exitance;
+use super::elements::Elements;
 use super::exchange::Looks;
 use super::hierarchy::{Hierarchy, NONE, Node, Patch};
 use super::pieces::Pieces;

@@ -2,11 +2,13 @@
 //! again anywhere.
 
 use super::tracer::Work;
-use super::two_way::{Balance, CaughtLight};
 use super::{Log, RayTracer};
 use crate::memory;
 use crate::picture::PictureError;
-use crate::render::film::{Film, Row, SHARING};
+use crate::render::film::{Film, Row};
+use crate::render::state::after;
+use crate::render::tally::SHARING;
+use crate::render::two_way::{Balance, CaughtLight};
 use crate::render::{Amount, Order, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch, denoising};
 use crate::scene::View;
 use rayon::prelude::*;
@@ -16,22 +18,12 @@ use std::time::{Duration, Instant};
 
 /// Samples after the second pass, which are enough to tell the error of a pixel.
 const FIRST_DOUBLED: u32 = 8;
-/// Time between checkpoints at least, in times that writing one took.
-const LEAST_WORK: u32 = 10;
-
 /// Keeps a film from time to time while samples are added.
 pub struct Checkpoints<'a> {
     /// Time from one to the next.
     pub every: Duration,
     /// Keeps the film as it is. What goes wrong is told of, and the work goes on.
     pub keep: &'a mut dyn FnMut(&Film) -> Result<(), StateError>,
-}
-
-/// When the next checkpoint is due after one that began at a time and is written now: where writing takes long, later, so
-/// that most of the time goes into the work.
-pub(super) fn after(every: Duration, begin: Instant) -> Instant {
-    let now = Instant::now();
-    now + every.max((now - begin) * LEAST_WORK)
 }
 
 /// The threads that an order asks for.

@@ -7,6 +7,7 @@ use crate::color::{Beyond, Color, Spectrum, shipped};
 use crate::illumination::Light;
 use crate::illumination::material::{Body, Index, Material, Transparent};
 use crate::numeric::bounds::Bounds;
+use crate::render::two_way::Balance;
 use crate::scene::{Camera, Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec3};

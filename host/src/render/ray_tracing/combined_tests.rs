@@ -3,6 +3,7 @@
 use super::tests::{diffuse, mirror, scene, trace};
 use super::two_way_tests::{ball, block, glass, lamp, two_way};
 use super::*;
+use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Scene};
 use glam::DVec3;
 
@@ -57,7 +58,7 @@ fn a_room_with_a_mirror_for_a_wall_is_as_bright_as_one_twice_as_long() {
 fn classes(scene: &Scene) -> [f64; 5] {
     let prepared = Prepared::new(scene).expect("sound");
     let plan = Plan::new(&prepared, &to_the_left());
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let order = Order::of(&scene.settings);
     let film = Film::new(order.width, order.height).expect("small").with_classes();
     let rendering = tracer.go_on(film, &to_the_left(), &order, &Watch::NOBODY, None).expect("a picture");

@@ -1,14 +1,13 @@
 //! Light that comes to an element from lights, without a way in between.
 
 use super::draws::Purpose;
-use super::light_buffer::Way;
-use super::tracer::counted;
-use super::world::{Encounter, World};
+use super::encounter::{Encounter, counted};
 use crate::color::Channels;
 use crate::illumination::light::Beam;
 use crate::illumination::optics::Which;
 use crate::numeric::ray::Ray;
 use crate::render::RayCounts;
+use crate::render::world::{Way, World};
 
 /// How much shorter a ray to a triangle that emits is, so that it does not meet it.
 const SHORT: f64 = 1.0 - 1e-7;

@@ -1,14 +1,15 @@
 //! Facts about hits that are led on to exact surfaces: closed forms, whatever the triangles are like.
 
 use super::tests::{diffuse, mirror, object, scene, trace};
-use super::world::{Found, Met};
 use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
 use crate::illumination::texture::{Laying, Motif, Pattern};
 use crate::illumination::{Light, Paint};
 use crate::numeric::ray::Ray;
-use crate::render::eye::{Cone, Sight};
+use crate::render::ray_tracer;
+use crate::render::world::{Cone, Sight};
+use crate::render::world::{Found, Met};
 use crate::scene::{Camera, Composite, Object, Operation, Scene, Shape};
 use crate::solid::Primitive;
 use crate::surface::{Surface, teapot};
@@ -29,7 +30,7 @@ fn met(objects: Vec<Object>, mut tell: impl FnMut(&Ray, &Found<'_>)) -> usize {
     let prepared = Prepared::new(&scene(objects, Vec::new(), 8)).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::new(&prepared, &prepared.view());
     assert!(plan.needs(Stage::ExactSurfaces));
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let (center, reach) = (prepared.bounds.center(), prepared.bounds.diagonal());
     let mut count = 0;
     for axis in [DVec3::Z, DVec3::new(0.3, 0.8, -0.5), DVec3::new(-0.9, 0.1, 0.2), DVec3::NEG_Y].map(DVec3::normalize) {

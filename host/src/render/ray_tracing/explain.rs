@@ -1,7 +1,7 @@
 //! Tells the way of a sample, and every term that it adds.
 
-use super::world::Found;
 use crate::color::Channels;
+use crate::render::world::Found;
 use crate::scene::Prepared;
 use glam::DVec3;
 use serde::Serialize;

@@ -7,12 +7,9 @@
 mod accumulation;
 mod direct;
 mod draws;
+mod encounter;
 mod explain;
-mod light_buffer;
-mod media;
 mod tracer;
-mod two_way;
-pub(super) mod world;
 
 #[cfg(test)]
 mod caustic_tests;
@@ -46,28 +43,26 @@ mod tests;
 pub use accumulation::{Accumulated, Checkpoints};
 pub use explain::Note;
 pub use tracer::ENERGY_CUTOFF;
-pub use two_way::{Balance, Shelf, widest_disc};
 
-use super::eye::{AHEAD, Eye};
-use super::film::{ByClass, Film, SHARING, Sample};
-use super::radiosity::{Exitance, Radiosity};
+use super::film::Film;
+use super::indirect::IndirectLight;
+use super::tally::{ByClass, SHARING, Sample};
+use super::two_way::{CaughtLight, Shelf, TwoWay};
+use super::world::{AHEAD, Eye, Media, World};
 use super::{Order, RenderError, Renderer, Rendering, Watch};
-use crate::octree::Octree;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use draws::{Draws, Purpose};
 use explain::Log;
 use glam::DVec3;
-use media::Media;
 use tracer::{First, Tracer, Work};
-use two_way::{CaughtLight, TwoWay};
-use world::World;
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
     plan: &'a Plan,
     world: World<'a>,
     two_way: Option<TwoWay<'a>>,
+    indirect: Option<Box<dyn IndirectLight>>,
 }
 
 /// One sample of a pixel, explained.
@@ -84,57 +79,34 @@ pub struct Explanation {
 }
 
 impl<'a> RayTracer<'a> {
-    /// Builds the octree over the objects that the plan keeps, and makes materials and lights ready.
+    /// Takes up a world, and looks where the light of lamps goes if the plan follows it.
     ///
-    /// # Errors
-    /// [`RenderError::Octree`], [`RenderError::Material`].
-    pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
-        RayTracer::watched(prepared, plan, None, &Watch::NOBODY)
-    }
-
-    /// As [`RayTracer::new`], watched while radiosity is solved for, where the plan needs it.
-    ///
+    /// - `plan`: of the world. Where it needs radiosity, the light of a solution is to be given by [`RayTracer::with_indirect`].
     /// - `shelf`: where caught light is kept beyond this tracer; nowhere without one.
-    ///
-    /// When it is stopped, the light that surfaces send each other is known coarsely.
-    ///
-    /// # Errors
-    /// As [`RayTracer::new`], and [`RenderError::Radiosity`].
-    pub fn watched(
-        prepared: &'a Prepared,
-        plan: &'a Plan,
-        shelf: Option<&'a Shelf>,
-        watch: &Watch<'_>,
-    ) -> Result<RayTracer<'a>, RenderError> {
-        (watch.stage)("while building the octree");
-        let mut world = World::new(prepared, plan)?;
-        (watch.stage)("while looking where light goes");
+    pub fn new(world: World<'a>, plan: &'a Plan, shelf: Option<&'a Shelf>) -> RayTracer<'a> {
         let keeps = |object| plan.keeps_object(object);
         let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps, shelf)).flatten();
-        if plan.needs(Stage::Radiosity) {
-            (watch.stage)("while solving for radiosity");
-            let caught = two_way.as_ref().and_then(|two_way| two_way.caught(&world, 0, watch));
-            let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
-            let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
-            let solution = Radiosity::new(prepared, plan, &prepared.settings.into(), exitance, watch)?;
-            world.indirect = Some(solution);
-        }
-        Ok(RayTracer { plan, world, two_way })
+        RayTracer { plan, world, two_way, indirect: None }
+    }
+
+    /// Reads light that diffuse surfaces send each other from there.
+    pub fn with_indirect(self, indirect: Box<dyn IndirectLight>) -> RayTracer<'a> {
+        RayTracer { indirect: Some(indirect), ..self }
+    }
+
+    /// The world.
+    pub fn world(&self) -> &World<'a> {
+        &self.world
+    }
+
+    /// The light of lamps that was followed, as the first pass caught it; none if none is followed, or if it was stopped.
+    pub(super) fn caught(&self, watch: &Watch<'_>) -> Option<CaughtLight<'_>> {
+        self.two_way.as_ref().and_then(|two_way| two_way.caught(&self.world, 0, watch))
     }
 
     /// The scene.
     pub fn prepared(&self) -> &Prepared {
         self.world.appearance.prepared
-    }
-
-    /// The light that diffuse surfaces send each other, if it was found before.
-    pub fn radiosity(&self) -> Option<&Radiosity> {
-        self.world.indirect.as_ref()
-    }
-
-    /// The octree, if the plan needs one.
-    pub fn octree(&self) -> Option<&Octree> {
-        self.world.octree.as_ref()
     }
 
     fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>, eye: &Eye, guides: bool) -> Tracer<'b> {
@@ -146,6 +118,7 @@ impl<'a> RayTracer<'a> {
             depth,
             self.plan.needs(Stage::Shadows),
             (self.two_way.is_some(), caught),
+            self.indirect.as_deref(),
             around,
             guides,
         )
@@ -235,6 +208,10 @@ impl<'a> RayTracer<'a> {
 impl Renderer for RayTracer<'_> {
     fn name(&self) -> &'static str {
         "ray tracing"
+    }
+
+    fn left_out(&self, _: &View) -> Vec<&'static str> {
+        Vec::new()
     }
 
     fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {

@@ -6,6 +6,8 @@ use crate::color::Color;
 use crate::database::{Kind, Store};
 use crate::illumination::Light;
 use crate::picture::Picture;
+use crate::render::two_way::Balance;
+use crate::render::{Task, ray_tracer_watched};
 use crate::scene::Scene;
 use glam::DVec3;
 use std::path::Path;
@@ -24,7 +26,8 @@ fn picture(scene: &Scene, path: Option<&Path>) -> (Picture, Balance) {
     let prepared = Prepared::new(scene).expect("sound");
     let plan = Plan::new(&prepared, &from_below());
     let shelf = path.map(|path| Shelf::new(path, scene, &prepared, Duration::from_secs(60), true).expect("a database"));
-    let tracer = RayTracer::watched(&prepared, &plan, shelf.as_ref(), &Watch::NOBODY).expect("a tracer");
+    let tracer =
+        ray_tracer_watched(&Task { shelf: shelf.as_ref(), ..Task::new(&prepared, &plan) }).expect("a tracer").0;
     let rendering = tracer.render(&from_below(), &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture");
     (rendering.picture, rendering.balance.expect("light was caught"))
 }

@@ -6,6 +6,7 @@ use crate::illumination::Paint;
 use crate::illumination::material::Classic;
 use crate::illumination::{Bands, Light, Material};
 use crate::picture::{Operator, compose, difference};
+use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Projection, Scene, Settings, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3, DVec4};
@@ -46,7 +47,7 @@ pub(super) fn trace(scene: &Scene, view: Option<View>, everything: bool, threads
     let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let view = view.unwrap_or(prepared.view());
     let plan = if everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let order = Order { threads: NonZeroUsize::new(threads), ..Order::of(&scene.settings) };
     tracer.render(&view, &order, &Watch::NOBODY).expect("a picture")
 }
@@ -390,7 +391,7 @@ fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
     let scene = still_life();
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::new(&prepared, &prepared.view());
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let (cancelled, rows) = (AtomicBool::new(false), AtomicU32::new(0));
     let watch = Watch {
         cancelled: &cancelled,
@@ -416,7 +417,7 @@ fn degenerate_views_are_errors() {
     let scene = still_life();
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::new(&prepared, &prepared.view());
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let view = View::Projection(Projection { to_clip: DMat4::ZERO, depth_clipping: true });
     let result = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY);
     assert!(matches!(result, Err(RenderError::View)));
@@ -429,7 +430,7 @@ fn a_matte_over_the_background_is_the_picture() {
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let [picture, matte] = [false, true].map(|matte| {
         let order = Order { matte, ..Order::of(&scene.settings) };
         tracer.render(&view, &order, &Watch::NOBODY).expect("a picture").picture

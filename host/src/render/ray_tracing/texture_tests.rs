@@ -8,6 +8,7 @@ use crate::illumination::material::Classic;
 use crate::illumination::texture::{Content, Image, Laying, Motif, Pattern, Relief};
 use crate::illumination::{Light, Material, Paint};
 use crate::picture::difference;
+use crate::render::ray_tracer;
 use crate::scene::{Camera, Scene, Shape};
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
@@ -101,7 +102,7 @@ fn what_a_curtain_of_a_pattern_lets_through_falls_on_the_floor() {
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = from_above(1.0);
     let plan = Plan::new(&prepared, &view);
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let picture = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture").picture;
     for (x, square) in [(16, 0.0), (48, 1.0f32)] {
         // Light goes through the curtain down and up again.

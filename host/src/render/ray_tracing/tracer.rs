@@ -2,16 +2,16 @@
 
 use super::direct::Direct;
 use super::draws::{Draws, Purpose};
+use super::encounter::{Encounter, counted};
 use super::explain::{Log, Note};
-use super::media::Media;
-use super::two_way::CaughtLight;
-use super::world::{Encounter, Found, Met, World};
 use crate::color::Channels;
 use crate::color::srgb::LUMINANCE;
 use crate::illumination::light::Source;
 use crate::illumination::optics::{Among, Onward, Sighting};
 use crate::numeric::ray::Ray;
-use crate::render::eye::{Cone, Sight};
+use crate::render::indirect::{IndirectLight, Part};
+use crate::render::two_way::CaughtLight;
+use crate::render::world::{Cone, Found, Media, Met, Sight, World, diffuse};
 use crate::render::{Class, RayCounts};
 use glam::DVec3;
 
@@ -175,6 +175,8 @@ pub(super) struct Tracer<'a> {
     caustics: Caustics,
     /// Light that was caught on its way from lamps.
     caught: Option<&'a CaughtLight<'a>>,
+    /// Light that diffuse surfaces send each other, if it is known already.
+    indirect: Option<&'a dyn IndirectLight>,
     /// Whether there is light that is not followed from where it comes from.
     has_others: bool,
     /// What the eye is in.
@@ -197,12 +199,14 @@ enum Caustics {
 impl<'a> Tracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
     /// - `catches`: whether light of lamps was followed; `caught` is what was caught. `around`: what the eye is in.
+    /// - `indirect`: light that diffuse surfaces send each other, if it is known already.
     /// - `guides`: whether samples tell what guides a denoiser.
     pub(super) fn new(
         world: &'a World<'a>,
         depth: u32,
         shadows: bool,
         (catches, caught): (bool, Option<&'a CaughtLight<'a>>),
+        indirect: Option<&'a dyn IndirectLight>,
         around: Media,
         guides: bool,
     ) -> Tracer<'a> {
@@ -216,7 +220,7 @@ impl<'a> Tracer<'a> {
         let has_others =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.is_caught());
         let direct = Direct::new(world, shadows, settings.light_samples.max(1));
-        Tracer { world, direct, depth, caustics, caught, has_others, around, guides }
+        Tracer { world, direct, depth, caustics, caught, indirect, has_others, around, guides }
     }
 
     /// The radiance that arrives along a line of sight.
@@ -349,7 +353,7 @@ impl<'a> Tracer<'a> {
             seen.add(Class::Indirect, radiance);
             log.note(|| Note::term(leg.depth, "ambient light", radiance));
         }
-        if let Some(radiance) = self.world.indirect(found, comb).filter(|_| !leg.is_known) {
+        if let Some(radiance) = self.indirect(found, comb).filter(|_| !leg.is_known) {
             seen.add(Class::Indirect, leg.passed * radiance);
             log.note(|| Note::term(leg.depth, "light of other surfaces", leg.passed * radiance));
         }
@@ -408,6 +412,15 @@ impl<'a> Tracer<'a> {
                 waiting.extend(drawn.and_then(|onward| self.onward(&leg, &encounter, onward, 0)));
             }
         }
+    }
+
+    /// Radiance of an element by light of other diffuse ones, as far as it is known already.
+    fn indirect(&self, found: &Found<'_>, comb: usize) -> Option<Channels> {
+        let indirect = self.indirect.filter(|_| found.optics.is_diffuse())?;
+        let corners = self.world.appearance.prepared.corners(found.triangle);
+        let weights = crate::numeric::triangle::weights(corners, found.element.position);
+        let irradiance = indirect.irradiance(found.triangle, found.element.outside, weights, Part::Indirect);
+        Some(diffuse(found.optics, comb, found.painted()) * irradiance * std::f64::consts::FRAC_1_PI)
     }
 
     /// How much a light counts that a leg meets.
@@ -524,18 +537,4 @@ fn survived(passed: Channels, number: u32, draws: &Draws) -> Option<Channels> {
     }
     let survival = most / ENERGY_CUTOFF;
     (most > 0.0 && draws.leg(number, Purpose::Survival, 0)[0] < survival).then(|| passed * survival.recip())
-}
-
-/// How much a light counts that a leg of a density meets: the rest is what its own samples bring.
-///
-/// # Source
-/// Veach and Guibas 1995, the power heuristic.
-pub(super) fn counted(leg: Option<f64>, light: f64) -> f64 {
-    match leg {
-        None => 1.0,
-        Some(density) => {
-            let ratio = light / density;
-            if ratio.is_finite() { 1.0 / (1.0 + ratio * ratio) } else { 0.0 }
-        }
-    }
 }

@@ -4,6 +4,7 @@ use super::tests::{diffuse, scene};
 use super::two_way_tests::{ball, block, glass, lamp};
 use super::*;
 use crate::color::srgb::LUMINANCE;
+use crate::render::ray_tracer;
 use crate::scene::{Camera, Scene};
 
 /// A glass ball over a plane: its caustic fills a third of the picture.
@@ -27,7 +28,7 @@ fn renderings(scene: &Scene, target: Option<f64>) -> Vec<Rendering> {
         scene.settings.seed = seed;
         let prepared = Prepared::new(&scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());
-        let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+        let tracer = ray_tracer(&prepared, &plan).expect("an octree");
         let order = Order { target, ..Order::of(&scene.settings) };
         tracer.render(&prepared.view(), &order, &Watch::NOBODY).expect("a picture")
     };

@@ -9,6 +9,7 @@ use crate::illumination::Light;
 use crate::illumination::light::Patch;
 use crate::illumination::material::{Body, Index, Transparent};
 use crate::picture::difference;
+use crate::render::two_way::Balance;
 use crate::scene::{Composite, Object, Operation, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};

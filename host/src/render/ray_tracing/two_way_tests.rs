@@ -7,6 +7,7 @@ use crate::illumination::light::Patch;
 use crate::illumination::material::{Body, Index, Material, Transparent};
 use crate::illumination::{Bands, Light};
 use crate::picture::difference;
+use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
@@ -44,7 +45,7 @@ pub(super) fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rend
     let view = view.unwrap_or(prepared.view());
     let plan = Plan::new(&prepared, &view);
     assert!(plan.needs(Stage::CaughtLight));
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let order = Order { threads: NonZeroUsize::new(threads), ..Order::of(&scene.settings) };
     let rendering = tracer.render(&view, &order, &Watch::NOBODY).expect("a picture");
     if let Some(balance) = &rendering.balance {
@@ -179,7 +180,7 @@ fn classes_of_light_add_up_and_are_the_same_by_both_ways_of_finding_it() {
     let classes = |scene: &Scene| {
         let prepared = Prepared::new(scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());
-        let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+        let tracer = ray_tracer(&prepared, &plan).expect("an octree");
         let order = Order::of(&scene.settings);
         let film = Film::new(16, 16).expect("small").with_classes();
         let film = tracer.go_on(film, &prepared.view(), &order, &Watch::NOBODY, None).expect("a picture").film;
@@ -271,11 +272,11 @@ fn a_second_view_takes_the_light_that_was_caught_for_the_first() {
     (scene.settings.samples, scene.settings.photons, scene.settings.two_way) = (2, 5_000, true);
     let prepared = Prepared::new(&scene).expect("sound");
     let plan = Plan::new(&prepared, &prepared.view());
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let order = Order::of(&scene.settings);
     let render = |view: &View| tracer.render(view, &order, &Watch::NOBODY).expect("a picture").picture;
     let (first, above) = (render(&prepared.view()), render(&from_above(3.0)));
-    let anew = RayTracer::new(&prepared, &plan).expect("an octree");
+    let anew = ray_tracer(&prepared, &plan).expect("an octree");
     let other = anew.render(&from_above(3.0), &order, &Watch::NOBODY).expect("a picture").picture;
     assert_eq!(difference(&above, &other).expect("alike").rmse, 0.0);
     assert!(first == render(&prepared.view()));

@@ -5,7 +5,7 @@
 //! neighbours share cancel out; of a closed body only its silhouette is left, counted twice. So open, badly oriented and
 //! branching meshes need no care of their own.
 
-use super::Light;
+use super::lamp::LightPosition;
 use super::screen::Viewpoint;
 use crate::scene::Prepared;
 use glam::DVec3;
@@ -107,7 +107,7 @@ impl<'a> Casters<'a> {
 
     /// For each triangle of the scene, on which side of it a light is: 1 outside, -1 inside, 0 for one that is lit edge on
     /// or throws no shadow.
-    pub(super) fn facing(&self, light: &Light) -> Vec<i8> {
+    pub(super) fn facing(&self, light: &LightPosition) -> Vec<i8> {
         let mut facing = vec![0i8; self.prepared.triangles.len()];
         let side = |triangle: usize| {
             let [a, b, c] = self.prepared.corners(triangle as u32);
@@ -136,12 +136,12 @@ impl<'a> Casters<'a> {
     }
 
     /// The point from which samples are counted, if there is one: the eye itself, or far beyond everything.
-    pub(super) fn start(&self, light: &Light, viewpoint: Viewpoint) -> Option<DVec3> {
+    pub(super) fn start(&self, light: &LightPosition, viewpoint: Viewpoint) -> Option<DVec3> {
         match (viewpoint, light) {
             (Viewpoint::At(eye), _) => Some(eye),
             // Seen from infinitely far away, light from infinitely far away comes from elsewhere.
-            (Viewpoint::Towards(_), Light::Direction(_)) => None,
-            (Viewpoint::Towards(direction), Light::Point(at)) => {
+            (Viewpoint::Towards(_), LightPosition::Direction(_)) => None,
+            (Viewpoint::Towards(direction), LightPosition::Point(at)) => {
                 let far = self.prepared.bounds.diagonal() + (*at - self.prepared.bounds.center()).length();
                 Some(*at + direction * (4.0 * far))
             }

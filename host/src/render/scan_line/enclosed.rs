@@ -5,8 +5,8 @@
 //! across that axis, whose results cancel out between neighbours whatever the rounding, so that the sum is always a whole and
 //! consistent number.
 
-use super::Light;
 use super::casters::{Casters, Silhouette};
+use super::lamp::LightPosition;
 use glam::{DVec2, DVec3};
 
 /// Cells along each side of the grid in which what may be met is sorted, at the most.
@@ -15,7 +15,7 @@ const MOST_CELLS: f64 = 192.0;
 /// The shadow volumes of one light.
 pub(super) struct Enclosed<'a> {
     casters: &'a Casters<'a>,
-    light: Light,
+    light: LightPosition,
     silhouettes: &'a [Silhouette],
     facing: &'a [i8],
     /// The axis of the line, and the two across.
@@ -44,17 +44,17 @@ impl<'a> Enclosed<'a> {
     /// - `groups`: how many groups of casters there are.
     pub(super) fn new(
         casters: &'a Casters<'a>,
-        light: Light,
+        light: LightPosition,
         facing: &'a [i8],
         silhouettes: &'a [Silhouette],
         groups: usize,
     ) -> Enclosed<'a> {
         let offset = match light {
-            Light::Point(at) => {
+            LightPosition::Point(at) => {
                 (at - casters.prepared.bounds.center())
                     / casters.prepared.bounds.size().max(DVec3::splat(f64::MIN_POSITIVE))
             }
-            Light::Direction(towards) => towards,
+            LightPosition::Direction(towards) => towards,
         };
         // Across the light, so that volumes are wide in the plane.
         let up = (0..3).min_by(|a, b| offset[*a].abs().total_cmp(&offset[*b].abs())).unwrap_or(2);
@@ -81,15 +81,15 @@ impl<'a> Enclosed<'a> {
     /// Away from the light at a vertex.
     fn away(&self, vertex: DVec3) -> DVec3 {
         match self.light {
-            Light::Point(at) => vertex - self.turned(at),
-            Light::Direction(towards) => -self.turned(towards),
+            LightPosition::Point(at) => vertex - self.turned(at),
+            LightPosition::Direction(towards) => -self.turned(towards),
         }
     }
 
     /// What is infinitely far up is in the volumes of the triangles above the light.
     fn above(&self, groups: usize) -> Vec<i32> {
         let mut counts = vec![0; groups];
-        if let Light::Point(at) = self.light {
+        if let LightPosition::Point(at) = self.light {
             let at = self.turned(at);
             for &triangle in &self.casters.triangles {
                 counts[usize::from(self.casters.group(triangle))] -= self.through(triangle, at);
@@ -122,7 +122,7 @@ impl<'a> Enclosed<'a> {
         let [p, q] = [self.vertex(a), self.vertex(b)];
         let [away_p, away_q] = [self.away(p), self.away(q)];
         let mut winds = ray_crosses(p, away_p, point) - ray_crosses(q, away_q, point) - self.crosses(a, b, point);
-        if let Light::Point(at) = self.light {
+        if let LightPosition::Point(at) = self.light {
             winds += self.crosses(a, b, self.turned(at));
         }
         if winds == 0 {

@@ -16,8 +16,11 @@
 
 mod casters;
 mod enclosed;
+mod lamp;
 mod reach;
 mod screen;
+mod gathering;
+mod shader;
 mod shade;
 mod shadow;
 mod sky_light;
@@ -27,26 +30,28 @@ mod surfaces;
 mod tests;
 mod visibility;
 
-use super::eye::{AHEAD, Eye};
-use super::film::{Film, Tally};
-use super::radiosity::Radiosity;
-use super::ready::Appearance;
+use super::film::Film;
+use super::indirect::IndirectLight;
+use super::tally::Tally;
+use super::world::{AHEAD, Appearance, Eye};
 use super::{Amount, Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
-use crate::illumination::light::{LightPoint, Source};
+use crate::illumination::light::Source;
 use crate::picture::{Filter, Picture};
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use casters::Casters;
 use enclosed::Enclosed;
 use glam::DVec3;
+use lamp::{Lamp, LightPosition};
 use rayon::prelude::*;
 use reach::Reach;
 use screen::{Screen, Viewpoint};
-use shade::{Desk, Shader};
+use shader::{Desk, Shader};
 use shadow::Shadow;
 use sky_light::SkyLight;
 use spans::{Lines, MOST_LINES, rooks};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use surfaces::Pixel;
@@ -54,33 +59,6 @@ use visibility::{Facets, Strip};
 
 /// Most groups of casters that let different light through; what is beyond throws no shadow.
 const MOST_GROUPS: usize = 200;
-
-/// Where light comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Light {
-    Point(DVec3),
-    /// Towards the light, infinitely far away.
-    Direction(DVec3),
-}
-
-impl Light {
-    /// From a point towards the light, any length.
-    fn from(&self, point: DVec3) -> DVec3 {
-        match self {
-            Light::Point(at) => *at - point,
-            Light::Direction(towards) => *towards,
-        }
-    }
-}
-
-/// One point of a light.
-#[derive(Clone, Copy, Debug)]
-struct Lamp {
-    /// Which of the sources it is of.
-    source: usize,
-    point: LightPoint,
-    light: Light,
-}
 
 /// A scan-line renderer that holds a scene and which triangles are neighbours.
 pub struct ScanLine<'a> {
@@ -97,7 +75,7 @@ pub struct ScanLine<'a> {
     /// None without a sky, and where a solution is shown.
     sky_light: Option<SkyLight>,
     /// In the place of lamps and shadows.
-    solution: Option<&'a Radiosity>,
+    solution: Option<Arc<dyn IndirectLight>>,
 }
 
 /// What the threads share while a picture is made.
@@ -137,7 +115,7 @@ impl<'a> ScanLine<'a> {
     /// # Errors
     /// [`RenderError::Material`].
     pub fn showing(
-        solution: &'a Radiosity,
+        solution: Arc<dyn IndirectLight>,
         prepared: &'a Prepared,
         plan: &'a Plan,
     ) -> Result<ScanLine<'a>, RenderError> {
@@ -147,7 +125,7 @@ impl<'a> ScanLine<'a> {
     fn lit(
         prepared: &'a Prepared,
         plan: &'a Plan,
-        solution: Option<&'a Radiosity>,
+        solution: Option<Arc<dyn IndirectLight>>,
     ) -> Result<ScanLine<'a>, RenderError> {
         let appearance = Appearance::new(prepared, plan)?;
         let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
@@ -160,39 +138,12 @@ impl<'a> ScanLine<'a> {
         let mut lamps = Vec::new();
         for (source, (_, light)) in appearance.sources.iter().enumerate().filter(|_| solution.is_none()) {
             for point in light.points(samples) {
-                let light = point.at.map_or(Light::Direction(point.towards), Light::Point);
-                lamps.push(Lamp { source, point, light });
+                let position = point.at.map_or(LightPosition::Direction(point.towards), LightPosition::Point);
+                lamps.push(Lamp { source, point, position });
             }
         }
         let sky_light = if solution.is_none() { SkyLight::new(&appearance) } else { None };
         Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps, sky_light, solution })
-    }
-
-    /// What of the scene the pictures do not show, in words.
-    pub fn left_out(&self, view: &View) -> Vec<&'static str> {
-        let mut left_out = Vec::new();
-        if self.solution.is_some() {
-            left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
-        } else if self.plan.needs(Stage::Reflection) {
-            left_out.push(
-                "mirrors, metals and coats show lights, ambient light and a blurred sky only, and glass bends nothing",
-            );
-        }
-        if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
-            left_out.push("the light of the sky throws no shadows");
-        }
-        if self.appearance.prepared.settings.filter != Filter::Box {
-            left_out.push("pixels are means over their areas: the filter is a box");
-        }
-        if self.plan.needs(Stage::Motion) {
-            left_out.push("what moves stands where it is in the middle of the time in which the shutter is open");
-        }
-        if let View::Camera(camera) = view
-            && camera.lens.is_some()
-        {
-            left_out.push("the lens is a pinhole");
-        }
-        left_out
     }
 
     /// The shadow volumes of a lamp.
@@ -201,7 +152,7 @@ impl<'a> ScanLine<'a> {
             return Vec::new();
         }
         let groups = self.passing.len();
-        let shadow = |lamp: &Lamp| Shadow::new(&self.casters, lamp.light, picture, bands, groups);
+        let shadow = |lamp: &Lamp| Shadow::new(&self.casters, lamp.position, picture, bands, groups);
         self.lamps.par_iter().map(shadow).collect()
     }
 
@@ -234,7 +185,7 @@ impl<'a> ScanLine<'a> {
             casters: &self.casters,
             lamps: &self.lamps,
             sky_light: self.sky_light.as_ref(),
-            solution: self.solution,
+            solution: self.solution.as_deref(),
             enclosed,
             passing: &self.passing,
             eye,
@@ -430,6 +381,32 @@ impl Renderer for ScanLine<'_> {
     }
 
     /// Takes all samples at once: a target of the error is not looked at.
+    fn left_out(&self, view: &View) -> Vec<&'static str> {
+        let mut left_out = Vec::new();
+        if self.solution.is_some() {
+            left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
+        } else if self.plan.needs(Stage::Reflection) {
+            left_out.push(
+                "mirrors, metals and coats show lights, ambient light and a blurred sky only, and glass bends nothing",
+            );
+        }
+        if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
+            left_out.push("the light of the sky throws no shadows");
+        }
+        if self.appearance.prepared.settings.filter != Filter::Box {
+            left_out.push("pixels are means over their areas: the filter is a box");
+        }
+        if self.plan.needs(Stage::Motion) {
+            left_out.push("what moves stands where it is in the middle of the time in which the shutter is open");
+        }
+        if let View::Camera(camera) = view
+            && camera.lens.is_some()
+        {
+            left_out.push("the lens is a pinhole");
+        }
+        left_out
+    }
+
     fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
         let start = Instant::now();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;

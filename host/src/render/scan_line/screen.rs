@@ -1,7 +1,7 @@
 //! From the scene to the samples of the picture: columns, lines of samples, and nearness.
 
 use crate::numeric::bounds::Bounds;
-use crate::render::eye::meet;
+use crate::render::world::meet;
 use crate::scene::{Projection, View};
 use glam::{DVec3, DVec4};
 

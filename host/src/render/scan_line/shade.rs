@@ -1,98 +1,19 @@
 //! Light that comes from what samples see, once for each pixel and surface.
 
-use super::Lamp;
-use super::casters::Casters;
-use super::enclosed::Enclosed;
-use super::sky_light::SkyLight;
+use super::lamp::Lamp;
+use super::shader::{Desk, Line, Lit, Shader};
 use super::surfaces::{Found, Part, Pixel, Surface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
-use crate::illumination::optics::{Interior, Mixture, Side, Sighting};
+use crate::illumination::optics::{Interior, Side, Sighting};
 use crate::illumination::texture::Place;
 use crate::numeric::ray::Ray;
 use crate::numeric::triangle::weights;
-use crate::render::element::Element;
-use crate::render::eye::{AHEAD, Eye, Sight};
-use crate::render::film::{Sample, Tally};
-use crate::render::radiosity::diffuse;
-use crate::render::radiosity::{Part as Light, Radiosity};
-use crate::render::ready::Appearance;
+use crate::render::indirect::Part as Light;
+use crate::render::tally::{Sample, Tally};
+use crate::render::world::{AHEAD, Element, Sight, diffuse};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
-
-/// What a lamp adds.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lit {
-    lamp: usize,
-    /// At the wavelengths that are looked at.
-    adds: Channels,
-    /// What to add to the count of the surface's own group: its light arrives on the other side.
-    turned: i32,
-    /// In how many opaque volumes it is, where that is not left to the samples.
-    known: Option<bool>,
-}
-
-/// The line of sight of a sample.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
-    /// Where its parts begin.
-    pub(super) begin: usize,
-    /// The first sample of the pixel that gets the same light.
-    pub(super) like: usize,
-    /// How many of its parts are before a light that is no object, if it sees one.
-    pub(super) glow: Option<usize>,
-    /// What it gets, summed over the combs of wavelengths, if it is not like another.
-    pub(super) light: DVec3,
-}
-
-/// Lights the samples of a picture.
-pub(super) struct Shader<'a> {
-    pub(super) appearance: &'a Appearance<'a>,
-    pub(super) casters: &'a Casters<'a>,
-    pub(super) lamps: &'a [Lamp],
-    /// The light of skies, if there are some.
-    pub(super) sky_light: Option<&'a SkyLight>,
-    /// The light of all surfaces, if lamps are not asked.
-    pub(super) solution: Option<&'a Radiosity>,
-    /// For each lamp with shadows.
-    pub(super) enclosed: &'a [Option<Enclosed<'a>>],
-    /// What each group of casters lets through, comb by comb.
-    pub(super) passing: &'a [Vec<Channels>],
-    pub(super) eye: &'a Eye,
-    /// Whether every sample sees bands of light through nothing passable, and no light that is a surface.
-    pub(super) is_plain: bool,
-    pub(super) matte: bool,
-    /// Whether some light is a surface that is seen and no object, and whether one is a sky.
-    pub(super) has_surfaces: bool,
-    pub(super) has_sky: bool,
-    /// Whether lines of sight are parallel.
-    pub(super) is_parallel: bool,
-    /// What is seen where there is nothing, if it is the same everywhere.
-    pub(super) background: Option<DVec3>,
-}
-
-/// What a thread keeps from pixel to pixel.
-#[derive(Default)]
-pub(super) struct Desk<'a> {
-    pub(super) surfaces: Vec<Surface>,
-    pub(super) parts: Vec<Part>,
-    /// Elements of the surfaces, and what their patterns are mixed of.
-    founds: Vec<Found<'a>>,
-    mixtures: Vec<Option<Mixture<'a>>>,
-    /// What lamps add, surface by surface.
-    lit: Vec<Lit>,
-    /// For each sample of the pixel.
-    pub(super) samples: Vec<Line>,
-    /// The last element: its neighbours may differ in their place only.
-    pub(super) last: Option<Found<'a>>,
-}
-
-impl Desk<'_> {
-    /// Forgets the last pixel, so that no picture depends on which thread made which part of it.
-    pub(super) fn clear(&mut self) {
-        self.last = None;
-    }
-}
 
 impl<'a> Shader<'a> {
     /// Adds the samples of a pixel to what is known of it.
@@ -446,7 +367,7 @@ impl<'a> Shader<'a> {
 
     /// How shadows are counted that fall on an element by the light of a lamp.
     fn between(&self, number: usize, lamp: &Lamp, Found { element, curved, .. }: &Found<'a>) -> Lit {
-        let towards = lamp.light.from(element.position);
+        let towards = lamp.position.from(element.position);
         let is_before = towards.dot(element.face) > 0.0;
         let mut lit = Lit { lamp: number, adds: Channels::ZERO, turned: 0, known: None };
         if towards.dot(element.normal) < 0.0 {

@@ -8,9 +8,9 @@
 //! # Source
 //! Crow 1977, shadow algorithms for computer graphics; the multiplicity of edges after Bergeron 1986.
 
-use super::Light;
 use super::casters::{Casters, Silhouette};
 use super::enclosed::Enclosed;
+use super::lamp::LightPosition;
 use super::reach::Reach;
 use super::screen::{Corner, MOST_CORNERS, Outline, Point, Screen};
 use super::spans::{Lines, Nearness, Patch};
@@ -44,14 +44,14 @@ pub(super) struct Shadow {
     start: Vec<i32>,
     pub(super) facing: Vec<i8>,
     pub(super) silhouettes: Vec<Silhouette>,
-    pub(super) light: Light,
+    pub(super) light: LightPosition,
 }
 
 impl Shadow {
     /// - `lines`: of a band; `bands`: how many there are. `groups`: of casters.
     pub(super) fn new(
         casters: &Casters<'_>,
-        light: Light,
+        light: LightPosition,
         (screen, facets, reach): (&Screen, &Facets<'_>, &Reach<'_>),
         [lines, bands]: [usize; 2],
         groups: usize,
@@ -174,7 +174,7 @@ fn columns_of(corners: &[Point]) -> [usize; 2] {
 /// The shadow polygon behind a silhouette, as far as it is in the picture.
 fn side(
     casters: &Casters<'_>,
-    light: &Light,
+    light: &LightPosition,
     (screen, facets, reach): (&Screen, &Facets<'_>, &Reach<'_>),
     silhouette: &Silhouette,
 ) -> Option<Shade> {
@@ -182,7 +182,7 @@ fn side(
     let away = |end: DVec3| screen.direction(-light.from(end));
     let [a, b] = ends.map(|end| screen.corner(end));
     let mut corners: [Corner; 4] = [a, b, away(ends[1]), away(ends[0])];
-    let count = if matches!(light, Light::Direction(_)) { 3 } else { 4 };
+    let count = if matches!(light, LightPosition::Direction(_)) { 3 } else { 4 };
     corners[3] = if count == 3 { corners[2] } else { corners[3] };
     let corners = &corners[..count];
     let beside = corners.iter().map(|corner| screen.outside(corner) & WINDOW);

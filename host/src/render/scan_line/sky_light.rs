@@ -1,9 +1,9 @@
 //! The light of skies on what is drawn without rays: from all around, and without shadows.
 
-use super::super::ready::Appearance;
 use crate::color::Channels;
 use crate::illumination::light::Source;
 use crate::numeric::sequence::Sequence;
+use crate::render::world::Appearance;
 use glam::DVec3;
 
 /// Directions by which a sky is summed up, for each comb of wavelengths.

@@ -8,7 +8,7 @@ use crate::illumination::texture::{Laying, Motif, Pattern};
 use crate::illumination::{Bands, Material, Paint};
 use crate::numeric::ray::Ray;
 use crate::octree::{Octree, Settings as OctreeSettings};
-use crate::render::ray_tracing::RayTracer;
+use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Parallel, Projection, Scene, Settings, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec4};
@@ -111,7 +111,7 @@ fn compared(scene: &Scene, view: Option<View>) -> [f64; 3] {
     let view = view.unwrap_or(prepared.view());
     let plan = Plan::new(&prepared, &view);
     let order = Order { samples: 64, ..order(scene, 2) };
-    let traced = RayTracer::new(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY);
+    let traced = ray_tracer(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY);
     let (traced, drawn) = (traced.expect("a picture"), scan(scene, Some(view), 2));
     let mut sums = [0.0; 3];
     for (index, (a, b)) in drawn.film.tallies().iter().zip(traced.film.tallies()).enumerate() {
@@ -266,10 +266,10 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
     let points = if cfg!(debug_assertions) { 20_000 } else { 1_000_000 / 4 };
     let mut random = Pcg64Mcg::seed_from_u64(1);
     let lights = [
-        Light::Point(DVec3::new(3.0, 5.0, 4.0)),
-        Light::Point(DVec3::new(0.2, 0.9, 0.3)),
-        Light::Direction(DVec3::new(-1.0, 1.0, 0.5)),
-        Light::Direction(DVec3::Y),
+        LightPosition::Point(DVec3::new(3.0, 5.0, 4.0)),
+        LightPosition::Point(DVec3::new(0.2, 0.9, 0.3)),
+        LightPosition::Direction(DVec3::new(-1.0, 1.0, 0.5)),
+        LightPosition::Direction(DVec3::Y),
     ];
     let mut in_shadow = 0;
     for light in lights {
@@ -279,7 +279,7 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
         for _ in 0..points {
             let mut within = |low: f64, high: f64| random.random_range(low..high);
             let point = DVec3::new(within(-2.0, 2.0), within(-0.2, 2.0), within(-2.0, 2.0));
-            let t_max = if matches!(light, Light::Point(_)) { 1.0 } else { f64::INFINITY };
+            let t_max = if matches!(light, LightPosition::Point(_)) { 1.0 } else { f64::INFINITY };
             let stopped = octree.occluded(&Ray { origin: point, direction: light.from(point) }, 0.0, t_max);
             let count = enclosed.counts(point)[0];
             assert!(

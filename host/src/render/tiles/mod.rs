@@ -11,11 +11,14 @@
 mod points;
 #[cfg(test)]
 mod tests;
+mod tile;
 mod tree;
+
+pub use tile::Tile;
 
 use super::RenderError;
 use super::radiosity::Radiosity;
-use super::ready::Appearance;
+use super::world::Appearance;
 use crate::color::srgb;
 use crate::illumination::Light;
 use crate::plan::Plan;
@@ -23,6 +26,7 @@ use crate::scene::Prepared;
 use glam::DVec3;
 use points::Points;
 use rayon::prelude::*;
+use tile::Corner;
 use tree::{Looks, Node, Piece};
 
 /// Colours of a tile may be so far from those of its elements: a step of eight bits.
@@ -37,16 +41,6 @@ const NEAR: f64 = 1.0 / (1 << 30) as f64;
 const ON_EDGE: f64 = 2.0;
 /// Sides of a round lamp.
 const LAMP_SIDES: usize = 32;
-
-/// A piece of a surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tile {
-    /// Its corners, counter-clockwise seen from outside, in scene coordinates; 3 and more.
-    pub corners: Vec<DVec3>,
-    /// The colours seen at each of them from outside and from inside: red, green and blue of sRGB as displays get them,
-    /// 0..=1.
-    pub colors: Vec<[DVec3; 2]>,
-}
 
 /// All surfaces of a scene as tiles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -110,9 +104,6 @@ impl Tiling {
         self.tiles.iter().map(|tile| tile.corners.len()).sum()
     }
 }
-
-/// A corner of a tile, and the weights of the corners of its triangle there.
-type Corner = (DVec3, [f64; 3]);
 
 /// Places so near that they are one, by the lines of a grid.
 #[derive(Clone, Copy, Debug)]

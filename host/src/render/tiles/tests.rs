@@ -6,7 +6,9 @@ use crate::illumination::light::Patch;
 use crate::illumination::material::Classic;
 use crate::illumination::{Material, Paint};
 use crate::render::Watch;
-use crate::render::radiosity::{Part, Settings};
+use crate::render::World;
+use crate::render::indirect::{IndirectLight, Part};
+use crate::render::radiosity::Settings;
 use crate::scene::{Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::DMat4;
@@ -46,7 +48,9 @@ fn ready(mut scene: Scene) -> Prepared {
 fn tiling(prepared: &Prepared, most: usize) -> (Radiosity, Tiling) {
     let plan = Plan::new(prepared, &prepared.view());
     let settings = Settings { error: 0.02, finest: 1.0 / 64.0, ..Settings::default() };
-    let solution = Radiosity::new(prepared, &plan, &settings, None, &Watch::NOBODY).expect("a solution");
+    let solution =
+        Radiosity::new(&World::new(prepared, &plan).expect("a world"), &plan, &settings, None, &Watch::NOBODY)
+            .expect("a solution");
     let tiling = Tiling::new(&solution, prepared, &plan, most).expect("tiles");
     (solution, tiling)
 }

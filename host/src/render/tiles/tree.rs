@@ -1,10 +1,11 @@
 //! A triangle with its elements and their colours, and which of its parts may be one tile.
 
-use super::{Corner, Tile};
+use super::tile::{Corner, Tile};
 use crate::color::{Channels, srgb};
 use crate::numeric::triangle::weights;
-use crate::render::radiosity::{Division, Part, Radiosity, diffuse};
-use crate::render::ready::Appearance;
+use crate::render::indirect::{IndirectLight, Part};
+use crate::render::radiosity::{Division, Radiosity};
+use crate::render::world::{Appearance, diffuse};
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_1_PI;
 

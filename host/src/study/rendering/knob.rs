@@ -1,10 +1,11 @@
 //! The knobs of the renderers: one row each, from which the sweep, the help and the tables are derived.
 
-use super::setup::{Base, Setup, Technique};
+use super::setup::{Base, Setup};
 use crate::illumination::Light;
 use crate::octree::MAX_POINT_DEPTH;
 use crate::plan::Stage;
-use crate::render::ray_tracing::widest_disc;
+use crate::render::Technique;
+use crate::render::two_way::widest_disc;
 use crate::scene::MAX_PHOTONS;
 
 /// The coarsest tolerance, as a part of the diagonal of the largest curved object, and how much finer the next one is.
@@ -30,7 +31,7 @@ const RADIUS_STEP: f64 = 2.0;
 /// The least resolution of voxels with points that is tried.
 const COARSEST_VOXELS: i32 = 6;
 
-const ALL: &[Technique] = &Technique::ALL;
+const ALL: &[Technique] = &[Technique::RayTracing, Technique::TwoWay, Technique::ScanLine];
 const RAYS: &[Technique] = &[Technique::RayTracing, Technique::TwoWay];
 /// Rays from the eye alone.
 const EYE: &[Technique] = &[Technique::RayTracing];
@@ -133,10 +134,10 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         values: |base| doubled(base).take(6).collect(),
         best: |base, technique| {
             let own = f64::from(base.settings().light_samples);
-            match technique {
+            match technique.row().adds_samples {
                 // Every sample of a pixel draws points of its own: their number makes no difference in the end.
-                Technique::RayTracing | Technique::TwoWay => own,
-                Technique::ScanLine => doubled(base).take(6).fold(own, f64::max) * MORE_POINTS,
+                true => own,
+                false => doubled(base).take(6).fold(own, f64::max) * MORE_POINTS,
             }
         },
         get: |setup| f64::from(setup.settings.light_samples),
@@ -151,7 +152,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: |base| base.lacks(Stage::Textures, "no material changes from place to place"),
         values: |base| halved(base, WIDEST_FILTER).take(base.options.settings as usize - 1).chain([0.0]).collect(),
         // Scan line finds light once for a pixel: there, a point instead of the mean is no better.
-        best: |_, technique| if technique == Technique::ScanLine { 1.0 } else { 0.0 },
+        best: |_, technique| if technique.row().adds_samples { 0.0 } else { 1.0 },
         get: |setup| setup.settings.texture_filter,
         set: |setup, value| setup.settings.texture_filter = value,
     },

@@ -14,16 +14,16 @@ mod tests;
 pub use bend::Bend;
 pub use knob::{RENDER_KNOBS, RenderKnob};
 pub use measure::Measures;
-pub use setup::Technique;
+pub use setup::{studied, usual};
 
 use super::{Options, StudyError};
 use crate::picture::Picture;
-use crate::render::{Amount, Watch};
+use crate::render::{Amount, Technique, Watch};
 use crate::scene::Scene;
 use bend::bend;
 use measure::Reference;
 use serde::Serialize;
-use setup::{Base, Setup, Shot};
+use setup::{Base, Setup, Shot, knobs_of};
 
 /// A setting is tried again, for its shortest time, while it took less than this many seconds in all.
 const SHORT_SECONDS: f64 = 0.25;
@@ -111,7 +111,7 @@ pub fn renderers(
     let base = Base::new(scene, options)?;
     let chosen: Vec<(Technique, &RenderKnob)> = techniques
         .iter()
-        .flat_map(|technique| technique.knobs().map(|knob| (*technique, knob)))
+        .flat_map(|technique| knobs_of(*technique).map(|knob| (*technique, knob)))
         .filter(|(_, knob)| names.contains(&knob.name))
         .collect();
     let settings = |(technique, knob): &(Technique, &RenderKnob)| {
@@ -172,13 +172,10 @@ impl Bench<'_> {
             found.verdict = format!("changes nothing: {why}");
             return Ok(());
         }
-        let left_out = self.base.left_out()?;
-        // Where scan line leaves nothing out, ray tracing is its reference, too.
-        let is_whole = technique != Technique::ScanLine || left_out.is_empty();
-        let by = match technique {
-            Technique::ScanLine if is_whole => Technique::RayTracing,
-            _ => technique,
-        };
+        let left_out = self.base.left_out(technique)?;
+        // Where a renderer leaves nothing out, ray tracing is its reference, too, unless samples are added.
+        let is_whole = left_out.is_empty();
+        let by = if is_whole && !technique.row().adds_samples { Technique::RayTracing } else { technique };
         let best = self.base.best(by, knob);
         let reference = self.reference(&best)?;
         let made = &self.references[reference].1;
@@ -252,7 +249,8 @@ impl Bench<'_> {
         let (before, _) = self.row(but, &own, 0.0, reference)?;
         let before = before.measures;
         let mut causes = Vec::new();
-        for knob in technique.knobs().filter(|knob| knob.name != but.name && self.base.idle(technique, knob).is_none())
+        for knob in
+            knobs_of(technique).filter(|knob| knob.name != but.name && self.base.idle(technique, knob).is_none())
         {
             let mut setup = own;
             (knob.set)(&mut setup, (knob.best)(self.base, technique));
@@ -274,10 +272,10 @@ impl Bench<'_> {
 
 /// What a setup is, in words.
 fn described(setup: &Setup) -> String {
-    let knobs = setup.technique.knobs().filter(|knob| !knob.is_model).map(|knob| (knob.name, (knob.get)(setup)));
+    let knobs = knobs_of(setup.technique).filter(|knob| !knob.is_model).map(|knob| (knob.name, (knob.get)(setup)));
     let parts: Vec<String> = knobs
         .filter(|(_, value)| *value != 0.0)
         .map(|(name, value)| format!("{name} {}", super::sweep::short(value)))
         .collect();
-    format!("two halves by {}, {} each", setup.technique.word(), parts.join(", "))
+    format!("two halves by {}, {} each", setup.technique.row().word, parts.join(", "))
 }

@@ -1,6 +1,6 @@
 //! A study of renderers as text, comma-separated values and plots.
 
-use super::{Bend, KnobStudy, RenderRow, RenderStudy, Technique};
+use super::{Bend, KnobStudy, RenderRow, RenderStudy};
 use crate::study::plot::{Axis, Plot, Point, Series};
 use crate::study::sweep::short;
 
@@ -39,10 +39,10 @@ pub(super) fn verdict(study: &KnobStudy, changes: bool, apart: Option<(f64, Vec<
         Some(Bend::Bias { from, causes }) => {
             let cause = |(name, part): &(String, f64)| format!("{name} ({:.0} %)", 100.0 * part.min(1.0));
             let causes: Vec<String> = causes.iter().map(cause).collect();
-            let causes = match (causes.is_empty(), study.technique) {
+            let causes = match (causes.is_empty(), study.technique.row().adds_samples) {
                 (false, _) => causes.join(", "),
-                (true, Technique::ScanLine) => "none of its other knobs: the renderer itself".to_owned(),
-                (true, Technique::RayTracing | Technique::TwoWay) => "no other knob alone".to_owned(),
+                (true, false) => "none of its other knobs: the renderer itself".to_owned(),
+                (true, true) => "no other knob alone".to_owned(),
             };
             let bias = study.rows[*from].measures.bias();
             format!("from {} on the error is bias, {}: of {causes}", at(*from), short(bias))
@@ -68,7 +68,7 @@ impl RenderStudy {
         for study in &self.knobs {
             for row in &study.rows {
                 let cells: Vec<String> = COLUMNS.iter().map(|(_, of)| of(row).to_string()).collect();
-                let (by, name) = (study.technique.word(), study.name);
+                let (by, name) = (study.technique.row().word, study.name);
                 text.push_str(&format!("{by},{name},{},{}\n", cells.join(","), study.reference_error));
             }
         }
@@ -80,7 +80,7 @@ impl RenderStudy {
     pub fn plots(&self, title: &str) -> Vec<(String, Plot)> {
         let curves: Vec<&KnobStudy> = self.knobs.iter().filter(|study| study.rows.len() > 2).collect();
         let rmse = |study: &&KnobStudy| Series {
-            name: format!("{}: {}", study.technique.word(), study.name),
+            name: format!("{}: {}", study.technique.row().word, study.name),
             points: study.points(|row| row.measures.rmse, false),
         };
         let mut plots = Vec::new();
@@ -108,7 +108,7 @@ impl KnobStudy {
     /// The knob as a table for people.
     pub fn table(&self) -> String {
         let KnobStudy { technique, name, sets, .. } = self;
-        let mut text = format!("{}, {name}: {sets}; the scene has {}\n", technique.word(), short(self.scene));
+        let mut text = format!("{}, {name}: {sets}; the scene has {}\n", technique.row().word, short(self.scene));
         if !self.rows.is_empty() {
             for (name, _) in COLUMNS {
                 text.push_str(&format!("{name:>10}  "));
@@ -131,7 +131,7 @@ impl KnobStudy {
 
     /// RMSE, chance and bias.
     fn series(&self) -> Vec<Series> {
-        let word = self.technique.word();
+        let word = self.technique.row().word;
         type Curve = (&'static str, fn(&RenderRow) -> f64);
         let curves: [Curve; 3] = [
             ("RMSE", |row| row.measures.rmse),

@@ -3,9 +3,8 @@
 use super::knob::{RENDER_KNOBS, RenderKnob};
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
-use crate::render::ray_tracing::{RayTracer, widest_disc};
-use crate::render::scan_line::ScanLine;
-use crate::render::{Memo, Order, Renderer, Watch};
+use crate::render::two_way::widest_disc;
+use crate::render::{Memo, Order, RENDERERS, Ready, Task, Technique, Watch};
 use crate::scene::{Prepared, Scene, Settings};
 use crate::study::{Options, StudyError, resized};
 use serde::{Deserialize, Serialize};
@@ -15,49 +14,19 @@ use std::time::Instant;
 /// Added to the seed of a reference, so that its samples are independent of those under test.
 const REFERENCE_SEED: u64 = 0x5EED;
 
-/// A way to render.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Technique {
-    /// [`RayTracer`], with rays from the eye alone.
-    RayTracing,
-    /// [`RayTracer`], with light that is followed from lamps first.
-    TwoWay,
-    /// [`ScanLine`].
-    ScanLine,
+/// The renderers whose knobs are studied.
+pub fn studied() -> impl Iterator<Item = Technique> {
+    RENDERERS.iter().filter(|row| row.is_studied).map(|row| row.technique)
 }
 
-impl Technique {
-    /// All of them.
-    pub const ALL: [Technique; 3] = [Technique::RayTracing, Technique::TwoWay, Technique::ScanLine];
+/// Those by which a scene is studied unless others are asked for: scan line, and ray tracing as the scene has it.
+pub fn usual(settings: &Settings) -> [Technique; 2] {
+    [if settings.two_way { Technique::TwoWay } else { Technique::RayTracing }, Technique::ScanLine]
+}
 
-    /// Its name in tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Technique::RayTracing => "ray tracing",
-            Technique::TwoWay => "two-way",
-            Technique::ScanLine => "scan line",
-        }
-    }
-
-    /// Its name on the command line.
-    pub fn option(self) -> &'static str {
-        match self {
-            Technique::RayTracing => "ray-tracing",
-            Technique::TwoWay => "two-way",
-            Technique::ScanLine => "scan-line",
-        }
-    }
-
-    /// Those that a scene is studied by unless others are asked for: scan line, and ray tracing as the scene has it.
-    pub fn usual(settings: &Settings) -> [Technique; 2] {
-        [if settings.two_way { Technique::TwoWay } else { Technique::RayTracing }, Technique::ScanLine]
-    }
-
-    /// The knobs that it has.
-    pub fn knobs(self) -> impl Iterator<Item = &'static RenderKnob> {
-        RENDER_KNOBS.iter().filter(move |knob| knob.techniques.contains(&self))
-    }
+/// The knobs that a renderer has.
+pub(super) fn knobs_of(technique: Technique) -> impl Iterator<Item = &'static RenderKnob> {
+    RENDER_KNOBS.iter().filter(move |knob| knob.techniques.contains(&technique))
 }
 
 /// How every knob is set.
@@ -126,7 +95,7 @@ impl Base {
     pub(super) fn idle(&self, technique: Technique, knob: &RenderKnob) -> Option<&'static str> {
         let not_followed = match technique {
             Technique::TwoWay => self.lacks(Stage::CaughtLight, "no light is followed from lamps: this is ray tracing"),
-            Technique::RayTracing | Technique::ScanLine => None,
+            _ => None,
         };
         not_followed.or_else(|| (knob.idle)(self))
     }
@@ -144,7 +113,7 @@ impl Base {
     /// Every knob at its best, but those that say which light counts: of these only the one that is studied.
     pub(super) fn best(&self, technique: Technique, studied: &RenderKnob) -> Setup {
         let mut setup = self.own(technique);
-        for knob in technique.knobs().filter(|knob| self.idle(technique, knob).is_none()) {
+        for knob in knobs_of(technique).filter(|knob| self.idle(technique, knob).is_none()) {
             if !knob.is_model || knob.name == studied.name {
                 (knob.set)(&mut setup, (knob.best)(self, technique));
             }
@@ -152,14 +121,17 @@ impl Base {
         setup
     }
 
-    /// What scan line leaves out of the scene.
-    pub(super) fn left_out(&self) -> Result<Vec<&'static str>, StudyError> {
+    /// What a renderer leaves out of the scene: nothing by samples of all light.
+    pub(super) fn left_out(&self, technique: Technique) -> Result<Vec<&'static str>, StudyError> {
+        if technique.row().adds_samples {
+            return Ok(Vec::new());
+        }
         let view = self.prepared.view();
         let plan = Plan::new(&self.prepared, &view);
-        Ok(ScanLine::new(&self.prepared, &plan)?.left_out(&view))
+        Ok(technique.prepare(&Task::new(&self.prepared, &plan))?.renderer.any().left_out(&view))
     }
 
-    /// Renders the two halves of a reference, which know nothing of one another: by other seeds, and as scan line has none
+    /// Renders the two halves of a reference, which know nothing of one another: by other seeds, and scan line, which has none,
     /// by another grid of samples.
     ///
     /// # Errors
@@ -167,7 +139,7 @@ impl Base {
     pub(super) fn halves(&self, setup: &Setup, watch: &Watch<'_>) -> Result<[Shot; 2], StudyError> {
         let half = |half: u64, order: &mut Order| {
             order.seed = order.seed.wrapping_add(REFERENCE_SEED + half);
-            if half == 1 && setup.technique == Technique::ScanLine {
+            if half == 1 && !setup.technique.row().adds_samples {
                 order.samples -= order.samples / 8;
             }
         };
@@ -238,13 +210,10 @@ impl Base {
             let start = Instant::now();
             let view = prepared.view();
             let plan = Plan::new(&prepared, &view);
-            let renderer: Box<dyn Renderer + '_> = match setup.technique {
-                Technique::RayTracing | Technique::TwoWay => Box::new(RayTracer::new(&prepared, &plan)?),
-                Technique::ScanLine => Box::new(ScanLine::new(&prepared, &plan)?),
-            };
+            let Ready { renderer, .. } = setup.technique.prepare(&Task::new(&prepared, &plan))?;
             let build = modelling + start.elapsed().as_secs_f64();
             while !is_enough(&shots) {
-                let rendering = renderer.render(&view, &varied(&shots), &quiet)?;
+                let rendering = renderer.any().render(&view, &varied(&shots), &quiet)?;
                 if !rendering.complete || watch.cancelled.load(Ordering::Relaxed) {
                     return Err(StudyError::Interrupted);
                 }

@@ -13,30 +13,36 @@ const CLEARANCE_ULPS: f64 = 32.0;
 
 /// What is known where a ray hits.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Element {
+pub(in crate::render) struct Element {
     /// On the triangle, with the rounding errors of its coordinates, or on the exact surface behind it.
-    pub(super) position: DVec3,
+    pub(in crate::render) position: DVec3,
     /// Unit normal of the triangle, on the side of the viewer.
-    pub(super) face: DVec3,
+    pub(in crate::render) face: DVec3,
     /// Unit normal for shading, on the side of the viewer.
-    pub(super) normal: DVec3,
+    pub(in crate::render) normal: DVec3,
     /// Unit normal of what rays leave on the side of the viewer: of the triangle, or of the exact surface before it.
-    pub(super) horizon: DVec3,
+    pub(in crate::render) horizon: DVec3,
     /// Whether the viewer is on the outer side of the triangle.
-    pub(super) outside: bool,
+    pub(in crate::render) outside: bool,
     /// Where a ray that leaves on the side of the viewer begins: on the triangle, or on the exact surface before it.
-    pub(super) leave: DVec3,
+    pub(in crate::render) leave: DVec3,
     /// Where a ray that goes through begins: always on the triangle.
-    pub(super) through: DVec3,
+    pub(in crate::render) through: DVec3,
     /// Where a ray towards a light begins: on the curved surface that the triangle stands for, if it bulges out.
-    pub(super) leave_curved: DVec3,
+    pub(in crate::render) leave_curved: DVec3,
     /// How far from the triangle rays begin that leave it or go through, scene units.
-    pub(super) clearance: f64,
+    pub(in crate::render) clearance: f64,
 }
 
 impl Element {
     /// The element at `hit`; `curved` asks for interpolated normals. None for a triangle without area.
-    pub(super) fn new(prepared: &Prepared, triangle: u32, ray: &Ray, hit: &Hit, curved: bool) -> Option<Element> {
+    pub(in crate::render) fn new(
+        prepared: &Prepared,
+        triangle: u32,
+        ray: &Ray,
+        hit: &Hit,
+        curved: bool,
+    ) -> Option<Element> {
         let corners = prepared.corners(triangle);
         let [a, b, c] = corners;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
@@ -79,7 +85,7 @@ impl Element {
     /// from there they go on from the triangle.
     ///
     /// - `before`: in lengths of the direction.
-    pub(super) fn settle(&mut self, direction: DVec3, before: f64, on: &OnSurface) -> bool {
+    pub(in crate::render) fn settle(&mut self, direction: DVec3, before: f64, on: &OnSurface) -> bool {
         if on.beyond <= -before {
             return false;
         }
@@ -95,7 +101,7 @@ impl Element {
     }
 
     /// Takes it along with what moves.
-    pub(super) fn carry(&mut self, moved: &Moved) {
+    pub(in crate::render) fn carry(&mut self, moved: &Moved) {
         for point in [&mut self.position, &mut self.leave, &mut self.through, &mut self.leave_curved] {
             *point = moved.point(*point);
         }
@@ -113,7 +119,7 @@ impl Element {
     /// Gives it another normal for shading.
     ///
     /// - `view`: towards the viewer. `tilted`: from a normal outwards to another.
-    pub(super) fn tilt(&mut self, view: DVec3, tilted: impl FnOnce(DVec3) -> DVec3) {
+    pub(in crate::render) fn tilt(&mut self, view: DVec3, tilted: impl FnOnce(DVec3) -> DVec3) {
         let side = if self.outside { 1.0 } else { -1.0 };
         self.normal = towards_viewer(tilted(self.normal * side) * side, view);
     }
@@ -123,20 +129,20 @@ impl Element {
     /// Where it just grazes the plane, both agree.
     ///
     /// - `above`: whether it should be on the side of the viewer.
-    pub(super) fn righted(&self, direction: DVec3, above: bool) -> DVec3 {
+    pub(in crate::render) fn righted(&self, direction: DVec3, above: bool) -> DVec3 {
         let plane = self.plane(above);
         let height = direction.dot(plane);
         if (height < 0.0) == above { direction - plane * (2.0 * height) } else { direction }
     }
 
     /// The normal of the plane that bounds the directions in which rays leave.
-    pub(super) fn plane(&self, above: bool) -> DVec3 {
+    pub(in crate::render) fn plane(&self, above: bool) -> DVec3 {
         if above { self.horizon } else { self.face }
     }
 }
 
 /// How far from a triangle rays begin that leave it or go through, scene units.
-pub(super) fn clearance(corners: [DVec3; 3]) -> f64 {
+pub(in crate::render) fn clearance(corners: [DVec3; 3]) -> f64 {
     let largest = corners.iter().fold(0.0f64, |most, corner| most.max(corner.abs().max_element()));
     (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE)
 }

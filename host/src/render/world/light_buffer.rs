@@ -53,7 +53,7 @@ struct Place {
 }
 
 /// The ways between voxels and lights.
-pub(super) struct LightBuffer {
+pub(in crate::render) struct LightBuffer {
     /// Lowest corner, side of a voxel, and how many bricks along each axis.
     origin: DVec3,
     side: f64,
@@ -71,7 +71,11 @@ pub(super) struct LightBuffer {
 impl LightBuffer {
     /// - `bounds`: of the scene. `opaque`: for each triangle of the octree, whether nothing passes; none if that is so
     ///   everywhere.
-    pub(super) fn new(bounds: &Bounds, sources: &[(usize, Source)], opaque: Option<Vec<bool>>) -> LightBuffer {
+    pub(in crate::render) fn new(
+        bounds: &Bounds,
+        sources: &[(usize, Source)],
+        opaque: Option<Vec<bool>>,
+    ) -> LightBuffer {
         // A little beyond: rays begin beside triangles.
         let wider = DVec3::splat(bounds.size().max_element() / VOXELS as f64 * 1e-3);
         let (origin, size) = (bounds.min - wider, bounds.size() + 2.0 * wider);
@@ -94,7 +98,7 @@ impl LightBuffer {
     }
 
     /// What stands between a point and a light, if that is known.
-    pub(super) fn way(&self, octree: &Octree, from: DVec3, light: usize) -> Option<&Way> {
+    pub(in crate::render) fn way(&self, octree: &Octree, from: DVec3, light: usize) -> Option<&Way> {
         let place = self.lights[light].as_ref()?;
         let at = (from - self.origin) / self.side;
         let end = DVec3::from_array(self.along.map(|bricks| (bricks * BRICK) as f64));

@@ -1,10 +1,11 @@
 //! What a ray goes through: transparent bodies, some of them in one place.
 
-use super::world::{Found, Met, World};
+use super::eye::{Cone, Sight};
+use super::found::{Found, Met};
+use super::geometry::World;
 use crate::color::Channels;
 use crate::illumination::optics::{Interior, Side};
 use crate::numeric::ray::Ray;
-use crate::render::eye::{Cone, Sight};
 use glam::DVec3;
 
 /// Most bodies in one place that a ray keeps in mind.
@@ -12,7 +13,7 @@ const MOST: usize = 8;
 
 /// A transparent body: its object, and which of its materials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Body {
+pub(in crate::render) struct Body {
     object: u32,
     material: u32,
 }
@@ -35,33 +36,33 @@ impl Body {
 /// # Source
 /// Schmidt and Budge 2002, simple nested dielectrics in ray traced images.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Media {
+pub(in crate::render) struct Media {
     bodies: [Body; MOST],
     count: usize,
 }
 
 /// What becomes of what a ray is in at an element.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Crossing {
+pub(in crate::render) struct Crossing {
     /// The body before it.
     before: Option<Body>,
     /// The body behind it.
     behind: Option<Body>,
     /// What a ray is in that goes through.
-    pub(super) media: Media,
+    pub(in crate::render) media: Media,
     /// The last of the surfaces that lie in the same place, in lengths of the ray's direction.
-    pub(super) last: f64,
+    pub(in crate::render) last: f64,
     /// Whether the ray comes from inside the body of the element.
     inside: bool,
     /// Whether there is anything: not where a body of a greater priority is on both sides.
-    pub(super) is_interface: bool,
+    pub(in crate::render) is_interface: bool,
 }
 
 impl Media {
     /// The bodies around a point in the middle of the time in which the shutter is open.
     ///
     /// What two rays from there that go opposite ways leave without having come into it: one would also leave an open surface.
-    pub(super) fn around(world: &World<'_>, point: DVec3) -> Media {
+    pub(in crate::render) fn around(world: &World<'_>, point: DVec3) -> Media {
         // Not along anything that a scene is likely to have.
         let direction = DVec3::new(0.3517, 0.8731, 0.3379);
         let [one, other] =
@@ -110,7 +111,7 @@ impl Media {
     }
 
     /// The part of light that comes through a length of what is here.
-    pub(super) fn absorbed(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
+    pub(in crate::render) fn absorbed(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
         match self.present(world).and_then(|body| body.interior(world)) {
             Some(interior) if interior.absorption.max() > 0.0 => {
                 interior.absorption.of(comb).map(|absorption| (-absorption * length).exp())
@@ -122,7 +123,7 @@ impl Media {
     /// What becomes of it at an element, and at the other surfaces of bodies that lie in the same place.
     ///
     /// - `ray`: that met the element.
-    pub(super) fn crossing(&self, world: &World<'_>, found: &Found<'_>, ray: &Ray) -> Crossing {
+    pub(in crate::render) fn crossing(&self, world: &World<'_>, found: &Found<'_>, ray: &Ray) -> Crossing {
         let mut inside = *self;
         if found.optics.interior.is_none() {
             let present = inside.present(world);
@@ -159,7 +160,7 @@ impl Media {
     }
 
     /// Takes note of the body of an element that is met from inside, if light began there.
-    pub(super) fn notice(&mut self, found: &Found<'_>) {
+    pub(in crate::render) fn notice(&mut self, found: &Found<'_>) {
         let is_inner = found.optics.interior.is_some() && !found.element.outside;
         if is_inner && !self.holds(found.object) {
             self.enter(Body::of(found));
@@ -183,7 +184,7 @@ impl Media {
 
 impl Crossing {
     /// The refractive indices before and behind the element; 1 where there is no body.
-    pub(super) fn side(&self, world: &World<'_>, comb: usize) -> Side {
+    pub(in crate::render) fn side(&self, world: &World<'_>, comb: usize) -> Side {
         let [before, behind] = [self.before, self.behind].map(|body| {
             let interior = body.and_then(|body| body.interior(world));
             interior.map_or(Channels::ONE, |interior| interior.index.of(comb))

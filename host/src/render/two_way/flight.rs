@@ -1,7 +1,5 @@
 //! Light on its way from a lamp: through mirrors and glass to where it is caught.
 
-use super::super::media::{Crossing, Media};
-use super::super::world::{Found, Met, World};
 use super::aim::Ball;
 use super::surfaces::Surfaces;
 use crate::color::Channels;
@@ -9,7 +7,7 @@ use crate::illumination::distribution::Frame;
 use crate::illumination::optics::{Among, Onward, Sighting};
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
-use crate::render::eye::{Cone, Sight};
+use crate::render::world::{Cone, Crossing, Found, Media, Met, Sight, World};
 use glam::DVec3;
 use serde::Serialize;
 use std::f64::consts::PI;

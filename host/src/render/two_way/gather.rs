@@ -4,13 +4,13 @@
 //! that chance shows; a large one blurs. Which is right is different from place to place: discs are tried from small to
 //! large as long as what they tell is the same within what chance allows.
 
-use super::super::world::World;
 use super::flight::Caught;
 use super::surfaces::Surfaces;
 use super::walls::{Flat, InSight, Wall};
 use crate::color::{Channels, LANES};
 use crate::numeric::ray::Ray;
 use crate::octree::{Points, Sorted};
+use crate::render::world::World;
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_PI;
@@ -298,9 +298,7 @@ impl Captured {
                 let way = DVec3::from_array(self.points.local_offset(local, *number as usize).map(f64::from)) * side;
                 // Along the plane: positions are rounded.
                 let ray = Ray { origin: place.leave, direction: way - above * way.dot(above) };
-                !world.any_between(&ray, |triangle| {
-                    surfaces.of(triangle) != place.surface && super::stands(world, triangle)
-                })
+                !world.any_between(&ray, |triangle| surfaces.of(triangle) != place.surface && world.is_opaque(triangle))
             });
             return Vec::new();
         }

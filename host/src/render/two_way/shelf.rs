@@ -5,12 +5,12 @@
 //! are kept in whole blocks: where a lamp gets more ways or fewer than before, the blocks that are wanted are taken, and
 //! the others are followed. The picture is the same to the bit as without.
 
-use super::super::world::World;
 use super::flight::{Balance, Caught};
 use super::lamps::Lamp;
 use super::{Block, CHUNK, Chunk};
 use crate::color::{Channels, Color, LANES, Origin};
 use crate::database::{CaughtBlock, CaughtLight, Content, DatabaseError, Kind, Record, Store};
+use crate::render::world::World;
 use crate::scene::{Prepared, Scene, Settings};
 use bincode::config::standard;
 use glam::DVec3;

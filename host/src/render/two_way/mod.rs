@@ -18,6 +18,7 @@
 mod aim;
 mod flight;
 mod gather;
+mod division;
 mod lamps;
 mod shelf;
 mod surfaces;
@@ -26,8 +27,6 @@ mod walls;
 pub use flight::Balance;
 pub use shelf::Shelf;
 
-use super::accumulation::after;
-use super::world::{Found, World};
 use crate::color::{Channels, LANES};
 use crate::illumination::light::Start;
 use crate::illumination::optics::Sighting;
@@ -35,7 +34,8 @@ use crate::memory;
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::Sequence;
 use crate::octree::Sorted;
-use crate::render::radiosity::mean_diffuse;
+use crate::render::state::after;
+use crate::render::world::{Found, World, mean_diffuse};
 use crate::render::{Amount, Watch};
 use crate::scene::Prepared;
 use aim::{Aimed, Ball};
@@ -64,7 +64,7 @@ const WORTH_KEEPING: Duration = Duration::from_secs(5);
 const MOST_BYTES: u64 = 1 << 30;
 
 /// Follows light from lamps.
-pub(super) struct TwoWay<'a> {
+pub(in crate::render) struct TwoWay<'a> {
     surfaces: Surfaces,
     /// Triangles that stand in the way of light.
     opaque: Sorted,
@@ -110,7 +110,7 @@ struct Capture {
 }
 
 /// Light that was caught, with what is needed to show it.
-pub(super) struct CaughtLight<'a> {
+pub(in crate::render) struct CaughtLight<'a> {
     world: &'a World<'a>,
     two_way: &'a TwoWay<'a>,
     capture: Arc<Capture>,
@@ -121,7 +121,7 @@ impl<'s> TwoWay<'s> {
     /// Looks where light of lamps goes; none if nothing of it goes through mirrors or glass to where it can be caught.
     ///
     /// - `shelf`: where caught light is kept beyond this, if anywhere.
-    pub(super) fn new(
+    pub(in crate::render) fn new(
         world: &World<'_>,
         keeps: impl Fn(usize) -> bool,
         shelf: Option<&'s Shelf>,
@@ -144,7 +144,7 @@ impl<'s> TwoWay<'s> {
             let materials = 0..prepared.objects[object].materials.len() as u32;
             keeps(object) && materials.into_iter().any(|m| appearance.optics(object as u32, m).takes())
         };
-        let opaque = |triangle: u32| of(triangle).0 && stands(world, triangle);
+        let opaque = |triangle: u32| of(triangle).0 && world.is_opaque(triangle);
         let mut two_way = TwoWay {
             surfaces: Surfaces::new(prepared, takes),
             opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(opaque),
@@ -172,7 +172,12 @@ impl<'s> TwoWay<'s> {
     /// Follows all ways of a pass; none if it was cancelled. What was followed until then is on the shelf, if there is one.
     ///
     /// - `pass`: counts from 0. The more of them, the smaller the discs over which light is spread.
-    pub(super) fn caught<'a>(&'a self, world: &'a World<'a>, pass: u32, watch: &Watch<'_>) -> Option<CaughtLight<'a>> {
+    pub(in crate::render) fn caught<'a>(
+        &'a self,
+        world: &'a World<'a>,
+        pass: u32,
+        watch: &Watch<'_>,
+    ) -> Option<CaughtLight<'a>> {
         let shown = |capture: Arc<Capture>| {
             let shrink = f64::from(pass + 1).powf(-1.0 / 3.0);
             CaughtLight { world, two_way: self, capture, shrink }
@@ -350,23 +355,15 @@ pub fn widest_disc(prepared: &Prepared) -> f64 {
     REACH * prepared.bounds.diagonal()
 }
 
-/// Whether light does not come through a triangle.
-fn stands(world: &World<'_>, triangle: u32) -> bool {
-    let prepared = world.appearance.prepared;
-    let object = prepared.object_of[triangle as usize];
-    let optics = world.appearance.optics(object, prepared.material_number(triangle));
-    !optics.is_passable() && optics.interior.is_none()
-}
-
 impl CaughtLight<'_> {
     /// What became of all that was sent.
-    pub(super) fn balance(&self) -> Balance {
+    pub(in crate::render) fn balance(&self) -> Balance {
         self.capture.balance
     }
 
     /// What a side of a triangle reflects diffusely of the light that was caught around a point, W/m², in lanes that are
     /// means over all combs.
-    pub(super) fn exitance(&self, triangle: u32, outside: bool, at: DVec3) -> Channels {
+    pub(in crate::render) fn exitance(&self, triangle: u32, outside: bool, at: DVec3) -> Channels {
         let appearance = &self.world.appearance;
         let prepared = appearance.prepared;
         let optics = appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
@@ -412,7 +409,7 @@ impl CaughtLight<'_> {
     /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB: of light
     ///   that took narrow turns only, and of light that took broad ones among them. And the standard error of all of it,
     ///   over it.
-    pub(super) fn seen(
+    pub(in crate::render) fn seen(
         &self,
         found: &Found<'_>,
         sighting: &Sighting<'_>,

@@ -1,6 +1,5 @@
 //! Materials and lights of a scene made ready for rendering, as the plan keeps them.
 
-use super::RenderError;
 use crate::color::{Channels, Curve, Wavelengths};
 use crate::illumination::Material;
 use crate::illumination::light::{Glow, Source};
@@ -8,38 +7,39 @@ use crate::illumination::optics::{Interior, Interreflection, Library, Optics};
 use crate::numeric::print_of;
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
+use crate::render::RenderError;
 use crate::scene::Prepared;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 /// A prepared scene with its materials and lights made ready.
-pub(super) struct Appearance<'a> {
-    pub(super) prepared: &'a Prepared,
-    pub(super) wavelengths: Wavelengths,
+pub(in crate::render) struct Appearance<'a> {
+    pub(in crate::render) prepared: &'a Prepared,
+    pub(in crate::render) wavelengths: Wavelengths,
     /// All materials, each once.
     optics: Vec<Optics>,
     /// For each object, which of them its materials are.
     optics_of: Vec<Vec<u32>>,
     /// All lights, objects that emit among them, with their numbers: those of the scene come first.
-    pub(super) sources: Vec<(usize, Source)>,
+    pub(in crate::render) sources: Vec<(usize, Source)>,
     /// For each object and material of it that emits, which of the lights it is.
     emitters: Vec<((u32, u32), usize)>,
     /// Radiance where there is nothing and no sky.
     background: Curve,
     /// Ambient radiance.
-    pub(super) ambient: Option<Curve>,
+    pub(in crate::render) ambient: Option<Curve>,
     /// Whether normals are interpolated.
-    pub(super) curved: bool,
+    pub(in crate::render) curved: bool,
     /// Whether rays are led on to exact surfaces.
-    pub(super) exact: bool,
+    pub(in crate::render) exact: bool,
     /// Whether something lets light straight through.
-    pub(super) passing: bool,
+    pub(in crate::render) passing: bool,
     /// Whether light of lamps goes through polished bodies as if they did not bend it: where what they throw is left out.
-    pub(super) clears: bool,
+    pub(in crate::render) clears: bool,
     /// The place of each object among all of them, the largest first; empty where less than two are transparent.
     by_size: Vec<u32>,
     /// Whether two or more objects are transparent: one may be in another.
-    pub(super) has_nested: bool,
+    pub(in crate::render) has_nested: bool,
 }
 
 impl<'a> Appearance<'a> {
@@ -47,7 +47,7 @@ impl<'a> Appearance<'a> {
     ///
     /// # Errors
     /// [`RenderError::Material`].
-    pub(super) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<Appearance<'a>, RenderError> {
+    pub(in crate::render) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<Appearance<'a>, RenderError> {
         let wavelengths = if plan.needs(Stage::Spectra) { Wavelengths::spectral() } else { Wavelengths::bands() };
         let mut appearance = Appearance {
             prepared,
@@ -114,7 +114,7 @@ impl<'a> Appearance<'a> {
     }
 
     /// The object, and which material of it, that a source is the light of; none of other lights.
-    pub(super) fn emitter(&self, source: usize) -> Option<(u32, u32)> {
+    pub(in crate::render) fn emitter(&self, source: usize) -> Option<(u32, u32)> {
         self.emitters.iter().find(|(_, emitted)| *emitted == source).map(|(emitter, _)| *emitter)
     }
 
@@ -136,18 +136,18 @@ impl<'a> Appearance<'a> {
     }
 
     /// The material of a number of an object.
-    pub(super) fn optics(&self, object: u32, material: u32) -> &Optics {
+    pub(in crate::render) fn optics(&self, object: u32, material: u32) -> &Optics {
         &self.optics[self.optics_of[object as usize][material as usize] as usize]
     }
 
     /// What is inside a material of an object, if it is transparent.
-    pub(super) fn interior(&self, object: u32, material: u32) -> Option<&Interior> {
+    pub(in crate::render) fn interior(&self, object: u32, material: u32) -> Option<&Interior> {
         self.optics(object, material).interior.as_ref()
     }
 
     /// Of transparent bodies in one place, that of the greatest is there: of the greatest priority; of several with the same
     /// the smallest, and of equally large ones the last of the scene.
-    pub(super) fn rank(&self, object: u32, material: u32) -> (i32, u32) {
+    pub(in crate::render) fn rank(&self, object: u32, material: u32) -> (i32, u32) {
         let priority = self.interior(object, material).map_or(0, |interior| interior.priority);
         (priority, self.by_size.get(object as usize).copied().unwrap_or(object))
     }
@@ -157,7 +157,7 @@ impl<'a> Appearance<'a> {
     /// - `ray`: from where it is seen, of unit length.
     /// - `normal`: of the element from which it is seen, if there is one.
     /// - `part`: how much a sky counts that would have drawn the direction with a density.
-    pub(super) fn beyond(
+    pub(in crate::render) fn beyond(
         &self,
         ray: &Ray,
         normal: Option<DVec3>,
@@ -170,7 +170,7 @@ impl<'a> Appearance<'a> {
     }
 
     /// The nearest surface that emits and is no object, and which of the lights it is.
-    pub(super) fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, Glow)> {
+    pub(in crate::render) fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, Glow)> {
         let mut nearest: Option<(usize, Glow)> = None;
         for (index, (_, source)) in self.sources.iter().enumerate().filter(|(_, (_, source))| source.is_surface()) {
             let limit = nearest.map_or(t_max, |(_, glow)| glow.t);
@@ -180,7 +180,12 @@ impl<'a> Appearance<'a> {
     }
 
     /// The light that a material emits; which of the lights it is, if any.
-    pub(super) fn emission(&self, object: u32, material: u32, comb: usize) -> Option<(Channels, Option<usize>)> {
+    pub(in crate::render) fn emission(
+        &self,
+        object: u32,
+        material: u32,
+        comb: usize,
+    ) -> Option<(Channels, Option<usize>)> {
         let emission = self.optics(object, material).emission.as_ref()?.of(comb);
         let key = (object, material);
         let index = self.emitters.iter().find(|(emitter, _)| *emitter == key).map(|(_, index)| *index);

@@ -3,10 +3,11 @@
 //! What a lamp sends to where is found for each lamp by itself; only how many ways it gets depends on the others. Where other
 //! lamps change, its ways thus stay the same, though there may be fewer or more of them.
 
-use super::super::world::World;
 use super::aim::{Ball, Guide};
 use super::flight::{Choices, Purpose};
+use super::lamps::{Aim, Lamp};
 use super::{Chunk, TwoWay};
+use crate::render::world::World;
 use rayon::prelude::*;
 
 /// Ways that are followed first, to see where light goes: an eighth of those of a pass, within limits.
@@ -19,30 +20,6 @@ const LEAST_PILOT: u32 = 32;
 const LEAST_PART: f64 = 0.05;
 /// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
 const NARROW: f64 = 0.9;
-
-/// A lamp with what it is aimed at.
-#[derive(Clone, Debug)]
-pub(super) struct Lamp {
-    /// An index into the sources.
-    pub(super) source: usize,
-    pub(super) aims: Vec<Aim>,
-    /// What is caught of its flux, W; none before some of it was.
-    pub(super) caught: Option<f64>,
-    /// The name of its light in a database, less the pass; none without one.
-    pub(super) name: Option<String>,
-}
-
-/// Ways from a lamp to a ball.
-#[derive(Clone, Debug)]
-pub(super) struct Aim {
-    pub(super) ball: usize,
-    /// How probable it is that a way of the lamp goes there; all together are 1.
-    pub(super) part: f64,
-    /// How many do.
-    pub(super) count: u32,
-    /// Where it is best aimed at.
-    pub(super) guide: Guide,
-}
 
 /// What a few ways from a lamp to a ball brought.
 struct Explored {

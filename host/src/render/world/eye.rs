@@ -7,19 +7,19 @@ use crate::scene::{Camera, Lens, Projection, View};
 use glam::{DMat3, DVec3, DVec4};
 
 /// A ray from the origin into the picture, in the place of one that an eye does not have.
-pub(super) const AHEAD: Ray = Ray { origin: DVec3::ZERO, direction: DVec3::NEG_Z };
+pub(in crate::render) const AHEAD: Ray = Ray { origin: DVec3::ZERO, direction: DVec3::NEG_Z };
 
 /// Rounding errors of the largest coordinate within which an eye is on a surface: it sees what is beyond.
 const ON_SURFACE_ULPS: f64 = 32.0;
 
 /// A ray with the part of it in which something can be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Sight {
-    pub(super) ray: Ray,
-    pub(super) t_min: f64,
-    pub(super) t_max: f64,
+pub(in crate::render) struct Sight {
+    pub(in crate::render) ray: Ray,
+    pub(in crate::render) t_min: f64,
+    pub(in crate::render) t_max: f64,
     /// What of the scene the ray stands for.
-    pub(super) cone: Cone,
+    pub(in crate::render) cone: Cone,
 }
 
 /// How wide what a ray stands for is, scene units.
@@ -27,22 +27,22 @@ pub(super) struct Sight {
 /// # Source
 /// Amanatides 1984, ray tracing with cones; as Akenine-Möller and others 2021 use it to filter textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Cone {
+pub(in crate::render) struct Cone {
     /// Where the ray begins.
-    pub(super) width: f64,
+    pub(in crate::render) width: f64,
     /// How much wider it becomes in each unit of length.
-    pub(super) growth: f64,
+    pub(in crate::render) growth: f64,
 }
 
 impl Cone {
     /// At a distance.
-    pub(super) fn at(&self, distance: f64) -> f64 {
+    pub(in crate::render) fn at(&self, distance: f64) -> f64 {
         self.width + self.growth * distance
     }
 }
 
 /// Makes the rays of a view.
-pub(super) struct Eye {
+pub(in crate::render) struct Eye {
     /// Clip coordinates of the left upper corner of the picture.
     corner: [f64; 2],
     /// Clip coordinates a pixel to the right and a pixel down.
@@ -61,7 +61,7 @@ enum Kind {
 
 impl Eye {
     /// The rays of `view` for a picture of `width` by `height`; none if the view is degenerate.
-    pub(super) fn new(view: &View, width: u32, height: u32, bounds: &Bounds) -> Option<Eye> {
+    pub(in crate::render) fn new(view: &View, width: u32, height: u32, bounds: &Bounds) -> Option<Eye> {
         let [x_min, x_max, y_min, y_max] = View::window(width, height);
         let kind = match view {
             View::Camera(camera) if camera.parallel.is_some() => {
@@ -76,7 +76,7 @@ impl Eye {
     }
 
     /// Where a camera is; none for views along parallel lines and by matrices.
-    pub(super) fn place(&self) -> Option<DVec3> {
+    pub(in crate::render) fn place(&self) -> Option<DVec3> {
         match self.kind {
             Kind::Camera { from, .. } => Some(from),
             Kind::Matrix { .. } => None,
@@ -84,7 +84,7 @@ impl Eye {
     }
 
     /// Gives rays cones that are a part of a pixel wide.
-    pub(super) fn with_cones(self, part: f64) -> Eye {
+    pub(in crate::render) fn with_cones(self, part: f64) -> Eye {
         Eye { part, ..self }
     }
 
@@ -92,7 +92,7 @@ impl Eye {
     ///
     /// - `through`: a point of the unit square, which chooses the point of the lens.
     #[inline]
-    pub(super) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
+    pub(in crate::render) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
         let sight = self.line(at, through)?;
         if self.part == 0.0 {
             return Some(sight);
@@ -207,7 +207,7 @@ fn clip(range: &mut [f64; 2], [slope, value]: [f64; 2]) {
 }
 
 /// The point that three planes share.
-pub(super) fn meet(a: DVec4, b: DVec4, c: DVec4) -> Option<DVec3> {
+pub(in crate::render) fn meet(a: DVec4, b: DVec4, c: DVec4) -> Option<DVec3> {
     let unit = |p: DVec4| {
         let length = p.truncate().length();
         (length > 0.0).then(|| p / length)

@@ -1,21 +1,18 @@
-//! What rays meet: triangles of materials, surfaces that emit, and the sky.
+//! The geometry of a scene as rays meet it: triangles, in octrees of what stands still and of what moves.
 
-use super::draws::Draws;
+use super::appearance::Appearance;
+use super::element::{Element, clearance};
+use super::eye::Sight;
+use super::found::{Found, Met};
 use super::light_buffer::{LightBuffer, Way};
-use super::media::Media;
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
-use crate::illumination::light::{Glow, Source};
-use crate::illumination::optics::{Among, Interior, Optics, Painting, Sighting};
+use crate::illumination::light::Source;
+use crate::illumination::optics::{Interior, Painting};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::render::element::{Element, clearance};
-use crate::render::eye::Sight;
-use crate::render::radiosity::{Part, Radiosity, diffuse};
-use crate::render::ready::Appearance;
 use crate::scene::{Motion, Moved, Prepared, footprint};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -23,11 +20,11 @@ use std::collections::HashMap;
 /// Most surfaces of transparent bodies in one place.
 const MOST_COINCIDENT: usize = 8;
 
-/// A scene as rays meet it.
-pub(in crate::render) struct World<'a> {
+/// A scene as rays meet it: geometry with its index, lights and materials. It knows no renderer.
+pub struct World<'a> {
     pub(in crate::render) appearance: Appearance<'a>,
     /// None if the plan needs no octree, or everything moves.
-    pub(super) octree: Option<Octree>,
+    pub(in crate::render) octree: Option<Octree>,
     /// The triangle of the scene behind each triangle of the octree; empty if they are the same.
     triangle_of: Vec<u32>,
     /// What moves while the shutter is open, each motion with an octree of its own.
@@ -35,8 +32,6 @@ pub(in crate::render) struct World<'a> {
     light_buffer: Option<LightBuffer>,
     /// Points that stand for what stands still, if rays are to meet these.
     points: Option<SurfacePoints>,
-    /// Light that diffuse surfaces send each other, if it is known already.
-    pub(super) indirect: Option<Radiosity>,
 }
 
 /// Objects of one motion, where they are in the middle of the time in which the shutter is open.
@@ -46,81 +41,12 @@ struct Moving {
     triangle_of: Vec<u32>,
 }
 
-/// What a ray meets first.
-pub(super) enum Met<'a> {
-    /// An element of an object.
-    Element(Found<'a>),
-    /// A surface that emits, and which of the lights it is.
-    Glow(usize, Glow),
-    /// Nothing.
-    Nothing,
-}
-
-/// An element that a ray met, with the frame in which its optics has directions.
-pub(super) struct Encounter<'a> {
-    pub(super) found: &'a Found<'a>,
-    /// What a ray is in that goes through it.
-    pub(super) behind: Media,
-    pub(super) frame: Frame,
-    pub(super) sighting: Sighting<'a>,
-    /// The choices of the sample.
-    pub(super) draws: Draws,
-    /// The number of the leg that met it.
-    pub(super) leg: u32,
-    /// Among which lobes a direction is drawn: not among those of mirrors, if all of these are followed beside it.
-    pub(super) among: Among,
-    /// The greatest value with which it may reflect a lamp, 1/sr.
-    pub(super) highest: f64,
-    /// Whether lamps that were followed count nothing.
-    pub(super) is_known: bool,
-    /// How much of the radiance along the leg comes to the eye, where wavelengths part: in the one lane that is left.
-    pub(super) alone: Channels,
-}
-
-/// An element of an object.
-pub(super) struct Found<'a> {
-    pub(super) element: Element,
-    pub(super) optics: &'a Optics,
-    pub(super) triangle: u32,
-    pub(super) object: u32,
-    /// Which of the object's materials.
-    pub(super) material: u32,
-    /// From where the ray began to the triangle.
-    pub(super) distance: f64,
-    /// From where the ray began to the exact surface behind the triangle, if that is known.
-    pub(super) depth: f64,
-    /// From where the ray began to the exact surface, in lengths of the ray's direction.
-    pub(super) t: f64,
-    /// What the patterns of the material give; nothing for a material that has none.
-    painting: Painting,
-    /// The direction in which its material is brushed.
-    pub(super) along: Option<DVec3>,
-}
-
-impl Found<'_> {
-    /// The frame in which its optics has directions.
-    pub(super) fn frame(&self) -> Frame {
-        let normal = self.element.normal;
-        self.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along))
-    }
-
-    /// Whether wavelengths part that go through it.
-    pub(super) fn disperses(&self) -> bool {
-        self.optics.interior.as_ref().is_some_and(|interior| interior.disperses)
-    }
-
-    /// What the patterns of the material give.
-    pub(super) fn painted(&self) -> &[Channels] {
-        &self.painting
-    }
-}
-
 impl<'a> World<'a> {
     /// Builds the octree over the objects that the plan keeps, and makes materials and lights ready.
     ///
     /// # Errors
     /// [`RenderError`].
-    pub(in crate::render) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
+    pub fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
         let (octree, triangle_of) = octree(prepared, plan)?;
         let moving = if plan.needs(Stage::Motion) { moving(prepared, plan)? } else { Vec::new() };
         let appearance = Appearance::new(prepared, plan)?;
@@ -147,25 +73,34 @@ impl<'a> World<'a> {
             };
             SurfacePoints::new(octree, settings.point_depth.unwrap_or(0), surface, settings.seed)
         });
-        Ok(World { appearance, octree, triangle_of, moving, light_buffer, points, indirect: None })
+        Ok(World { appearance, octree, triangle_of, moving, light_buffer, points })
     }
 
-    /// Radiance of an element by light of other diffuse ones, as far as it is known already.
-    pub(super) fn indirect(&self, found: &Found<'_>, comb: usize) -> Option<Channels> {
-        let solution = self.indirect.as_ref().filter(|_| found.optics.is_diffuse())?;
-        let corners = self.appearance.prepared.corners(found.triangle);
-        let weights = crate::numeric::triangle::weights(corners, found.element.position);
-        let irradiance = solution.irradiance(found.triangle, found.element.outside, weights, Part::Indirect);
-        Some(diffuse(found.optics, comb, found.painted()) * irradiance * std::f64::consts::FRAC_1_PI)
+    /// The scene.
+    pub fn prepared(&self) -> &'a Prepared {
+        self.appearance.prepared
+    }
+
+    /// The octree, if the plan needs one.
+    pub fn octree(&self) -> Option<&Octree> {
+        self.octree.as_ref()
+    }
+
+    /// Whether no light comes through a triangle.
+    pub(in crate::render) fn is_opaque(&self, triangle: u32) -> bool {
+        let prepared = self.appearance.prepared;
+        let object = prepared.object_of[triangle as usize];
+        let optics = self.appearance.optics(object, prepared.material_number(triangle));
+        !optics.is_passable() && optics.interior.is_none()
     }
 
     /// What stands still between a point and a light, if the light buffer knows.
-    pub(super) fn way(&self, from: DVec3, light: usize) -> Option<&Way> {
+    pub(in crate::render) fn way(&self, from: DVec3, light: usize) -> Option<&Way> {
         self.light_buffer.as_ref()?.way(self.octree.as_ref()?, from, light)
     }
 
     /// Whether something moves, so that samples need a time.
-    pub(super) fn moves(&self) -> bool {
+    pub(in crate::render) fn moves(&self) -> bool {
         !self.moving.is_empty()
     }
 
@@ -194,7 +129,7 @@ impl<'a> World<'a> {
     }
 
     /// What is first in sight at a time.
-    pub(super) fn meet(&self, sight: &Sight, comb: usize, time: f64) -> Met<'_> {
+    pub(in crate::render) fn meet(&self, sight: &Sight, comb: usize, time: f64) -> Met<'_> {
         let first = self.first(&sight.ray, [sight.t_min, sight.t_max], time);
         let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
         if let Some((index, glow)) = self.appearance.glow(&sight.ray, sight.t_min, t_max, comb) {
@@ -247,14 +182,14 @@ impl<'a> World<'a> {
     }
 
     /// Where a ray met an element: where a point stands for the surface, not all rays come to one place.
-    pub(super) fn place(&self, found: &Found<'_>, ray: &Ray) -> DVec3 {
+    pub(in crate::render) fn place(&self, found: &Found<'_>, ray: &Ray) -> DVec3 {
         self.points.as_ref().map_or(found.element.position, |_| ray.at(found.t))
     }
 
     /// The light that an element emits, and how much of it counts.
     ///
     /// - `part`: how much a source counts that would have drawn the direction with a density.
-    pub(super) fn emitted(
+    pub(in crate::render) fn emitted(
         &self,
         found: &Found<'_>,
         towards: DVec3,
@@ -298,7 +233,12 @@ impl<'a> World<'a> {
     /// Gives the other surfaces of transparent bodies that stand still and lie in the place of an element, within the rounding
     /// of its coordinates: how far they are in lengths of the ray's direction, object, material, and whether the ray comes
     /// from outside.
-    pub(super) fn coincident(&self, ray: &Ray, found: &Found<'_>, mut give: impl FnMut(f64, u32, u32, bool)) {
+    pub(in crate::render) fn coincident(
+        &self,
+        ray: &Ray,
+        found: &Found<'_>,
+        mut give: impl FnMut(f64, u32, u32, bool),
+    ) {
         let Some(octree) = self.octree.as_ref().filter(|_| self.appearance.has_nested) else { return };
         let prepared = self.appearance.prepared;
         let height = ray.direction.dot(found.element.face).abs();
@@ -325,7 +265,7 @@ impl<'a> World<'a> {
     }
 
     /// Whether any triangle that counts and stands still is met on the first length of a ray's direction.
-    pub(super) fn any_between(&self, ray: &Ray, counts: impl Fn(u32) -> bool) -> bool {
+    pub(in crate::render) fn any_between(&self, ray: &Ray, counts: impl Fn(u32) -> bool) -> bool {
         let of = |hit: Hit| self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
         self.octree.as_ref().is_some_and(|octree| octree.each_hit(ray, 0.0, 1.0, |hit| counts(of(hit))))
     }

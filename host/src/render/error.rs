@@ -1,0 +1,49 @@
+//! Why there is no picture.
+
+use crate::illumination::material::MaterialError;
+use crate::octree::OctreeError;
+use crate::picture::PictureError;
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The octree cannot be built.
+    #[error("octree: {0}")]
+    Octree(#[from] OctreeError),
+    /// The picture cannot be made.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// A material is impossible.
+    #[error("{object}: {source}")]
+    Material {
+        /// The object.
+        object: String,
+        /// Why.
+        source: MaterialError,
+    },
+    /// The view flattens space to a line or a point, or is not finite.
+    #[error("the view has no directions for the pixels: its matrix is singular or not finite")]
+    View,
+    /// Radiosity has no solution.
+    #[error("radiosity: {0}")]
+    Radiosity(#[from] Unsolvable),
+    /// The threads cannot be started.
+    #[error("threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// Why there is no solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unsolvable {
+    /// Light that nothing takes away.
+    #[error("light comes to surfaces that reflect all of it and from which none escapes: it would grow without end")]
+    NoLoss,
+    /// A value that is not finite, or a fraction that is none.
+    #[error("reflectance {reflectance} or exitance {exitance} is out of range")]
+    Value {
+        /// The greatest reflectance.
+        reflectance: f64,
+        /// The greatest exitance, W/m².
+        exitance: f64,
+    },
+}

@@ -1,0 +1,234 @@
+//! The table of renderers: what the command line, studies and reports know of each. A new renderer is a room and a row.
+
+use super::indirect::IndirectLight;
+use super::radiosity::{self, Exitance, Radiosity};
+use super::ray_tracing::RayTracer;
+use super::scan_line::ScanLine;
+use super::two_way::Shelf;
+use super::world::World;
+use super::{RenderError, Renderer, Watch};
+use crate::plan::{Plan, Stage};
+use crate::scene::{Prepared, Settings};
+use serde::Serialize;
+use std::sync::Arc;
+
+/// A way to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Technique {
+    /// Ray tracing, with rays from the eye alone.
+    RayTracing,
+    /// Ray tracing, with light that is followed from lamps first.
+    TwoWay,
+    /// Scan line.
+    ScanLine,
+    /// Radiosity, shown by scan line.
+    Radiosity,
+}
+
+/// What is known of a renderer.
+pub struct RendererRow {
+    /// Which one it is.
+    pub technique: Technique,
+    /// Its name on the command line.
+    pub option: &'static str,
+    /// Its name in tables and sentences.
+    pub word: &'static str,
+    /// What it is good for.
+    pub help: &'static str,
+    /// Whether it adds samples to pixels one by one: errors, seconds, a state to go on with, single pixels and denoising can
+    /// then be asked for.
+    pub adds_samples: bool,
+    /// Whether it follows light from lamps, which can be kept.
+    pub follows_light: bool,
+    /// Whether it finds the light that diffuse surfaces send each other in every scene, which takes long and can be gone on
+    /// with.
+    pub solves: bool,
+    /// Whether studies of knobs know it.
+    pub is_studied: bool,
+    /// Sets what it needs of the settings of a scene.
+    pub require: fn(&mut Settings),
+    /// Makes it ready for a scene.
+    prepare: for<'a> fn(&Task<'a>) -> Result<Ready<'a>, RenderError>,
+}
+
+/// All renderers, in the order of [`Technique`].
+pub const RENDERERS: [RendererRow; 4] = [
+    RendererRow {
+        technique: Technique::RayTracing,
+        option: "ray-tracing",
+        word: "ray tracing",
+        help: "All light: mirrors, glass, rough surfaces, soft shadows",
+        adds_samples: true,
+        follows_light: true,
+        solves: false,
+        is_studied: true,
+        require: |_| (),
+        prepare: ray_tracing,
+    },
+    RendererRow {
+        technique: Technique::TwoWay,
+        option: "two-way",
+        word: "two-way",
+        help: "All light, with that of lamps followed through mirrors and glass first: caustics",
+        adds_samples: true,
+        follows_light: true,
+        solves: false,
+        is_studied: true,
+        require: |settings| settings.two_way = true,
+        prepare: ray_tracing,
+    },
+    RendererRow {
+        technique: Technique::ScanLine,
+        option: "scan-line",
+        word: "scan line",
+        help: "Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show lights and ambient light only, and glass bends nothing",
+        adds_samples: false,
+        follows_light: false,
+        solves: false,
+        is_studied: true,
+        require: |_| (),
+        prepare: |task| {
+            let scan_line = ScanLine::new(task.prepared, task.plan)?;
+            Ok(Ready { renderer: Made::Whole(Box::new(scan_line)), radiosity: None })
+        },
+    },
+    RendererRow {
+        technique: Technique::Radiosity,
+        option: "radiosity",
+        word: "radiosity",
+        help: "Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are not seen",
+        adds_samples: false,
+        follows_light: false,
+        solves: true,
+        is_studied: false,
+        // Surfaces out of view send light, too.
+        require: |settings| settings.interreflection = true,
+        prepare: |task| {
+            (task.watch.stage)("while solving for radiosity");
+            let world = World::new(task.prepared, task.plan)?;
+            let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.into(), None, &task.watch)?;
+            let radiosity = Some(solution.report);
+            let scan_line = ScanLine::showing(Arc::new(solution), task.prepared, task.plan)?;
+            Ok(Ready { renderer: Made::Whole(Box::new(scan_line)), radiosity })
+        },
+    },
+];
+
+/// What a renderer is made ready for.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    /// The scene, with settings as [`RendererRow::require`] left them.
+    pub prepared: &'a Prepared,
+    /// What of it is needed.
+    pub plan: &'a Plan,
+    /// Where caught light is kept beyond the renderer; nowhere without one.
+    pub shelf: Option<&'a Shelf>,
+    /// Who watches what is found before the first picture, and may stop it: the light that surfaces send each other is then
+    /// known coarsely.
+    pub watch: Watch<'a>,
+}
+
+impl<'a> Task<'a> {
+    /// A scene, unwatched.
+    pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Task<'a> {
+        Task { prepared, plan, shelf: None, watch: Watch::NOBODY }
+    }
+}
+
+/// A renderer that has taken up a scene.
+pub struct Ready<'a> {
+    /// It.
+    pub renderer: Made<'a>,
+    /// What it took to find the light that diffuse surfaces send each other, if that was found before.
+    pub radiosity: Option<radiosity::Report>,
+}
+
+/// A renderer, by how it makes its pictures.
+pub enum Made<'a> {
+    /// Sample by sample: [`RendererRow::adds_samples`].
+    BySamples(RayTracer<'a>),
+    /// At once.
+    Whole(Box<dyn Renderer + 'a>),
+}
+
+impl<'a> Made<'a> {
+    /// As any renderer.
+    pub fn any(&self) -> &(dyn Renderer + 'a) {
+        match self {
+            Made::BySamples(tracer) => tracer,
+            Made::Whole(renderer) => &**renderer,
+        }
+    }
+}
+
+impl Technique {
+    /// What is known of it.
+    pub fn row(self) -> &'static RendererRow {
+        &RENDERERS[self as usize]
+    }
+
+    /// The one of a name on the command line.
+    pub fn of_option(option: &str) -> Option<Technique> {
+        RENDERERS.iter().find(|row| row.option == option).map(|row| row.technique)
+    }
+
+    /// Makes it ready for a scene, on the threads of the pool in which it is called.
+    ///
+    /// # Errors
+    /// [`RenderError`], for a scene that has no octree, an impossible material, or light that grows without end.
+    pub fn prepare<'a>(self, task: &Task<'a>) -> Result<Ready<'a>, RenderError> {
+        (self.row().prepare)(task)
+    }
+}
+
+/// A ray tracer with all that its plan needs.
+///
+/// # Errors
+/// [`RenderError::Octree`], [`RenderError::Material`], [`RenderError::Radiosity`].
+pub fn ray_tracer<'a>(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTracer<'a>, RenderError> {
+    Ok(ray_tracer_watched(&Task::new(prepared, plan))?.0)
+}
+
+/// A ray tracer with all that its plan needs; and what radiosity took, if it was solved for.
+///
+/// # Errors
+/// [`RenderError::Octree`], [`RenderError::Material`], [`RenderError::Radiosity`].
+pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<radiosity::Report>), RenderError> {
+    let Task { prepared, plan, shelf, watch } = *task;
+    (watch.stage)("while building the octree");
+    let world = World::new(prepared, plan)?;
+    (watch.stage)("while looking where light goes");
+    let tracer = RayTracer::new(world, plan, shelf);
+    if !plan.needs(Stage::Radiosity) {
+        return Ok((tracer, None));
+    }
+    (watch.stage)("while solving for radiosity");
+    let solution = {
+        let caught = tracer.caught(&watch);
+        let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
+        let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
+        Radiosity::new(tracer.world(), plan, &prepared.settings.into(), exitance, &watch)?
+    };
+    let report = solution.report;
+    let light: Box<dyn IndirectLight> = Box::new(solution);
+    Ok((tracer.with_indirect(light), Some(report)))
+}
+
+fn ray_tracing<'a>(task: &Task<'a>) -> Result<Ready<'a>, RenderError> {
+    let (tracer, radiosity) = ray_tracer_watched(task)?;
+    Ok(Ready { renderer: Made::BySamples(tracer), radiosity })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_stand_in_the_order_of_the_techniques_and_their_names_lead_to_them() {
+        for row in &RENDERERS {
+            assert_eq!(row.technique.row().option, row.option);
+            assert_eq!(Technique::of_option(row.option), Some(row.technique));
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! A picture with what it took.
+
+use super::film::Film;
+use super::two_way::Balance;
+use crate::picture::display::DisplayTransform;
+use crate::picture::{Picture, Provenance};
+use serde::Serialize;
+
+/// A picture with what it took.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The picture; pixels that were not begun are black and uncovered.
+    pub picture: Picture,
+    /// All that is known of its pixels.
+    pub film: Film,
+    /// Whether nothing was left out because the rendering was stopped.
+    pub complete: bool,
+    /// How many rays were traced; none by scan line.
+    pub rays: RayCounts,
+    /// How many spans were drawn; none by ray tracing.
+    pub spans: SpanCounts,
+    /// What became of the light of lamps that was followed first, if any was.
+    pub balance: Option<Balance>,
+    /// Wall-clock time, seconds.
+    pub seconds: f64,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+impl Rendering {
+    /// What a file tells of how the picture was made: source, renderer, samples, seed, exposure, tone, and error, if it is
+    /// known.
+    ///
+    /// - `source`: the name of the scene. `renderer`: its word.
+    /// - `display`: how the picture is shown, exposed by `stops`.
+    pub fn provenance(
+        &self,
+        (source, renderer): (&str, &str),
+        seed: u64,
+        display: &DisplayTransform,
+        stops: f64,
+    ) -> Provenance {
+        let [least, most] = self.film.samples();
+        let provenance = Provenance::new(display.white)
+            .with("Source", source)
+            .with("Renderer", renderer)
+            .with("Samples", format!("{least} to {most}"))
+            .with("Seed", seed)
+            .with("Exposure", format!("{stops:.4} stops, in PNG files only"))
+            .with("Tone", display.tone.word());
+        let error = self.film.standard_error();
+        if error.is_finite() {
+            provenance.with("Error", format!("{error:.3e}, standard error of luminance"))
+        } else {
+            provenance
+        }
+    }
+
+    /// Rays of all kinds per second, in millions.
+    pub fn mega_rays_per_second(&self) -> f64 {
+        self.rays.total() as f64 / self.seconds.max(f64::MIN_POSITIVE) / 1e6
+    }
+}
+
+/// Rays by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RayCounts {
+    /// From the eye.
+    pub primary: u64,
+    /// Towards lights.
+    pub shadow: u64,
+    /// From surfaces that reflect or let through.
+    pub reflected: u64,
+    /// Rays towards lights that were not needed: the light buffer knew that nothing comes from there.
+    pub spared: u64,
+}
+
+impl RayCounts {
+    /// All that were traced.
+    pub fn total(&self) -> u64 {
+        self.primary + self.shadow + self.reflected
+    }
+}
+
+impl std::ops::Add for RayCounts {
+    type Output = RayCounts;
+
+    fn add(self, other: RayCounts) -> RayCounts {
+        RayCounts {
+            primary: self.primary + other.primary,
+            shadow: self.shadow + other.shadow,
+            reflected: self.reflected + other.reflected,
+            spared: self.spared + other.spared,
+        }
+    }
+}
+
+/// Spans of samples by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SpanCounts {
+    /// Of triangles that may be seen.
+    pub surfaces: u64,
+    /// Of shadow polygons.
+    pub shadows: u64,
+}
+
+impl std::ops::Add for SpanCounts {
+    type Output = SpanCounts;
+
+    fn add(self, other: SpanCounts) -> SpanCounts {
+        SpanCounts { surfaces: self.surfaces + other.surfaces, shadows: self.shadows + other.shadows }
+    }
+}

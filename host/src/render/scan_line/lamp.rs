@@ -1,0 +1,31 @@
+//! Points of lights, from which scan line casts shadows.
+
+use crate::illumination::light::LightPoint;
+use glam::DVec3;
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum LightPosition {
+    Point(DVec3),
+    /// Towards the light, infinitely far away.
+    Direction(DVec3),
+}
+
+impl LightPosition {
+    /// From a point towards the light, any length.
+    pub(super) fn from(&self, point: DVec3) -> DVec3 {
+        match self {
+            LightPosition::Point(at) => *at - point,
+            LightPosition::Direction(towards) => *towards,
+        }
+    }
+}
+
+/// One point of a light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lamp {
+    /// Which of the sources it is of.
+    pub(super) source: usize,
+    pub(super) point: LightPoint,
+    pub(super) position: LightPosition,
+}

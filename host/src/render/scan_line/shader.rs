@@ -1,0 +1,86 @@
+//! What lights the samples of a picture, and what a thread keeps from pixel to pixel.
+
+use super::casters::Casters;
+use super::enclosed::Enclosed;
+use super::lamp::Lamp;
+use super::sky_light::SkyLight;
+use super::surfaces::{Found, Part, Surface};
+use crate::color::Channels;
+use crate::illumination::optics::Mixture;
+use crate::render::indirect::IndirectLight;
+use crate::render::world::{Appearance, Eye};
+use glam::DVec3;
+
+/// What a lamp adds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lit {
+    pub(super) lamp: usize,
+    /// At the wavelengths that are looked at.
+    pub(super) adds: Channels,
+    /// What to add to the count of the surface's own group: its light arrives on the other side.
+    pub(super) turned: i32,
+    /// In how many opaque volumes it is, where that is not left to the samples.
+    pub(super) known: Option<bool>,
+}
+
+/// The line of sight of a sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    /// Where its parts begin.
+    pub(super) begin: usize,
+    /// The first sample of the pixel that gets the same light.
+    pub(super) like: usize,
+    /// How many of its parts are before a light that is no object, if it sees one.
+    pub(super) glow: Option<usize>,
+    /// What it gets, summed over the combs of wavelengths, if it is not like another.
+    pub(super) light: DVec3,
+}
+
+/// Lights the samples of a picture.
+pub(super) struct Shader<'a> {
+    pub(super) appearance: &'a Appearance<'a>,
+    pub(super) casters: &'a Casters<'a>,
+    pub(super) lamps: &'a [Lamp],
+    /// The light of skies, if there are some.
+    pub(super) sky_light: Option<&'a SkyLight>,
+    /// The light of all surfaces, if lamps are not asked.
+    pub(super) solution: Option<&'a dyn IndirectLight>,
+    /// For each lamp with shadows.
+    pub(super) enclosed: &'a [Option<Enclosed<'a>>],
+    /// What each group of casters lets through, comb by comb.
+    pub(super) passing: &'a [Vec<Channels>],
+    pub(super) eye: &'a Eye,
+    /// Whether every sample sees bands of light through nothing passable, and no light that is a surface.
+    pub(super) is_plain: bool,
+    pub(super) matte: bool,
+    /// Whether some light is a surface that is seen and no object, and whether one is a sky.
+    pub(super) has_surfaces: bool,
+    pub(super) has_sky: bool,
+    /// Whether lines of sight are parallel.
+    pub(super) is_parallel: bool,
+    /// What is seen where there is nothing, if it is the same everywhere.
+    pub(super) background: Option<DVec3>,
+}
+
+/// What a thread keeps from pixel to pixel.
+#[derive(Default)]
+pub(super) struct Desk<'a> {
+    pub(super) surfaces: Vec<Surface>,
+    pub(super) parts: Vec<Part>,
+    /// Elements of the surfaces, and what their patterns are mixed of.
+    pub(super) founds: Vec<Found<'a>>,
+    pub(super) mixtures: Vec<Option<Mixture<'a>>>,
+    /// What lamps add, surface by surface.
+    pub(super) lit: Vec<Lit>,
+    /// For each sample of the pixel.
+    pub(super) samples: Vec<Line>,
+    /// The last element: its neighbours may differ in their place only.
+    pub(super) last: Option<Found<'a>>,
+}
+
+impl Desk<'_> {
+    /// Forgets the last pixel, so that no picture depends on which thread made which part of it.
+    pub(super) fn clear(&mut self) {
+        self.last = None;
+    }
+}

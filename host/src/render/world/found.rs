@@ -1,0 +1,56 @@
+//! What a ray meets first: an element of an object, a surface that emits, or nothing.
+
+use super::element::Element;
+use crate::color::Channels;
+use crate::illumination::distribution::Frame;
+use crate::illumination::light::Glow;
+use crate::illumination::optics::{Optics, Painting};
+use glam::DVec3;
+
+/// What a ray meets first.
+pub(in crate::render) enum Met<'a> {
+    /// An element of an object.
+    Element(Found<'a>),
+    /// A surface that emits, and which of the lights it is.
+    Glow(usize, Glow),
+    /// Nothing.
+    Nothing,
+}
+
+/// An element of an object.
+pub(in crate::render) struct Found<'a> {
+    pub(in crate::render) element: Element,
+    pub(in crate::render) optics: &'a Optics,
+    pub(in crate::render) triangle: u32,
+    pub(in crate::render) object: u32,
+    /// Which of the object's materials.
+    pub(in crate::render) material: u32,
+    /// From where the ray began to the triangle.
+    pub(in crate::render) distance: f64,
+    /// From where the ray began to the exact surface behind the triangle, if that is known.
+    pub(in crate::render) depth: f64,
+    /// From where the ray began to the exact surface, in lengths of the ray's direction.
+    pub(in crate::render) t: f64,
+    /// What the patterns of the material give; nothing for a material that has none.
+    pub(super) painting: Painting,
+    /// The direction in which its material is brushed.
+    pub(in crate::render) along: Option<DVec3>,
+}
+
+impl Found<'_> {
+    /// The frame in which its optics has directions.
+    pub(in crate::render) fn frame(&self) -> Frame {
+        let normal = self.element.normal;
+        self.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along))
+    }
+
+    /// Whether wavelengths part that go through it.
+    pub(in crate::render) fn disperses(&self) -> bool {
+        self.optics.interior.as_ref().is_some_and(|interior| interior.disperses)
+    }
+
+    /// What the patterns of the material give.
+    pub(in crate::render) fn painted(&self) -> &[Channels] {
+        &self.painting
+    }
+}
