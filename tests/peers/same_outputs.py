@@ -25,9 +25,10 @@ TEXTS = ["plan teapot", "plan corner", "plan room", "plan afternoon", "octree ch
          "functions sphere"]
 STUDIES = ["render corner --width 24 --knob samples,depth,light_samples", "illumination", "tessellate teapot", "octree teapot",
            "newton manifold"]
-# What differs from run to run: lines and columns of times, threads and memory.
+# What differs from run to run: lines and columns of times, threads and memory, and errors of settings of renderers, which are
+# tried more often where they are quick.
 VARYING_LINES = re.compile(r"^.*(\bthreads?\b|\d ?(ms|µs|ns|s|[KMG]iB)\b).*$", re.M)
-VARYING_COLUMNS = re.compile(r"time|second|MSE x|per s|cost|\(ns\)|\(µs\)|\(ms\)|\(s\)", re.I)
+VARYING_COLUMNS = re.compile(r"time|second|MSE x|per s|cost|\(ns\)|\(µs\)|\(ms\)|\(s\)|^RMSE$|^chance$|^bias|^rel. MSE$", re.I)
 
 
 def digest(data):

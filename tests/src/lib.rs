@@ -1,12 +1,13 @@
 //! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
-//! conformance suite; a judge of simple surfaces; the window that real events work; the corpus of Boolean operations; the notices of crates of others; every
-//! reader of bytes.
+//! conformance suite; a judge of simple surfaces; the window that real events work; the corpus of Boolean operations; the
+//! notices of crates of others; every reader of bytes; the source code as a house.
 
 pub mod conformance;
 pub mod simple;
 pub mod corpus;
 pub mod desk;
 pub mod facets;
+pub mod house;
 pub mod notices;
 pub mod readers;
 

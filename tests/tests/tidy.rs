@@ -1,10 +1,8 @@
 //! The order of the house: layers, first lines, top-level entries, sizes of files.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-    path::{Path, PathBuf},
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use tests::house::{CRATES, Crate, Uses, code, members, read, root, sources};
 
 /// Most lines of a source file.
 const MAX_LINES: usize = 600;
@@ -23,97 +21,51 @@ const TOP_LEVEL: &[&str] = &[
     "peris-run",
 ];
 
-/// A crate of the workspace.
-struct Crate {
-    name: &'static str,
-    /// Where it is, seen from the root.
-    folder: &'static str,
-    /// The crates of the workspace that it may name.
-    below: &'static [&'static str],
-}
-
-const CRATES: &[Crate] = &[
-    Crate { name: "files", folder: "protocol/files", below: &[] },
-    Crate { name: "processes", folder: "protocol/processes", below: &[] },
-    Crate { name: "protocol", folder: "protocol", below: &[] },
-    Crate { name: "ps340", folder: "ps340", below: &["protocol", "files", "processes"] },
-    Crate { name: "host", folder: "host", below: &["protocol", "files", "processes"] },
-    Crate { name: "tests", folder: "tests", below: &["protocol", "files", "processes", "ps340", "host"] },
+/// Rooms whose files still use each other in circles, and how many files each circle has at the most. Elsewhere there is none.
+const CIRCLES: &[(&str, usize)] = &[
+    ("protocol/command/strategy", 3),
+    ("ps340/calligraphic", 5),
+    ("ps340/calligraphic/gpu", 2),
+    ("ps340/cli", 5),
+    ("ps340/console", 3),
+    ("ps340/console/views", 9),
+    ("ps340/functions/devices", 6),
+    ("ps340/interpreter", 2),
+    ("ps340/machine", 15),
+    ("ps340/memory", 4),
+    ("ps340/network", 2),
+    ("ps340/operator/inspect", 3),
+    ("ps340/rendering", 5),
+    ("ps340/shell", 2),
+    ("ps340/structure/inputs", 5),
+    ("ps340/structure/node", 2),
+    ("ps340/traversal/font", 2),
+    ("ps340/traversal/gather", 4),
+    ("ps340/traversal/update", 2),
+    ("host/cli", 27),
+    ("host/cli/interrupts", 2),
+    ("host/database/error", 2),
+    ("host/illumination/atmosphere", 4),
+    ("host/illumination/optics", 9),
+    ("host/mesh", 12),
+    ("host/octree", 7),
+    ("host/picture/source", 4),
+    ("host/plan", 3),
+    ("host/production", 2),
+    ("host/scene/composite", 9),
+    ("host/scene/default_light", 2),
+    ("host/script", 3),
+    ("host/script/argument", 4),
+    ("host/solid", 17),
+    ("host/solid/boolean/operand", 2),
+    ("host/solid/rounded", 4),
+    ("host/study", 8),
+    ("host/study/rendering", 2),
+    ("host/study/rendering/knob", 2),
+    ("host/subdivision/limit", 3),
+    ("host/workstation/facets", 4),
+    ("tests/corpus/classes", 4),
 ];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace is the parent folder").to_owned()
-}
-
-/// All Rust files of a folder, sorted, without those of crates inside it.
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    let Ok(entries) = fs::read_dir(folder) else {
-        return files;
-    };
-    for entry in entries {
-        let path = entry.expect("a folder that was opened can be read").path();
-        if path.is_dir() && !path.ends_with("target") && !path.join("Cargo.toml").exists() {
-            files.extend(sources(&path));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            files.push(path);
-        }
-    }
-    files.sort();
-    files
-}
-
-fn read(path: &Path) -> String {
-    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
-
-/// The code without comments, and with the contents of texts and characters left out.
-fn code(source: &str) -> String {
-    let mut code = String::with_capacity(source.len());
-    let mut rest = source;
-    while let Some(first) = rest.chars().next() {
-        let skipped = if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map_or(rest.len(), |at| at + 2)
-        } else if let Some(hashes) = raw_text(rest) {
-            let end = format!("\"{}", "#".repeat(hashes));
-            rest[hashes + 2..].find(&end).map_or(rest.len(), |at| hashes + 2 + at + end.len())
-        } else if first == '"' {
-            quoted(rest, '"')
-        } else if rest.starts_with("'\\") || rest.starts_with("'\"'") {
-            quoted(rest, '\'')
-        } else {
-            code.push(first);
-            rest = &rest[first.len_utf8()..];
-            continue;
-        };
-        code.push(' ');
-        rest = &rest[skipped..];
-    }
-    code
-}
-
-/// The number of `#` of a raw text that begins here.
-fn raw_text(rest: &str) -> Option<usize> {
-    let after = rest.strip_prefix('r')?;
-    let hashes = after.len() - after.trim_start_matches('#').len();
-    after[hashes..].starts_with('"').then_some(hashes)
-}
-
-/// The length of a text or character in quotes.
-fn quoted(rest: &str, quote: char) -> usize {
-    let mut escaped = false;
-    for (at, c) in rest.char_indices().skip(1) {
-        match c {
-            _ if escaped => escaped = false,
-            '\\' => escaped = true,
-            c if c == quote => return at + 1,
-            _ => {}
-        }
-    }
-    rest.len()
-}
 
 /// The names of the paths that begin with `prefix::`, also those in braces: `crate::{a::B, c}` gives a and c.
 fn named(code: &str, prefix: &str) -> BTreeSet<String> {
@@ -128,29 +80,8 @@ fn named(code: &str, prefix: &str) -> BTreeSet<String> {
         };
         let rest = rest.trim_start();
         match rest.strip_prefix('{') {
-            Some(group) => names.extend(members(group)),
+            Some(group) => names.extend(members(group).into_iter().filter_map(identifier)),
             None => names.extend(identifier(rest)),
-        }
-    }
-    names
-}
-
-/// The first identifiers of the members of a group in braces, from behind its `{`.
-fn members(group: &str) -> Vec<String> {
-    let mut names = Vec::new();
-    let (mut depth, mut begin) = (0_usize, 0);
-    for (at, c) in group.char_indices() {
-        match c {
-            '{' => depth += 1,
-            '}' if depth > 0 => depth -= 1,
-            ',' | '}' if depth == 0 => {
-                names.extend(identifier(group[begin..at].trim_start()));
-                begin = at + 1;
-                if c == '}' {
-                    break;
-                }
-            }
-            _ => {}
         }
     }
     names
@@ -265,6 +196,51 @@ fn crates_name_only_the_crates_below_them() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn no_files_use_each_other_in_circles() {
+    let mut faults = Vec::new();
+    let mut still = BTreeMap::new();
+    for Crate { name, folder, .. } in CRATES {
+        let uses = Uses::of(&root().join(folder).join("src"));
+        assert!(uses.edges.len() < 9 || uses.edges.values().any(|used| !used.is_empty()), "{name}: the test is blind");
+        for circle in uses.circles() {
+            let names: Vec<String> = circle.iter().map(|module| module.join("/")).collect();
+            let room = format!("{name}/{}", names[0]);
+            let most = CIRCLES.iter().find(|(known, _)| *known == room).map_or(0, |(_, most)| *most);
+            still.insert(room.clone(), circle.len());
+            if circle.len() > most {
+                let why = "let one of them say what it needs in its own words, or move what both need below them";
+                faults.push(format!("{room}: {} use each other in a circle; {why}", names.join(", ")));
+            }
+        }
+    }
+    for (room, _) in CIRCLES.iter().filter(|(room, _)| !still.contains_key(*room)) {
+        faults.push(format!("{room}: there is no circle any more; take it off the list"));
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn circles_are_seen_through_what_a_folder_hands_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().expect("in the folder")).expect("a folder");
+        fs::write(path, text).expect("a file");
+    };
+    write("lib.rs", "mod a;");
+    write("a/mod.rs", "mod low;\nmod high;\npub use low::Low;\nuse high::High;\nfn f(_: High) {}");
+    write(
+        "a/low.rs",
+        "pub struct Low;\n// use super::high::High;\n#[cfg(test)]\nmod tests {\n use super::super::high; }",
+    );
+    write("a/high.rs", "use super::Low;\npub struct High(Low);");
+    assert!(Uses::of(folder.path()).circles().is_empty());
+    write("a/low.rs", "pub struct Low(Box<super::high::High>);");
+    let circles = Uses::of(folder.path()).circles();
+    assert_eq!(circles, [[["a", "high"], ["a", "low"]]]);
 }
 
 #[test]
