@@ -6,6 +6,7 @@
 //!
 //! It ends in the same way where more memory is wanted than it may hold.
 
+use super::cancelled::flag;
 use super::{Exit, progress};
 use crate::memory;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
@@ -17,8 +18,6 @@ use std::time::Duration;
 /// How long a thread that wanted too much memory waits for the one that says so.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Set by the first signal, while something is to be kept.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Bytes that were wanted beyond the limit; 0 before that.
 static WANTED: AtomicU64 = AtomicU64::new(0);
 static STATE: Mutex<State> = Mutex::new(State { keepers: 0, kept: String::new() });
@@ -70,7 +69,7 @@ fn serve(mut signals: Signals, name: &str) {
             let hint = " (--memory SIZE sets how much there is)";
             end(name, &event, hint, &state, Exit::Failed);
         }
-        if state.keepers == 0 || INTERRUPTED.swap(true, Ordering::Relaxed) {
+        if state.keepers == 0 || flag().swap(true, Ordering::Relaxed) {
             end(name, "interrupted", "", &state, Exit::Interrupted);
         }
     }
@@ -123,9 +122,4 @@ impl Drop for Keeping {
     fn drop(&mut self) {
         state().keepers -= 1;
     }
-}
-
-/// Set when work that is worth keeping is to stop.
-pub(super) fn flag() -> &'static AtomicBool {
-    &INTERRUPTED
 }

@@ -2,6 +2,7 @@
 
 #[macro_use]
 mod say;
+mod cancelled;
 mod boolean;
 mod check;
 mod compose;

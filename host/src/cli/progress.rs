@@ -1,6 +1,6 @@
 //! What is being done, on a terminal: the stage, and how much of it is done.
 
-use super::interrupts;
+use super::cancelled::flag;
 use crate::render::{Amount, Watch};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -118,7 +118,7 @@ pub(super) fn current() -> &'static str {
 
 /// One who watches work for the person at the terminal, and stops it after a signal.
 pub(super) fn watch() -> Watch<'static> {
-    Watch { cancelled: interrupts::flag(), progress: &update, stage: &stage, memo: None }
+    Watch { cancelled: flag(), progress: &update, stage: &stage, memo: None }
 }
 
 #[cfg(test)]

@@ -3,6 +3,11 @@
 use serde::Serialize;
 use std::fmt;
 
+/// The longest name, bytes.
+pub const LONGEST_NAME: usize = 200;
+/// The largest record, bytes.
+pub const MAX_RECORD: usize = 1 << 30;
+
 /// What a record is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]

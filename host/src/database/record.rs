@@ -3,6 +3,7 @@
 //! The bytes of a record are its version and a checksum, four bytes each, lowest first, and then in bincode a head (what
 //! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
 
+use super::kind::{LONGEST_NAME, MAX_RECORD};
 use super::{CaughtLight, DatabaseError, Kind, first_materials};
 use crate::color::shipped::Metal;
 use crate::color::{Origin, Spectrum};
@@ -14,10 +15,6 @@ use bincode::config::{Configuration, Limit, LittleEndian, Varint};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// The longest name, bytes.
-pub const LONGEST_NAME: usize = 200;
-/// The largest record, bytes.
-pub const MAX_RECORD: usize = 1 << 30;
 /// Bytes before the head.
 const BEFORE: usize = 8;
 

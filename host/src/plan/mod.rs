@@ -3,12 +3,14 @@
 //! A renderer asks the plan for every stage, object and light. What is left out would have contributed exactly
 //! nothing, so that a forced plan ([`Plan::everything`]) gives the same picture, only later.
 
-mod reach;
+mod decision;
 mod stage;
+mod reach;
 
 pub use stage::Stage;
 
 use crate::scene::{Prepared, View};
+use decision::Decision;
 use serde::Serialize;
 
 /// What is done and what is left out for one scene and one view.
@@ -59,19 +61,6 @@ impl Kind {
             Kind::Object => "object",
             Kind::Light => "light",
         }
-    }
-}
-
-/// A decision with its reason.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Decision {
-    pub(crate) needed: bool,
-    pub(crate) reason: String,
-}
-
-impl Decision {
-    fn new(needed: bool, reason: impl Into<String>) -> Decision {
-        Decision { needed, reason: reason.into() }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Which objects can be seen, mirrored, or throw a shadow on what can be seen.
 
-use super::{Decision, stage::Facts};
+use super::decision::Decision;
+use super::stage::Facts;
 use crate::illumination::Light;
 use crate::numeric::bounds::Bounds;
 use crate::scene::{Prepared, View};

@@ -1,6 +1,6 @@
 //! The stages of rendering, one row each: name and the rule that decides whether a scene needs it.
 
-use super::Decision;
+use super::decision::Decision;
 use crate::illumination::Light;
 use crate::illumination::Material;
 use crate::illumination::distribution::TableError;

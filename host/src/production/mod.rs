@@ -1,16 +1,20 @@
 //! The main job: a scene on the workstation, the view that is set there with the dials, and its image back.
 
 mod closed_form;
+mod error;
+mod shot;
 mod progressive;
 
 pub use closed_form::{difference, view_of_dials};
+pub use error::ProductionError;
 pub use progressive::{News, Progressive};
+pub use shot::Shot;
 
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
-    render::{Order, RenderError, Rendering, Watch, World, radiosity::Radiosity, tiles::Tiling},
-    scene::{Camera, Prepared, Projection, Scene, SceneError, View},
+    render::{Order, RenderError, Watch, World, radiosity::Radiosity, tiles::Tiling},
+    scene::{Camera, Prepared, Projection, Scene, View},
     workstation::{Drawing, InitialView, Session, Shown, WorkstationError, network, raster, structure, tiles},
 };
 use glam::{DMat4, DVec3};
@@ -23,23 +27,6 @@ use std::time::Instant;
 const MOST_CORNERS: usize = 200_000;
 /// Corners that the machine renders at all.
 const MOST_RENDERED: usize = 1_000_000;
-
-/// Why the main job failed.
-#[derive(Debug, thiserror::Error)]
-pub enum ProductionError {
-    /// The scene is wrong.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The workstation, or the way there, failed.
-    #[error(transparent)]
-    Workstation(#[from] WorkstationError),
-    /// The image cannot be rendered.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// No thread can be had to render with, or it failed.
-    #[error("the rendering cannot go on: {0}")]
-    Thread(String),
-}
 
 /// A scene that is ready to be shown on a workstation.
 #[derive(Debug)]
@@ -101,21 +88,6 @@ pub struct Sent {
     pub points: usize,
     /// From when they were chosen until the workstation had them, seconds.
     pub seconds: f64,
-}
-
-/// An image of the view that is set on the workstation.
-#[derive(Debug)]
-pub struct Shot {
-    /// The image, with what it took.
-    pub rendering: Rendering,
-    /// Memory of the octree that the rays went through, bytes a triangle; none if the view needs no triangles.
-    pub octree_bytes: Option<f64>,
-    /// Until octree and tables stood, seconds.
-    pub build_seconds: f64,
-    /// The image as a display shows it.
-    pub shown: Picture,
-    /// Its exposure, stops.
-    pub stops: f64,
 }
 
 impl Shot {

@@ -1,6 +1,7 @@
 //! Images of a view: at once, or in a thread of their own that tells of itself while samples are added.
 
-use super::{ProductionError, Shot};
+use super::error::ProductionError;
+use super::shot::Shot;
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,

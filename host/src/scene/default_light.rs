@@ -4,10 +4,11 @@
 //! than above and below, fills the shadows and gives what is polished something to reflect; and a weaker, warmer light from
 //! below takes the place of what the floor of a studio sends back.
 
+use super::soft_box::soft_box;
 use super::{Camera, Object, Prepared, Scene, SceneError, Studio};
 use crate::color::Color;
 use crate::illumination::Bands;
-use crate::illumination::light::{Light, Panorama, Patch, SkyMap};
+use crate::illumination::light::{Light, Panorama, SkyMap};
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -87,18 +88,6 @@ fn default_lights(camera: &Camera, bounds: &Bounds, background: Bands) -> Result
     Ok(vec![lamp(&KEY_STAND, Bands::splat(KEY)), lamp(&BOUNCE_STAND, BOUNCE), sky])
 }
 
-/// A square lamp around a place, which faces another.
-///
-/// - `irradiance`: about what a surface there that faces it gets, W/m².
-pub(super) fn soft_box(place: DVec3, on: DVec3, side: f64, irradiance: Bands) -> Light {
-    let (inward, distance) = ((on - place).normalize(), on.distance(place));
-    let across = DVec3::Y.cross(inward).normalize_or(DVec3::X) * side;
-    let up = inward.cross(across);
-    let patch = Patch::Rectangle { corner: place - (across + up) / 2.0, across, up };
-    let radiance = irradiance * (distance / side).powi(2);
-    Light::Area { patch, radiance: radiance.into() }
-}
-
 /// A sky that goes from the horizon smoothly up and down.
 fn sky() -> Result<SkyMap, SceneError> {
     let [above, level, below] = SKY;
@@ -113,6 +102,7 @@ fn sky() -> Result<SkyMap, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::illumination::light::Patch;
     use crate::scene::Shape;
     use crate::solid::Primitive;
     use glam::DMat4;

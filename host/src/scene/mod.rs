@@ -16,6 +16,7 @@ mod prepared;
 mod sculpture;
 mod shape;
 mod shared;
+mod soft_box;
 mod studio;
 mod triangles;
 mod view;

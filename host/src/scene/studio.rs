@@ -1,7 +1,7 @@
 //! A studio for objects that come without light and view: a sweep, a window, a soft box.
 
-use super::default_light::soft_box;
 use super::sculpture::{Sculpture, Sheet};
+use super::soft_box::soft_box;
 use super::{Camera, Object, Prepared, Scene, SceneError, Shape};
 use crate::color::Color;
 use crate::curve::Basis;

@@ -3,9 +3,11 @@
 //! Every other knob stays as the scene has it while one is swept. The error of the sweep therefore bends where it is no
 //! longer that of the knob: then the study says what else it is.
 
+mod best;
 mod bend;
 mod knob;
 mod measure;
+mod results;
 mod report;
 mod setup;
 #[cfg(test)]
@@ -14,6 +16,7 @@ mod tests;
 pub use bend::Bend;
 pub use knob::{RENDER_KNOBS, RenderKnob};
 pub use measure::Measures;
+pub use results::{KnobStudy, RenderRow, RenderStudy};
 pub use setup::{studied, usual};
 
 use super::{Options, StudyError};
@@ -21,9 +24,9 @@ use crate::picture::Picture;
 use crate::render::{Amount, Technique, Watch};
 use crate::scene::Scene;
 use bend::bend;
+use best::knobs_of;
 use measure::Reference;
-use serde::Serialize;
-use setup::{Base, Setup, Shot, knobs_of};
+use setup::{Base, Setup, Shot};
 
 /// A setting is tried again, for its shortest time, while it took less than this many seconds in all.
 const SHORT_SECONDS: f64 = 0.25;
@@ -34,63 +37,6 @@ const CAUSE: f64 = 0.05;
 
 /// Options that give useful curves of all knobs within a few minutes.
 pub const RENDER_OPTIONS: Options = Options { width: 64, samples: 256, settings: 5, threads: None };
-
-/// Error against run time of renderers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RenderStudy {
-    /// One study for each renderer and knob.
-    pub knobs: Vec<KnobStudy>,
-    /// Whether nothing is missing because the study was stopped.
-    pub complete: bool,
-}
-
-/// One knob of one renderer.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct KnobStudy {
-    /// The renderer.
-    pub technique: Technique,
-    /// The knob.
-    pub name: &'static str,
-    /// What it sets, with its unit.
-    pub sets: &'static str,
-    /// How the scene has it.
-    pub scene: f64,
-    /// How the reference has it.
-    pub best: f64,
-    /// What the reference is.
-    pub reference: String,
-    /// Root mean squared error of the reference, by its halves: what is less than about this cannot be told.
-    pub reference_error: f64,
-    /// What the reference took, seconds; it may serve several knobs.
-    pub reference_seconds: f64,
-    /// Its settings, from the coarsest to the finest.
-    pub rows: Vec<RenderRow>,
-    /// Where its error bends, if it does.
-    pub bend: Option<Bend>,
-    /// What the rows tell, in words.
-    pub verdict: String,
-}
-
-/// One setting of a knob.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct RenderRow {
-    /// The setting.
-    pub setting: f64,
-    /// Run time, seconds: the least of some runs; with the making of triangles if these depend on the knob.
-    pub seconds: f64,
-    /// From the scene to a renderer that has taken it up, seconds.
-    pub build: f64,
-    /// How far it is from the reference.
-    #[serde(flatten)]
-    pub measures: Measures,
-}
-
-impl RenderRow {
-    /// Mean squared error times run time: where all error is chance, more samples do not change it.
-    pub fn cost(&self) -> f64 {
-        self.measures.rmse.powi(2) * self.seconds
-    }
-}
 
 /// Sweeps knobs of renderers.
 ///

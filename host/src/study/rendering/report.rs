@@ -1,6 +1,7 @@
 //! A study of renderers as text, comma-separated values and plots.
 
-use super::{Bend, KnobStudy, RenderRow, RenderStudy};
+use super::bend::Bend;
+use super::results::{KnobStudy, RenderRow, RenderStudy};
 use crate::study::plot::{Axis, Plot, Point, Series};
 use crate::study::sweep::short;
 

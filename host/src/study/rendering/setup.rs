@@ -1,6 +1,5 @@
 //! What is rendered in a study: a scene, how each of its knobs is set, and the shots that are made of it.
 
-use super::knob::{RENDER_KNOBS, RenderKnob};
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::render::two_way::widest_disc;
@@ -22,11 +21,6 @@ pub fn studied() -> impl Iterator<Item = Technique> {
 /// Those by which a scene is studied unless others are asked for: scan line, and ray tracing as the scene has it.
 pub fn usual(settings: &Settings) -> [Technique; 2] {
     [if settings.two_way { Technique::TwoWay } else { Technique::RayTracing }, Technique::ScanLine]
-}
-
-/// The knobs that a renderer has.
-pub(super) fn knobs_of(technique: Technique) -> impl Iterator<Item = &'static RenderKnob> {
-    RENDER_KNOBS.iter().filter(move |knob| knob.techniques.contains(&technique))
 }
 
 /// How every knob is set.
@@ -91,15 +85,6 @@ impl Base {
         (!self.plan.needs(stage)).then_some(why)
     }
 
-    /// Why a knob changes nothing, or nothing that it does not change by another renderer, where that is so.
-    pub(super) fn idle(&self, technique: Technique, knob: &RenderKnob) -> Option<&'static str> {
-        let not_followed = match technique {
-            Technique::TwoWay => self.lacks(Stage::CaughtLight, "no light is followed from lamps: this is ray tracing"),
-            _ => None,
-        };
-        not_followed.or_else(|| (knob.idle)(self))
-    }
-
     /// All knobs as the scene has them.
     pub(super) fn own(&self, technique: Technique) -> Setup {
         let mut settings = self.scene.settings;
@@ -108,17 +93,6 @@ impl Base {
         settings.two_way = technique == Technique::TwoWay;
         settings.photon_radius = Some(settings.photon_radius.unwrap_or_else(|| widest_disc(&self.prepared)));
         Setup { technique, settings, target: None, denoise: false, own_tolerances: true }
-    }
-
-    /// Every knob at its best, but those that say which light counts: of these only the one that is studied.
-    pub(super) fn best(&self, technique: Technique, studied: &RenderKnob) -> Setup {
-        let mut setup = self.own(technique);
-        for knob in knobs_of(technique).filter(|knob| self.idle(technique, knob).is_none()) {
-            if !knob.is_model || knob.name == studied.name {
-                (knob.set)(&mut setup, (knob.best)(self, technique));
-            }
-        }
-        setup
     }
 
     /// What a renderer leaves out of the scene: nothing by samples of all light.

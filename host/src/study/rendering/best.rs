@@ -1,0 +1,33 @@
+//! The knobs of a renderer in a scene: which of them change anything, and all of them at their best.
+
+use super::knob::{RENDER_KNOBS, RenderKnob};
+use super::setup::{Base, Setup};
+use crate::plan::Stage;
+use crate::render::Technique;
+
+/// The knobs that a renderer has.
+pub(super) fn knobs_of(technique: Technique) -> impl Iterator<Item = &'static RenderKnob> {
+    RENDER_KNOBS.iter().filter(move |knob| knob.techniques.contains(&technique))
+}
+
+impl Base {
+    /// Why a knob changes nothing, or nothing that it does not change by another renderer, where that is so.
+    pub(super) fn idle(&self, technique: Technique, knob: &RenderKnob) -> Option<&'static str> {
+        let not_followed = match technique {
+            Technique::TwoWay => self.lacks(Stage::CaughtLight, "no light is followed from lamps: this is ray tracing"),
+            _ => None,
+        };
+        not_followed.or_else(|| (knob.idle)(self))
+    }
+
+    /// Every knob at its best, but those that say which light counts: of these only the one that is studied.
+    pub(super) fn best(&self, technique: Technique, studied: &RenderKnob) -> Setup {
+        let mut setup = self.own(technique);
+        for knob in knobs_of(technique).filter(|knob| self.idle(technique, knob).is_none()) {
+            if !knob.is_model || knob.name == studied.name {
+                (knob.set)(&mut setup, (knob.best)(self, technique));
+            }
+        }
+        setup
+    }
+}
