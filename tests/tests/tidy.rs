@@ -254,6 +254,21 @@ fn every_file_says_first_what_it_is_for_and_is_short() {
 }
 
 #[test]
+fn doc_comments_stand_alone() {
+    let mut faults = Vec::new();
+    for path in CRATES.iter().flat_map(|one| sources(&root().join(one.folder))) {
+        for (number, line) in read(&path).lines().enumerate() {
+            let line = line.trim();
+            let Some(text) = line.strip_prefix("/// ").or_else(|| line.strip_prefix("//! ")) else { continue };
+            if text.starts_with("The same") || matches!(text, "Which." | "Why." | "It." | "How.") {
+                faults.push(format!("{}:{}: '{text}' says nothing by itself", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
 fn the_top_level_holds_nothing_else() {
     let mut strange = Vec::new();
     for entry in fs::read_dir(root()).expect("the workspace can be read") {

@@ -36,7 +36,7 @@ pub enum DatabaseError {
     Other {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// What is wrong, in words.
         why: String,
     },
     /// Its structure is damaged.

@@ -160,7 +160,7 @@ pub enum Problem {
     Neighbour {
         /// Its name.
         name: String,
-        /// Why.
+        /// What is wrong, in words.
         why: String,
     },
     /// A mesh that the format cannot hold.

@@ -52,7 +52,7 @@ pub enum PictureError {
     Open {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// What the system says.
         source: std::io::Error,
     },
     /// The file cannot be written.

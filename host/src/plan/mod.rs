@@ -37,7 +37,7 @@ pub struct Entry {
     pub name: String,
     /// Whether it is kept.
     pub needed: bool,
-    /// Why.
+    /// The reason, in words.
     pub reason: String,
 }
 

@@ -18,7 +18,7 @@ pub enum RenderError {
     Material {
         /// The object.
         object: String,
-        /// Why.
+        /// What is wrong with the material.
         source: MaterialError,
     },
     /// The view flattens space to a line or a point, or is not finite.

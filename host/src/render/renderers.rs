@@ -138,7 +138,7 @@ impl<'a> Task<'a> {
 
 /// A renderer that has taken up a scene.
 pub struct Ready<'a> {
-    /// It.
+    /// The renderer, with its world.
     pub renderer: Made<'a>,
     /// What it took to find the light that diffuse surfaces send each other, if that was found before.
     pub radiosity: Option<radiosity::Report>,

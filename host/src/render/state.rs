@@ -60,7 +60,7 @@ pub enum StateError {
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// What the system says.
         source: std::io::Error,
     },
     /// It is none, or is damaged.

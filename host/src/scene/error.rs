@@ -40,7 +40,7 @@ pub enum SceneError {
     Shape {
         /// The object's name.
         object: String,
-        /// Why.
+        /// What is wrong with the shape.
         source: Box<ShapeError>,
     },
     /// An object is wrong that a script asks for at a place.

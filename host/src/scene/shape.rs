@@ -39,7 +39,7 @@ pub enum ShapeError {
     Octree {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// What is wrong, in words.
         problem: String,
     },
     /// The geometry cannot be had from its database.
@@ -62,7 +62,7 @@ pub enum ShapeError {
     Solid {
         /// Name of the object.
         object: String,
-        /// Why.
+        /// What is wrong with the solid.
         source: SolidError,
     },
     /// Its edges cannot be rounded.
@@ -70,7 +70,7 @@ pub enum ShapeError {
     Rounding {
         /// Name of the object.
         object: String,
-        /// Why.
+        /// What keeps the edges from being rounded.
         source: RoundingError,
     },
 }

@@ -11,7 +11,7 @@ pub enum WorkstationError {
     Start {
         /// The program that was to be started.
         program: PathBuf,
-        /// Why.
+        /// What is wrong, in words.
         reason: String,
     },
     /// Nobody listens at the line.
@@ -19,7 +19,7 @@ pub enum WorkstationError {
     Attach {
         /// The address of the line.
         line: Address,
-        /// Why.
+        /// What is wrong, in words.
         reason: String,
     },
     /// The line closed.
@@ -52,7 +52,7 @@ pub enum WorkstationError {
     Order {
         /// The order, as it was sent.
         order: String,
-        /// Why.
+        /// What is wrong, in words.
         reason: String,
     },
     /// The scene cannot be shown.

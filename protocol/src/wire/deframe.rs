@@ -34,7 +34,7 @@ pub enum Frame<'a> {
     Noise {
         /// The bytes.
         bytes: &'a [u8],
-        /// Why.
+        /// What is wrong with the bytes.
         reason: NoiseReason,
     },
 }

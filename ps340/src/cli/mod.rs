@@ -44,7 +44,7 @@ enum Trouble {
     File {
         /// The file.
         file: String,
-        /// Why.
+        /// What the system says.
         error: io::Error,
     },
     /// The reader of the output has gone, as `head` does; no error.

@@ -45,7 +45,7 @@ pub enum Inspection {
     Graph {
         /// What becomes a graph: the network or the structure.
         subject: Subject,
-        /// How.
+        /// In which form it is told.
         language: Language,
         /// Where to; into the reply if none.
         file: Option<String>,

@@ -24,7 +24,7 @@ pub enum SuiteError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// What the system says.
         error: io::Error,
     },
     /// A file is wrong.

@@ -19,7 +19,7 @@ pub enum NoticesError {
     File {
         /// The file.
         path: std::path::PathBuf,
-        /// Why.
+        /// What the system says.
         source: std::io::Error,
     },
     /// A file or an answer is not of the form that is expected.

@@ -43,7 +43,7 @@ pub enum FacetError<E> {
     Function {
         /// The angle, radians.
         angle: f64,
-        /// Why.
+        /// What the function of the facets says.
         source: E,
     },
     /// A value that is negative or not finite.
