@@ -4,6 +4,7 @@
 //! finding what stands between voxels and lights is. `cargo bench -p tests --bench light_buffer`
 
 use host::plan::Plan;
+use host::render::ray_tracer;
 use host::render::ray_tracing::RayTracer;
 use host::render::{Order, Renderer, Rendering, Watch};
 use host::scene::{Camera, Prepared, View};
@@ -28,7 +29,7 @@ fn main() {
     without.settings.light_buffer = false;
     let runs = [&prepared, &without].map(|prepared| {
         let plan = Plan::new(prepared, &View::Camera(camera));
-        let tracer = RayTracer::new(prepared, &plan).expect("an octree");
+        let tracer = ray_tracer(prepared, &plan).expect("an octree");
         (0..VIEWS)
             .map(|index| render(&tracer, camera.turned((TURN * f64::from(index)).to_radians()), samples))
             .collect::<Vec<_>>()

@@ -9,8 +9,9 @@ use host::color::{Channels, Color};
 use host::illumination::material::Classic;
 use host::illumination::{Light, Paint};
 use host::plan::Plan;
-use host::render::Watch;
-use host::render::radiosity::{Exitance, Part, Radiosity, Settings};
+use host::render::indirect::{IndirectLight, Part};
+use host::render::radiosity::{Exitance, Radiosity, Settings};
+use host::render::{Watch, World};
 use host::scene::{Object, Prepared, Scene, Shape};
 use host::solid::Primitive;
 
@@ -45,7 +46,8 @@ fn settings(error: f64, finest: f64) -> Settings {
 
 fn solved(prepared: &Prepared, settings: Settings, exitance: Option<Exitance<'_>>) -> Radiosity {
     let plan = Plan::new(prepared, &prepared.view());
-    Radiosity::new(prepared, &plan, &settings, exitance, &Watch::NOBODY).expect("a solution")
+    let world = World::new(prepared, &plan).expect("a world");
+    Radiosity::new(&world, &plan, &settings, exitance, &Watch::NOBODY).expect("a solution")
 }
 
 fn prepared(objects: Vec<Object>, lights: Vec<Light>) -> Prepared {

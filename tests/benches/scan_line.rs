@@ -10,7 +10,7 @@ use host::illumination::material::Classic;
 use host::illumination::{Light, Paint};
 use host::picture::difference;
 use host::plan::Plan;
-use host::render::ray_tracing::RayTracer;
+use host::render::ray_tracer;
 use host::render::scan_line::ScanLine;
 use host::render::{Order, Renderer, Rendering, Watch};
 use host::scene::{Camera, Object, Prepared, Scene, Settings, Shape};
@@ -29,7 +29,7 @@ fn main() {
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
     let scan_line = ScanLine::new(&prepared, &plan).expect("sound materials");
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let small = |samples: u32| order(96, samples);
     let [drawn, traced] = [(&scan_line as &dyn Renderer, 16), (&tracer, 64)]
         .map(|(renderer, samples)| renderer.render(&view, &small(samples), &Watch::NOBODY).expect("a picture"));
@@ -46,7 +46,7 @@ fn main() {
             scan.render(&view, &order(1024, samples), &Watch::NOBODY).expect("a picture")
         });
     }
-    let build = || RayTracer::new(&prepared, &plan).expect("an octree");
+    let build = || ray_tracer(&prepared, &plan).expect("an octree");
     row("ray tracing, 4 samples", build, |tracer| {
         tracer.render(&view, &order(1024, 4), &Watch::NOBODY).expect("a picture")
     });

@@ -8,6 +8,7 @@
 use host::color::srgb::LUMINANCE;
 use host::picture::RELATIVE_FLOOR;
 use host::plan::Plan;
+use host::render::ray_tracer;
 use host::render::ray_tracing::RayTracer;
 use host::render::{Order, Renderer, Rendering, Watch};
 use host::scene::{Prepared, Scene, View};
@@ -72,7 +73,7 @@ fn timed(scene: &Scene, threads: usize) -> (Rendering, f64) {
     let start = Instant::now();
     let prepared = Prepared::new(scene).expect("a sound scene");
     let plan = Plan::new(&prepared, &prepared.view());
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let rendering = render(&tracer, &prepared.view(), threads);
     let balance = rendering.balance.expect("light was followed");
     assert!(balance.residual() < 1e-6, "{balance}");
@@ -109,11 +110,11 @@ fn views(scene: &Scene, is_bench: bool) {
     let plan = Plan::new(&prepared, &prepared.view());
     let view = |index: u32| View::Camera(camera.turned((TURN * f64::from(index)).to_radians()));
     let start = Instant::now();
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let pictures: Vec<_> = (0..VIEWS).map(|index| render(&tracer, &view(index), 1).picture).collect();
     let all = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let tracer = RayTracer::new(&prepared, &plan).expect("an octree");
+    let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let alone = render(&tracer, &view(VIEWS - 1), 1).picture;
     let one = start.elapsed().as_secs_f64();
     assert!(alone == pictures[VIEWS as usize - 1], "a view depends on those before it");

@@ -5,7 +5,7 @@ use host::picture::display::DisplayTransform;
 use host::plan::Plan;
 use host::render::Watch;
 use host::render::metering::Meter;
-use host::render::ray_tracing::RayTracer;
+use host::render::ray_tracer;
 use host::scene::{Prepared, View};
 use host::script::{self, Inputs};
 use serde_json::Value;
@@ -102,7 +102,7 @@ fn a_turn_of_single_pictures_is_exposed_steadily() {
         let turned = |step: i32| View::Camera(prepared.camera.turned(f64::from(step * degrees).to_radians()));
         let views: Vec<View> = (0..=90).map(turned).collect();
         let plan = Plan::of_views(&prepared, &views, false);
-        let tracer = RayTracer::new(&prepared, &plan).unwrap();
+        let tracer = ray_tracer(&prepared, &plan).unwrap();
         let meter = Meter::new(&scene.settings, &DisplayTransform::default(), None);
         let stops: Vec<f64> =
             views.iter().map(|view| meter.stops(&tracer, &prepared, &[*view], &Watch::NOBODY).unwrap()).collect();

@@ -4,13 +4,13 @@
 use host::color::srgb::LUMINANCE;
 use host::plan::Plan;
 use host::render::radiosity::Radiosity;
-use host::render::ray_tracing::RayTracer;
 use host::render::scan_line::ScanLine;
-use host::render::{Order, Renderer, Watch};
+use host::render::{Order, Renderer, Watch, World, ray_tracer};
 use host::scene::Prepared;
 use host::script::{Definition, Inputs, load_file};
 use serde_json::Value;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Blocks along each side of a picture of which the other renderer's means are kept.
 const BLOCKS: usize = 8;
@@ -43,7 +43,7 @@ fn means_of_blocks_are_those_of_mitsuba_within_the_errors_of_both() {
         let prepared = Prepared::new(&scene).expect("a scene");
         let view = prepared.view();
         let plan = Plan::new(&prepared, &view);
-        let tracer = RayTracer::new(&prepared, &plan).expect("a tracer");
+        let tracer = ray_tracer(&prepared, &plan).expect("a tracer");
         let film = tracer.render(&view, &Order::of(&prepared.settings), &Watch::NOBODY).expect("a picture").film;
         let (columns, rows) = (film.width() as usize / BLOCKS, film.height() as usize / BLOCKS);
         let mut squares = 0.0;
@@ -87,9 +87,15 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let solution =
-        Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, &Watch::NOBODY).expect("a solution");
-    let scan_line = ScanLine::showing(&solution, &prepared, &plan).expect("a renderer");
+    let solution = Radiosity::new(
+        &World::new(&prepared, &plan).expect("a world"),
+        &plan,
+        &prepared.settings.into(),
+        None,
+        &Watch::NOBODY,
+    )
+    .expect("a solution");
+    let scan_line = ScanLine::showing(Arc::new(solution), &prepared, &plan).expect("a renderer");
     let picture = scan_line.render(&view, &Order::of(&prepared.settings), &Watch::NOBODY).expect("a picture").picture;
     let side = 128 / theirs.len();
     let mean_of = |bands: &[f64; 3]| bands.iter().sum::<f64>() / 3.0;

@@ -5,12 +5,12 @@ use glam::DMat4;
 use host::{
     picture::Picture,
     plan::Plan,
-    render::{Order, Renderer, Watch, radiosity::Radiosity, scan_line::ScanLine},
+    render::{Order, Renderer, Watch, World, indirect::IndirectLight, radiosity::Radiosity, scan_line::ScanLine},
     scene::{Prepared, Projection, View},
     script,
     workstation::{Patience, Session},
 };
-use std::{fs, path::Path, time::Duration};
+use std::{fs, path::Path, sync::Arc, time::Duration};
 use tests::{Machine, run};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
@@ -51,9 +51,9 @@ fn difference(a: &[[u8; 3]], b: &[[u8; 3]]) -> (f64, f64) {
 }
 
 /// What the host shows of its solution.
-fn shown(solution: &Radiosity, prepared: &Prepared, plan: &Plan, matrix: &DMat4) -> Vec<[u8; 3]> {
+fn shown(solution: &Arc<Radiosity>, prepared: &Prepared, plan: &Plan, matrix: &DMat4) -> Vec<[u8; 3]> {
     let view = View::Projection(Projection::from_workstation(matrix, false));
-    let scan_line = ScanLine::showing(solution, prepared, plan).unwrap();
+    let scan_line = ScanLine::showing(Arc::clone(solution) as Arc<dyn IndirectLight>, prepared, plan).unwrap();
     let order = Order::of(&prepared.settings);
     let picture: Picture = scan_line.render(&view, &order, &Watch::NOBODY).unwrap().picture;
     picture.to_srgb8().as_chunks::<3>().0.to_vec()
@@ -76,7 +76,9 @@ fn the_light_of_a_solution_is_seen_on_the_workstation_from_wherever_the_dials_tu
     let mut prepared = Prepared::new(&scene).unwrap();
     prepared.settings.interreflection = true;
     let plan = Plan::new(&prepared, &prepared.view());
-    let solution = Radiosity::new(&prepared, &plan, &prepared.settings.into(), None, &Watch::NOBODY).unwrap();
+    let world = World::new(&prepared, &plan).unwrap();
+    let solution = Radiosity::new(&world, &plan, &prepared.settings.into(), None, &Watch::NOBODY).unwrap();
+    let solution = Arc::new(solution);
     let mut session = Session::attach(&to.parse().unwrap(), Patience::default()).unwrap();
     let mut pictures = Vec::new();
     for turn in ["dial 8 0.1", "dial 2 0.08"] {

@@ -147,7 +147,7 @@ pub struct Ready<'a> {
 /// A renderer, by how it makes its pictures.
 pub enum Made<'a> {
     /// Sample by sample: [`RendererRow::adds_samples`].
-    BySamples(RayTracer<'a>),
+    BySamples(Box<RayTracer<'a>>),
     /// At once.
     Whole(Box<dyn Renderer + 'a>),
 }
@@ -156,7 +156,7 @@ impl<'a> Made<'a> {
     /// As any renderer.
     pub fn any(&self) -> &(dyn Renderer + 'a) {
         match self {
-            Made::BySamples(tracer) => tracer,
+            Made::BySamples(tracer) => &**tracer,
             Made::Whole(renderer) => &**renderer,
         }
     }
@@ -217,7 +217,7 @@ pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<
 
 fn ray_tracing<'a>(task: &Task<'a>) -> Result<Ready<'a>, RenderError> {
     let (tracer, radiosity) = ray_tracer_watched(task)?;
-    Ok(Ready { renderer: Made::BySamples(tracer), radiosity })
+    Ok(Ready { renderer: Made::BySamples(Box::new(tracer)), radiosity })
 }
 
 #[cfg(test)]

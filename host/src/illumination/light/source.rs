@@ -67,7 +67,7 @@ pub(super) enum Kind {
     Luminaire { at: DVec3, axes: DMat3, table: Arc<Goniometry> },
     Area(Patch),
     Mesh(Triangles),
-    Sky(Sky),
+    Sky(Box<Sky>),
 }
 
 /// Triangles that emit on both sides, drawn evenly by area.
@@ -101,7 +101,9 @@ impl Source {
                 Kind::Luminaire { at: *at, axes, table: Arc::new(goniometry.clone()) }
             }
             Light::Area { patch, .. } => Kind::Area(*patch),
-            Light::Sky { map, radiance, turned } => Kind::Sky(Sky::new(map.as_ref(), radiance, *turned, wavelengths)),
+            Light::Sky { map, radiance, turned } => {
+                Kind::Sky(Box::new(Sky::new(map.as_ref(), radiance, *turned, wavelengths)))
+            }
         };
         Source { strength, kind }
     }
@@ -111,7 +113,9 @@ impl Source {
     /// - `portals`: rectangles whose normals, across x up, point inwards.
     pub fn with_portals(self, portals: &[Patch]) -> Source {
         match self.kind {
-            Kind::Sky(sky) if !portals.is_empty() => Source { kind: Kind::Sky(sky.with_portals(portals)), ..self },
+            Kind::Sky(sky) if !portals.is_empty() => {
+                Source { kind: Kind::Sky(Box::new(sky.with_portals(portals))), ..self }
+            }
             _ => self,
         }
     }
