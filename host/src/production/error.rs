@@ -4,7 +4,7 @@ use crate::render::RenderError;
 use crate::scene::SceneError;
 use crate::workstation::WorkstationError;
 
-/// Why the main job failed.
+/// A reason for which the main job failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ProductionError {
     /// The scene is wrong.

@@ -4,7 +4,7 @@ use crate::illumination::material::MaterialError;
 use crate::octree::OctreeError;
 use crate::picture::PictureError;
 
-/// Why there is no picture.
+/// A reason for which there is no picture.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// The octree cannot be built.
@@ -32,7 +32,7 @@ pub enum RenderError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Why there is no solution.
+/// A reason for which radiosity has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Unsolvable {
     /// Light that nothing takes away.

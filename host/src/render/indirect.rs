@@ -2,7 +2,7 @@
 
 use crate::color::Channels;
 
-/// Which part of the light.
+/// A part of the light that comes to surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// All of it.

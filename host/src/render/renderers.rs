@@ -28,7 +28,7 @@ pub enum Technique {
 
 /// What is known of a renderer.
 pub struct RendererRow {
-    /// Which one it is.
+    /// The technique that the row describes.
     pub technique: Technique,
     /// Its name on the command line.
     pub option: &'static str,

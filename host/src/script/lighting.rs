@@ -27,6 +27,9 @@ pub(super) const SPECTRUM: Parameter = parameter(
 );
 
 const AT: Parameter = parameter("at", Kind::Vector, Required, "where it is");
+const CORNER: Parameter = parameter("corner", Kind::Vector, Required, "a corner");
+const ACROSS: Parameter = parameter("across", Kind::Vector, Required, "from the corner along one side");
+const UP: Parameter = parameter("up", Kind::Vector, Required, "from the corner along the other side");
 const INTENSITY: Parameter = parameter("intensity", Kind::Powers, Is("that of the power"), "radiant intensity, W/sr");
 const RADIANCE: Parameter = parameter("radiance", Kind::Powers, Is("that of the power"), "radiance, W/(m² sr)");
 const POWER: Parameter = parameter("power", Kind::Powers, Is("that of the radiance"), "radiant power, W");
@@ -133,20 +136,9 @@ pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         name: "rectangle_light",
         summary: "Adds a rectangle that shines on one side: where its two sides turn counter-clockwise.",
-        parameters: &[
-            parameter("corner", Kind::Vector, Required, "a corner"),
-            parameter("across", Kind::Vector, Required, "from the corner along one side"),
-            parameter("up", Kind::Vector, Required, "from the corner along the other side"),
-            RADIANCE,
-            POWER,
-            SPECTRUM,
-        ],
+        parameters: &[CORNER, ACROSS, UP, RADIANCE, POWER, SPECTRUM],
         example: "rectangle_light(#{ corner: [-1, 5, -1], across: [2, 0, 0], up: [0, 0, 2], power: 60 });",
-        action: |builder, bound| {
-            let vector = |name| bound.vector(name).unwrap_or_default();
-            let patch = Patch::Rectangle { corner: vector("corner"), across: vector("across"), up: vector("up") };
-            add_area(builder, bound, patch)
-        },
+        action: |builder, bound| add_area(builder, bound, rectangle(bound)),
     },
     Function {
         name: "disc_light",
@@ -213,18 +205,13 @@ pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         name: "portal",
         summary: "Tells of an opening through which the light of the sky comes into a room, a rectangle whose sides turn counter-clockwise seen from within: rays look for the sky there, and pictures of the room have less noise. It has no light of its own.",
-        parameters: &[
-            parameter("corner", Kind::Vector, Required, "a corner"),
-            parameter("across", Kind::Vector, Required, "from the corner along one side"),
-            parameter("up", Kind::Vector, Required, "from the corner along the other side"),
-        ],
+        parameters: &[CORNER, ACROSS, UP],
         example: "portal(#{ corner: [3, 1, -1], across: [0, 0, 2], up: [0, 1.5, 0] });",
         action: |builder, bound| {
             if builder.scene.portals.len() >= MAX_PORTALS {
                 return Err(format!("more than {MAX_PORTALS} portals"));
             }
-            let vector = |name: &str| bound.vector(name).unwrap_or_default();
-            let portal = Patch::Rectangle { corner: vector("corner"), across: vector("across"), up: vector("up") };
+            let portal = rectangle(bound);
             portal.check().map_err(|error| error.to_string())?;
             builder.scene.portals.push(portal);
             Ok(Dynamic::UNIT)
@@ -251,6 +238,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
         },
     },
 ];
+
+/// The rectangle of a corner and two sides.
+fn rectangle(bound: &Bound) -> Patch {
+    let vector = |name: &str| bound.vector(name).unwrap_or_default();
+    Patch::Rectangle { corner: vector("corner"), across: vector("across"), up: vector("up") }
+}
 
 fn directional_light(builder: &mut Builder, bound: &Bound) -> Done {
     let direction = bound.vector("direction").unwrap_or_default();

@@ -24,7 +24,7 @@ impl LightPosition {
 /// One point of a light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lamp {
-    /// Which of the sources it is of.
+    /// Index of the source that it is a point of.
     pub(super) source: usize,
     pub(super) point: LightPoint,
     pub(super) position: LightPosition,

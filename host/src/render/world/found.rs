@@ -23,7 +23,7 @@ pub(in crate::render) struct Found<'a> {
     pub(in crate::render) optics: &'a Optics,
     pub(in crate::render) triangle: u32,
     pub(in crate::render) object: u32,
-    /// Which of the object's materials.
+    /// Number of the material among those of the object.
     pub(in crate::render) material: u32,
     /// From where the ray began to the triangle.
     pub(in crate::render) distance: f64,
