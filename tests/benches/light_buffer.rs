@@ -20,13 +20,13 @@ fn main() {
     let samples = if is_bench { 16 } else { 2 };
     let mut scene = host::script::load("room", &host::script::Inputs::default()).expect("a scene that ships").scene;
     if !is_bench {
-        scene.settings.width = 48;
-        scene.settings.height = 30;
+        scene.settings.image.width = 48;
+        scene.settings.image.height = 30;
     }
     let camera = scene.camera.expect("the room is seen");
     let prepared = Prepared::new(&scene).expect("a sound scene");
     let mut without = prepared.clone();
-    without.settings.light_buffer = false;
+    without.settings.light.buffer = false;
     let runs = [&prepared, &without].map(|prepared| {
         let plan = Plan::new(prepared, &View::Camera(camera));
         let tracer = ray_tracer(prepared, &plan).expect("an octree");

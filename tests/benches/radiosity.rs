@@ -10,9 +10,9 @@ use host::illumination::material::Classic;
 use host::illumination::{Light, Paint};
 use host::plan::Plan;
 use host::render::indirect::{IndirectLight, Part};
-use host::render::radiosity::{Exitance, Radiosity, Settings};
+use host::render::radiosity::{Exitance, Radiosity};
 use host::render::{Watch, World};
-use host::scene::{Object, Prepared, Scene, Shape};
+use host::scene::{Interreflection, Object, Prepared, RadiositySettings, Scene, Shape};
 use host::solid::Primitive;
 
 fn main() {
@@ -21,7 +21,7 @@ fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
     let ball = prepared(vec![object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DVec3::ZERO, 0.99)], vec![]);
     let inside = |_: u32, outside: bool, _: DVec3| if outside { Channels::ZERO } else { Channels::ONE };
-    let furnace = pool.install(|| solved(&ball, Settings::default(), Some(&inside)));
+    let furnace = pool.install(|| solved(&ball, RadiositySettings::default(), Some(&inside)));
     let found = 1.0 + 0.99 * furnace.irradiance(0, false, [1.0 / 3.0; 3], Part::All).0[0];
     assert!((found / 100.0 - 1.0).abs() < 1e-6, "{found} is not 100");
     let room = room();
@@ -40,11 +40,11 @@ fn main() {
     }
 }
 
-fn settings(error: f64, finest: f64) -> Settings {
-    Settings { error, finest, ..Settings::default() }
+fn settings(error: f64, finest: f64) -> RadiositySettings {
+    RadiositySettings { error, finest, ..RadiositySettings::default() }
 }
 
-fn solved(prepared: &Prepared, settings: Settings, exitance: Option<Exitance<'_>>) -> Radiosity {
+fn solved(prepared: &Prepared, settings: RadiositySettings, exitance: Option<Exitance<'_>>) -> Radiosity {
     let plan = Plan::new(prepared, &prepared.view());
     let world = World::new(prepared, &plan).expect("a world");
     Radiosity::new(&world, &plan, &settings, exitance, &Watch::NOBODY).expect("a solution")
@@ -52,7 +52,7 @@ fn solved(prepared: &Prepared, settings: Settings, exitance: Option<Exitance<'_>
 
 fn prepared(objects: Vec<Object>, lights: Vec<Light>) -> Prepared {
     let mut scene = Scene { objects, lights, ..Scene::default() };
-    scene.settings.interreflection = true;
+    scene.settings.light.interreflection = Interreflection::Followed;
     Prepared::new(&scene).expect("a scene")
 }
 

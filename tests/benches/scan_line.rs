@@ -64,7 +64,7 @@ fn row<R>(name: &str, build: impl Fn() -> R, render: impl Fn(&R) -> Rendering) {
 }
 
 fn order(side: u32, samples: u32) -> Order {
-    let settings = Settings { width: side, height: side, samples, ..Settings::default() };
+    let settings = Settings::of_size(side, side, samples);
     Order { threads: NonZeroUsize::new(2), ..Order::of(&settings) }
 }
 

@@ -11,7 +11,7 @@ use host::plan::Plan;
 use host::render::ray_tracer;
 use host::render::ray_tracing::RayTracer;
 use host::render::{Order, Renderer, Rendering, Watch};
-use host::scene::{Prepared, Scene, View};
+use host::scene::{Interreflection, Prepared, Scene, View};
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
@@ -36,12 +36,13 @@ fn main() {
     let is_bench = std::env::args().any(|argument| argument == "--bench");
     let mut scene = host::script::load("caustic", &host::script::Inputs::default()).expect("a scene that ships").scene;
     let (side, most) = if is_bench { (256, 2048) } else { (24, 64) };
-    (scene.settings.width, scene.settings.height) = (side, side);
+    (scene.settings.image.width, scene.settings.image.height) = (side, side);
     let with = |(photons, samples, points, carried): (u32, u32, u32, bool), seed: u64| {
         let mut scene = scene.clone();
         let settings = &mut scene.settings;
-        (settings.photons, settings.samples, settings.light_samples) = (photons, samples, points);
-        (settings.interreflection, settings.seed) = (carried, seed);
+        (settings.photons.count, settings.image.samples, settings.light.samples) = (photons, samples, points);
+        (settings.light.interreflection, settings.image.seed) =
+            (if carried { Interreflection::Followed } else { Interreflection::LeftOut }, seed);
         scene
     };
     let reference = [11, 12].map(|seed| timed(&with((200_000, most / 2, 1, true), seed), 2).0);
@@ -119,7 +120,7 @@ fn views(scene: &Scene, is_bench: bool) {
     let one = start.elapsed().as_secs_f64();
     assert!(alone == pictures[VIEWS as usize - 1], "a view depends on those before it");
     if is_bench {
-        let photons = scene.settings.photons;
+        let photons = scene.settings.photons.count;
         println!("{photons} photons: one view {one:.2} s, {VIEWS} views {all:.2} s, {:.2} times as long", all / one);
     }
 }

@@ -6,7 +6,7 @@ use host::plan::Plan;
 use host::render::radiosity::Radiosity;
 use host::render::scan_line::ScanLine;
 use host::render::{Order, Renderer, Watch, World, ray_tracer};
-use host::scene::Prepared;
+use host::scene::{Interreflection, Prepared};
 use host::script::{Definition, Inputs, load_file};
 use serde_json::Value;
 use std::path::Path;
@@ -82,15 +82,15 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
     let kept: Value = serde_json::from_str(&text).expect("JSON");
     let theirs: Vec<Vec<[f64; 3]>> = serde_json::from_value(kept["regions"].clone()).expect("regions");
     let mut scene = load_file(&folder.join("../host/scenes/cornell.rhai"), &Inputs::default()).expect("the box").scene;
-    (scene.settings.width, scene.settings.height) = (128, 128);
-    scene.settings.interreflection = true;
+    (scene.settings.image.width, scene.settings.image.height) = (128, 128);
+    scene.settings.light.interreflection = Interreflection::Followed;
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
     let solution = Radiosity::new(
         &World::new(&prepared, &plan).expect("a world"),
         &plan,
-        &prepared.settings.into(),
+        &prepared.settings.radiosity,
         None,
         &Watch::NOBODY,
     )

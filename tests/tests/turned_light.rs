@@ -2,6 +2,7 @@
 //! dials set.
 
 use glam::DMat4;
+use host::scene::Interreflection;
 use host::{
     picture::Picture,
     plan::Plan,
@@ -74,10 +75,10 @@ fn the_light_of_a_solution_is_seen_on_the_workstation_from_wherever_the_dials_tu
 
     let scene = script::evaluate(&cornell(), "box", Path::new(""), &script::Inputs::default()).unwrap().scene;
     let mut prepared = Prepared::new(&scene).unwrap();
-    prepared.settings.interreflection = true;
+    prepared.settings.light.interreflection = Interreflection::Followed;
     let plan = Plan::new(&prepared, &prepared.view());
     let world = World::new(&prepared, &plan).unwrap();
-    let solution = Radiosity::new(&world, &plan, &prepared.settings.into(), None, &Watch::NOBODY).unwrap();
+    let solution = Radiosity::new(&world, &plan, &prepared.settings.radiosity, None, &Watch::NOBODY).unwrap();
     let solution = Arc::new(solution);
     let mut session = Session::attach(&to.parse().unwrap(), Patience::default()).unwrap();
     let mut pictures = Vec::new();

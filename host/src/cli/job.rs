@@ -172,7 +172,7 @@ impl Job<'_> {
         let folder = Folder::make(std::path::absolute(&folder)?)?;
         interrupts::say_kept(format!("what was finished is in {}", folder.path().display()));
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
-        self.scene.settings.samples = self.common.samples.unwrap_or(self.scene.settings.samples);
+        self.scene.settings.image.samples = self.common.samples.unwrap_or(self.scene.settings.image.samples);
         super::warn_of_emptiness(&self.scene);
         let patience = self.common.waits.patience();
         let (mut emulator, line) = match self.to {

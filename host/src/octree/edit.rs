@@ -4,6 +4,7 @@
 //! object touches, and the result is the octree that would have been built of the final objects.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -35,8 +36,8 @@ impl Octree {
         self.divide();
         let first = self.vertices.len() as u32;
         let added = self.triangles.len()..total;
-        self.vertices.extend(vertices);
-        self.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        Arc::make_mut(&mut self.vertices).extend(vertices);
+        Arc::make_mut(&mut self.triangles).extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
         self.objects.push(Object { vertices: vertices.len(), triangles: triangles.len() });
         let division = self.division();
         let homes = merged(&self.nodes().homes, &division.homes(added.clone()));
@@ -68,9 +69,10 @@ impl Octree {
         let behind = leaves.triangles.iter_mut().filter(|triangle| **triangle as usize >= removed.end);
         behind.for_each(|triangle| *triangle -= triangles as u32);
         self.nodes = Nodes { homes, leaves }.into();
-        self.triangles.drain(removed);
-        self.vertices.drain(first_vertex..first_vertex + vertices);
-        self.triangles[first..].iter_mut().flatten().for_each(|corner| *corner -= vertices as u32);
+        let kept = Arc::make_mut(&mut self.triangles);
+        kept.drain(removed);
+        Arc::make_mut(&mut self.vertices).drain(first_vertex..first_vertex + vertices);
+        kept[first..].iter_mut().flatten().for_each(|corner| *corner -= vertices as u32);
         self.objects.remove(object);
         self.drop_index();
         true

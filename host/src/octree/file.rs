@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::mesh::Mesh;
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::build::{Division, Leaves, Nodes, Reference, eighths};
 use super::cube::Cube;
@@ -87,7 +88,7 @@ impl Octree {
             leaf_triangles: self.leaf_triangles as u64,
             objects: self.objects.iter().map(|o| [o.vertices as u64, o.triangles as u64]).collect(),
             vertices: self.vertices.iter().map(DVec3::to_array).collect(),
-            triangles: self.triangles.clone(),
+            triangles: self.triangles.to_vec(),
             codes: leaves.codes.iter().map(|code| code.bits()).collect(),
             counts: (0..leaves.codes.len()).map(|leaf| leaves.of(leaf).len() as u32).collect(),
             references: leaves.triangles.clone(),
@@ -109,7 +110,7 @@ impl Octree {
     /// The triangles, with the numbers of their objects as surfaces.
     pub fn mesh(&self) -> Mesh {
         let surfaces = (0..).zip(&self.objects).flat_map(|(number, object)| vec![number; object.triangles]);
-        let (vertices, triangles) = (self.vertices.clone(), self.triangles.clone());
+        let (vertices, triangles) = (self.vertices.to_vec(), self.triangles.to_vec());
         Mesh { vertices, triangles, surfaces: surfaces.collect(), ..Mesh::default() }
     }
 
@@ -183,8 +184,8 @@ impl Stored {
         let objects = self.objects(&vertices)?;
         let leaves = self.leaves()?;
         let settings = Settings { depth: self.depth, leaf_triangles, ..Settings::default() };
-        let mut octree = Octree { vertices, objects, ..Octree::of_cube(cube, &settings) };
-        octree.triangles = self.triangles;
+        let mut octree = Octree { vertices: Arc::new(vertices), objects, ..Octree::of_cube(cube, &settings) };
+        octree.triangles = Arc::new(self.triangles);
         let division = octree.division();
         let all = division.references(0..octree.triangles.len());
         check_nodes(&division, &leaves, LocationalCode::ROOT, 0..leaves.codes.len(), &all)?;

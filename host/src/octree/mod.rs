@@ -33,7 +33,7 @@ mod walk;
 #[cfg(test)]
 mod tests;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
@@ -171,8 +171,9 @@ pub struct Octree {
     depth: u32,
     leaf_triangles: usize,
     walk: Walk,
-    vertices: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
+    /// Shared with whoever put them in.
+    vertices: Arc<Vec<DVec3>>,
+    triangles: Arc<Vec<[u32; 3]>>,
     objects: Vec<Object>,
     /// Made when they are first asked for: rays down the index do without.
     nodes: OnceLock<Nodes>,
@@ -190,11 +191,23 @@ impl Octree {
     /// A vertex that is not finite or too far out, an index out of range, more than [`MAX_TRIANGLES`]. No triangles
     /// at all is fine.
     pub fn build(vertices: &[DVec3], triangles: &[[u32; 3]], settings: &Settings) -> Result<Self, OctreeError> {
-        check(vertices, triangles)?;
-        let mut octree = Self::of_cube(enclose(vertices, triangles), settings);
-        octree.vertices = vertices.to_vec();
-        octree.triangles = triangles.to_vec();
-        octree.objects = vec![Object { vertices: vertices.len(), triangles: triangles.len() }];
+        Self::sharing(Arc::new(vertices.to_vec()), Arc::new(triangles.to_vec()), settings)
+    }
+
+    /// Builds the octree of one object, whose vertices and triangles it does not copy.
+    ///
+    /// # Errors
+    /// Those of [`Octree::build`].
+    pub fn sharing(
+        vertices: Arc<Vec<DVec3>>,
+        triangles: Arc<Vec<[u32; 3]>>,
+        settings: &Settings,
+    ) -> Result<Self, OctreeError> {
+        check(&vertices, &triangles)?;
+        let mut octree = Self::of_cube(enclose(&vertices, &triangles), settings);
+        (octree.vertices, octree.triangles) = (vertices, triangles);
+        let [vertices, triangles] = [octree.vertices.len(), octree.triangles.len()];
+        octree.objects = vec![Object { vertices, triangles }];
         Ok(octree.with_walk(settings.walk))
     }
 
@@ -220,8 +233,8 @@ impl Octree {
             depth: depth.count() as u32,
             leaf_triangles: settings.leaf_triangles,
             walk: Walk::LeadingDirection,
-            vertices: Vec::new(),
-            triangles: Vec::new(),
+            vertices: Arc::default(),
+            triangles: Arc::default(),
             objects: Vec::new(),
             nodes: OnceLock::new(),
             index: Index::default(),
@@ -344,6 +357,11 @@ impl Octree {
     /// Number of objects.
     pub fn objects(&self) -> usize {
         self.objects.len()
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
     }
 
     /// The terminal nodes that hold surface, sorted.

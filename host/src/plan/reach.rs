@@ -12,7 +12,7 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
     let Some(projections) = views.iter().map(View::projection).collect::<Option<Vec<_>>>() else {
         return prepared.objects.iter().map(|_| Decision::new(true, "the view is not known")).collect();
     };
-    let window = View::window(prepared.settings.width, prepared.settings.height);
+    let window = View::window(prepared.settings.image.width, prepared.settings.image.height);
     let is_seen = |bounds: &Bounds| projections.iter().any(|seen| !bounds.is_outside(&seen.to_clip, window));
     let visible: Vec<bool> = prepared.objects.iter().map(|o| o.count > 0 && is_seen(&o.bounds)).collect();
     let seen = prepared.objects.iter().zip(&visible).filter(|(_, v)| **v);

@@ -5,7 +5,8 @@ use crate::illumination::Light;
 use crate::illumination::Material;
 use crate::illumination::distribution::TableError;
 use crate::illumination::material::{Body, Classic, Coated, Form, Shaped};
-use crate::scene::{Prepared, PreparedObject};
+use crate::illumination::optics::Interreflection;
+use crate::scene::{Caustics, Prepared, PreparedObject};
 
 /// A stage of rendering that can be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -100,10 +101,10 @@ impl<'a> Facts<'a> {
     pub(super) fn reflection(&self) -> Decision {
         let mirrors = self.count(carries_on);
         let settings = &self.prepared.settings;
-        let spread = (settings.interreflection || settings.radiosity) && self.count(has_diffuse) > 0;
+        let spread = settings.light.interreflection != Interreflection::LeftOut && self.count(has_diffuse) > 0;
         if mirrors == 0 && !spread {
             Decision::new(false, "no material is a mirror, transparent, or rough and shiny")
-        } else if self.prepared.settings.reflection_depth == 0 {
+        } else if self.prepared.settings.light.reflection_depth == 0 {
             Decision::new(false, "reflection depth is 0")
         } else if mirrors == 0 {
             Decision::new(true, "diffuse light goes from surface to surface")
@@ -208,7 +209,7 @@ impl Stage {
             Stage::Reflection => facts.reflection(),
             Stage::Radiosity => radiosity(facts),
             Stage::Motion => motion(facts),
-            Stage::AntiAliasing => match facts.prepared.settings.samples {
+            Stage::AntiAliasing => match facts.prepared.settings.image.samples {
                 1 => Decision::new(false, "one sample: the centre of each pixel"),
                 n => Decision::new(true, format!("{n} samples in each pixel")),
             },
@@ -221,7 +222,7 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
     if !shadows.needed {
         return Decision::new(false, "without shadows nothing is looked for between surfaces and lights");
     }
-    if !facts.prepared.settings.light_buffer {
+    if !facts.prepared.settings.light.buffer {
         return Decision::new(false, "the scene asks for all rays to lights");
     }
     let bright = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
@@ -242,7 +243,7 @@ fn caught_light(facts: &Facts<'_>) -> Decision {
     let lamps = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
     let even = lamps.filter(|(_, light)| matches!(light, Light::Sky { map: None, .. })).count();
     let lamps = facts.lights() - even;
-    if !facts.prepared.settings.two_way {
+    if facts.prepared.settings.light.caustics != Caustics::PhotonMapped {
         Decision::new(false, "the scene does not ask for two-way ray tracing")
     } else if throwers == 0 {
         Decision::new(false, "no material is a mirror, transparent or shiny: light goes straight")
@@ -258,7 +259,7 @@ fn caught_light(facts: &Facts<'_>) -> Decision {
 
 /// An approximation, which is never forced.
 fn surface_points(facts: &Facts<'_>) -> Decision {
-    match facts.prepared.settings.point_depth {
+    match facts.prepared.settings.photons.point_depth {
         None => Decision::new(false, "rays meet surfaces themselves, as the scene does not ask for points"),
         Some(_) if !caught_light(facts).needed => Decision::new(false, "no light is followed from lamps"),
         Some(depth) => Decision::new(true, format!("the scene asks for {} voxels a side", 1_u64 << depth)),
@@ -268,7 +269,7 @@ fn surface_points(facts: &Facts<'_>) -> Decision {
 fn radiosity(facts: &Facts<'_>) -> Decision {
     let diffuse = facts.kept().filter(|object| object.materials.iter().any(has_diffuse));
     let (objects, triangles) = diffuse.fold((0, 0), |(objects, all), object| (objects + 1, all + object.count));
-    if !facts.prepared.settings.radiosity {
+    if facts.prepared.settings.light.interreflection != Interreflection::Solved {
         Decision::new(false, "the scene does not ask for it")
     } else if facts.lights() == 0 {
         Decision::new(false, "no light has power")
@@ -302,7 +303,7 @@ fn normals(facts: &Facts<'_>) -> Decision {
 
 fn exact_surfaces(facts: &Facts<'_>) -> Decision {
     match facts.kept().filter(|o| o.is_exact()).count() {
-        0 if !facts.prepared.settings.exact_surfaces => Decision::new(false, "the scene asks for triangles"),
+        0 if !facts.prepared.settings.geometry.exact_surfaces => Decision::new(false, "the scene asks for triangles"),
         0 => Decision::new(false, "no curved surface is known but by its triangles"),
         n => Decision::new(true, format!("{}, where rays meet them", counted(n, "object"))),
     }
@@ -319,7 +320,7 @@ fn textures(facts: &Facts<'_>) -> Decision {
 fn spectra(facts: &Facts<'_>) -> Decision {
     let lights = facts.prepared.lights.iter().zip(&facts.bright);
     let lights = lights.filter(|(light, bright)| **bright && light.is_spectral()).count();
-    match (facts.prepared.settings.spectral, facts.count(Material::is_spectral), lights) {
+    match (facts.prepared.settings.light.spectral, facts.count(Material::is_spectral), lights) {
         (Some(true), ..) => Decision::new(true, "the scene asks for them"),
         (Some(false), ..) => Decision::new(false, "the scene asks for three bands"),
         (None, 0, 0) => Decision::new(false, "no material and no light has a spectrum: three bands tell all"),

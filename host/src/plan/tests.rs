@@ -36,7 +36,7 @@ fn scene() -> Scene {
         parallel: None,
     };
     let mut scene = Scene { objects, lights, camera: Some(camera), ..Scene::default() };
-    scene.settings.samples = 1;
+    scene.settings.image.samples = 1;
     scene
 }
 
@@ -70,13 +70,13 @@ fn each_property_brings_its_stage() {
     assert!(with(|s| material(s).mirror = Paint::grey(0.1)).needs(Stage::Reflection));
     assert!(with(|s| material(s).specular = Paint::grey(0.1)).needs(Stage::Specular));
     assert!(with(|s| s.ambient = Bands::splat(0.1)).needs(Stage::Ambient));
-    assert!(with(|s| s.settings.samples = 2).needs(Stage::AntiAliasing));
+    assert!(with(|s| s.settings.image.samples = 2).needs(Stage::AntiAliasing));
     assert!(with(|s| s.objects[0].shape = Shape::Solid(Primitive::Sphere { radius: 1.0 })).needs(Stage::Normals));
     let dark = with(|s| s.lights.clear());
     assert!(!dark.needs(Stage::Shadows) && !dark.needs(Stage::Diffuse));
     let shallow = with(|s| {
         material(s).mirror = Paint::grey(0.1);
-        s.settings.reflection_depth = 0;
+        s.settings.light.reflection_depth = 0;
     });
     assert!(!shallow.needs(Stage::Reflection));
 }

@@ -284,11 +284,12 @@ impl Production {
 pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -> Result<Tiling, ProductionError> {
     let mut prepared = Prepared::new(scene)?;
     // Surfaces out of view send light, too, and come into view.
-    prepared.settings.interreflection = true;
+    prepared.settings.light.interreflection.count();
     let plan = Plan::new(&prepared, &prepared.view());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, |n| n.get())).build();
     let tiling = pool.map_err(RenderError::from)?.install(|| {
-        let solution = Radiosity::new(&World::new(&prepared, &plan)?, &plan, &prepared.settings.into(), None, watch)?;
+        let solution =
+            Radiosity::new(&World::new(&prepared, &plan)?, &plan, &prepared.settings.radiosity, None, watch)?;
         Tiling::new(&solution, &prepared, &plan, MOST_CORNERS)
     })?;
     match tiling.corners() {

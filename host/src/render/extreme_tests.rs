@@ -9,7 +9,7 @@ use crate::illumination::material::{Body, Classic, Coated, Finish, Index, Materi
 use crate::illumination::{Bands, Light, Paint};
 use crate::picture::difference;
 use crate::plan::Plan;
-use crate::scene::{Camera, Object, Parallel, Prepared, Scene, Settings, Shape, View};
+use crate::scene::{Camera, Interreflection, Object, Parallel, Prepared, Scene, Settings, Shape, View};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
@@ -66,7 +66,8 @@ fn from_above(from: f64, height: f64) -> Camera {
 }
 
 fn scene(objects: Vec<Object>, lights: Vec<Light>, camera: Camera, side: u32, samples: u32) -> Scene {
-    let settings = Settings { width: side, height: side, samples, spectral: Some(false), ..Settings::default() };
+    let mut settings = Settings::of_size(side, side, samples);
+    settings.light.spectral = Some(false);
     Scene { objects, lights, settings, camera: Some(camera), ..Scene::default() }
 }
 
@@ -151,7 +152,7 @@ fn no_roughness_and_no_angle_creates_light() {
             let sky = Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 };
             let word = material.word();
             let mut scene = scene(vec![ground(1e3, DMat4::IDENTITY, material)], vec![sky], at_angle(0.0), 1, 256);
-            scene.settings.interreflection = true;
+            scene.settings.light.interreflection = Interreflection::Followed;
             let prepared = Prepared::new(&scene).expect("a scene");
             let plan = Plan::new(&prepared, &prepared.view());
             let tracer = ray_tracer(&prepared, &plan).expect("ready");
@@ -190,7 +191,7 @@ fn glass_of_almost_the_index_of_air_is_not_seen_and_one_of_a_thousand_loses_noth
     for (index, tolerance) in [(1.0 + 1e-9, 1e-4), (1.0 - 1e-9, 1e-4), (1e3, 1e-2)] {
         let eye = camera(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, 24.0);
         let mut scene = scene(vec![ball(1.0, DVec3::ZERO, glass(index, 0.0, 0.0))], vec![], eye, 12, 64);
-        (scene.background, scene.settings.reflection_depth) = (Bands::ONE, 200);
+        (scene.background, scene.settings.light.reflection_depth) = (Bands::ONE, 200);
         let rendering = render(&scene, true);
         let pixels = rendering.film.tallies();
         let mean = pixels.iter().map(|tally| tally.mean().x).sum::<f64>() / pixels.len() as f64;

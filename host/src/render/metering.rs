@@ -56,12 +56,12 @@ impl Meter {
     /// - `settings`: of the scene, whose width and height tell the sides of its pictures, whatever size they are made in.
     /// - `display`: how pictures are shown. `threads`: as in [`Order`].
     pub fn new(settings: &Settings, display: &DisplayTransform, threads: Option<NonZeroUsize>) -> Meter {
-        let shorter = settings.width.min(settings.height).max(1);
+        let shorter = settings.image.width.min(settings.image.height).max(1);
         let side = |side: u32| {
             let scaled = f64::from(side) / f64::from(shorter) * f64::from(SIDE);
             (scaled.round() as u32).min(SIDE * MOST_ASPECT)
         };
-        Meter { width: side(settings.width), height: side(settings.height), display: *display, threads }
+        Meter { width: side(settings.image.width), height: side(settings.image.height), display: *display, threads }
     }
 
     /// The exposure of pictures, stops: that which the display transform sets, or what the meter finds. Where there is no

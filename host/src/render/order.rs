@@ -1,6 +1,7 @@
 //! How a picture is to be made.
 
 use crate::picture::Filter;
+use crate::scene::{ImageSettings, Settings};
 use std::num::NonZeroUsize;
 
 /// How a picture is to be made.
@@ -34,8 +35,8 @@ pub struct Order {
 
 impl Order {
     /// What the scene's settings ask for, on every core.
-    pub fn of(settings: &crate::scene::Settings) -> Order {
-        let crate::scene::Settings { width, height, samples, filter, seed, .. } = *settings;
+    pub fn of(settings: &Settings) -> Order {
+        let ImageSettings { width, height, samples, filter, seed } = settings.image;
         Order {
             width,
             height,

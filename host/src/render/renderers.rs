@@ -8,9 +8,10 @@ use super::two_way::Shelf;
 use super::world::World;
 use super::{RenderError, Renderer, Watch};
 use crate::plan::{Plan, Stage};
-use crate::scene::{Prepared, Settings};
+use crate::scene::{Caustics, Prepared, Settings};
 use serde::Serialize;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// A way to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -75,7 +76,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         follows_light: true,
         solves: false,
         is_studied: true,
-        require: |settings| settings.two_way = true,
+        require: |settings| settings.light.caustics = Caustics::PhotonMapped,
         prepare: ray_tracing,
     },
     RendererRow {
@@ -103,11 +104,11 @@ pub const RENDERERS: [RendererRow; 4] = [
         solves: true,
         is_studied: false,
         // Surfaces out of view send light, too.
-        require: |settings| settings.interreflection = true,
+        require: |settings| settings.light.interreflection.count(),
         prepare: |task| {
             (task.watch.stage)("while solving for radiosity");
             let world = World::new(task.prepared, task.plan)?;
-            let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.into(), None, &task.watch)?;
+            let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.radiosity, None, &task.watch)?;
             let radiosity = Some(solution.report);
             let scan_line = ScanLine::showing(Arc::new(solution), task.prepared, task.plan)?;
             Ok(Ready { renderer: Made::Whole(Box::new(scan_line)), radiosity })
@@ -160,6 +161,14 @@ impl<'a> Made<'a> {
             Made::Whole(renderer) => &**renderer,
         }
     }
+
+    /// How long it took to build the octrees that its rays go through, whether for it or for an earlier renderer.
+    pub fn octree_time(&self) -> Duration {
+        match self {
+            Made::BySamples(tracer) => tracer.world().octree_time(),
+            Made::Whole(_) => Duration::ZERO,
+        }
+    }
 }
 
 impl Technique {
@@ -208,7 +217,7 @@ pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<
         let caught = tracer.caught(&watch);
         let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
         let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
-        Radiosity::new(tracer.world(), plan, &prepared.settings.into(), exitance, &watch)?
+        Radiosity::new(tracer.world(), plan, &prepared.settings.radiosity, exitance, &watch)?
     };
     let report = solution.report;
     let light: Box<dyn IndirectLight> = Box::new(solution);

@@ -113,7 +113,7 @@ impl Fingerprint {
     pub fn of(scene: &Scene, prepared: &Prepared, order: &Order) -> Fingerprint {
         let checksum = |bytes: &[u8]| crc32fast::hash(bytes);
         let mut scene = scene.clone();
-        scene.settings.samples = 0;
+        scene.settings.image.samples = 0;
         // A film holds radiance, however it is shown.
         scene.display = DisplayTransform::default();
         let words = serde_json::to_vec(&scene).unwrap_or_default();
@@ -292,12 +292,12 @@ mod tests {
     use std::fs;
 
     fn order() -> Order {
-        Order::of(&crate::scene::Settings { width: 3, height: 2, ..Default::default() })
+        Order::of(&crate::scene::Settings::of_size(3, 2, 16))
     }
 
     fn fingerprint(samples: u32, seed: u64, red: f64) -> Fingerprint {
         let mut scene = Scene { background: DVec3::X * red, ..Scene::default() };
-        scene.settings.samples = samples;
+        scene.settings.image.samples = samples;
         let prepared = Prepared::new(&scene).expect("a scene");
         Fingerprint::of(&scene, &prepared, &Order { seed, samples, ..order() })
     }

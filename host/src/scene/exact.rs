@@ -1,6 +1,6 @@
 //! The exact surfaces behind the triangles of a scene, and where rays meet them.
 
-use super::Prepared;
+use super::Contents;
 use super::placing::laid;
 use super::prepared::FLAT_SINE;
 use crate::mesh::Mesh;
@@ -86,7 +86,7 @@ impl fmt::Debug for Exact {
     }
 }
 
-impl Prepared {
+impl Contents {
     /// Where a ray that meets a triangle meets its exact surface.
     ///
     /// None where that is not known, is flat, is not asked for ([`super::Settings::exact_surfaces`]), or where Newton's

@@ -25,7 +25,7 @@ pub struct Meeting {
 pub fn meetings(scene: &Scene, precision: &Precision) -> Result<Vec<Meeting>, SceneError> {
     scene.check()?;
     let placed = |object: &Object| {
-        let made = object.made(scene.settings.tolerance, scene.settings.angle)?;
+        let made = object.made(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
         Ok(object.placed(made))
     };
     let placed: Vec<Made> = scene.objects.iter().map(placed).collect::<Result<_, SceneError>>()?;

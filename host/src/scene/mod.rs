@@ -2,6 +2,7 @@
 //!
 //! Modelling space is right-handed: x right, y up, z towards the viewer. Lengths are in scene units.
 
+mod acceleration;
 mod cage;
 mod composite;
 mod decomposition;
@@ -14,6 +15,7 @@ mod places;
 mod placing;
 mod prepared;
 mod sculpture;
+mod settings;
 mod shape;
 mod shared;
 mod soft_box;
@@ -21,6 +23,7 @@ mod studio;
 mod triangles;
 mod view;
 
+pub use acceleration::{Acceleration, Kept, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
 pub use composite::{Composite, MAX_NESTING, Operation};
 pub use error::SceneError;
@@ -29,19 +32,24 @@ pub use meeting::{Meeting, meetings};
 pub use motion::{Motion, Moved};
 pub use places::{Places, Position};
 pub use placing::{Sides, footprint};
-pub use prepared::{Prepared, PreparedObject};
+pub use prepared::{Contents, Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, Sheet};
+pub use settings::{
+    Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,
+    PhotonSettings, RadiositySettings, Settings,
+};
 pub use shape::{Made, Rounded, Shape, ShapeError};
 pub use studio::Studio;
 pub use view::{Camera, Lens, Parallel, Projection, View};
 
+pub use crate::illumination::optics::Interreflection;
+
 use crate::illumination::light::Patch;
 use crate::illumination::{Bands, Light, Material};
-use crate::octree::MAX_POINT_DEPTH;
-use crate::picture::Filter;
 use crate::picture::display::DisplayTransform;
 use glam::DMat4;
 use serde::{Deserialize, Serialize};
+use settings::check_tolerance;
 
 /// Most objects in a scene.
 pub const MAX_OBJECTS: usize = 100_000;
@@ -49,12 +57,6 @@ pub const MAX_OBJECTS: usize = 100_000;
 pub const MAX_LIGHTS: usize = 10_000;
 /// Most portals in a scene: each is looked at for every direction to a sky.
 pub const MAX_PORTALS: usize = 1_000;
-/// Most samples in a pixel.
-pub const MAX_SAMPLES: u32 = 65_536;
-/// Most ways of light that are followed at a time: caught, they take up to 1.2 GB.
-pub const MAX_PHOTONS: u32 = 16_000_000;
-/// Deepest chain of reflections.
-pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
 
 /// A scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -103,101 +105,6 @@ pub struct Object {
     pub tolerance: Option<f64>,
 }
 
-/// How a scene is rendered.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Settings {
-    /// Columns of the picture.
-    pub width: u32,
-    /// Rows of the picture.
-    pub height: u32,
-    /// Samples in each pixel; one samples the centre.
-    pub samples: u32,
-    /// How samples around a pixel become one value.
-    pub filter: Filter,
-    /// Seed of the sample positions.
-    pub seed: u64,
-    /// How often a ray may be reflected or refracted.
-    pub reflection_depth: u32,
-    /// Points of each light that has a size, for each element.
-    pub light_samples: u32,
-    /// Whether diffuse light is carried on from surface to surface, up to the same depth.
-    pub interreflection: bool,
-    /// Whether ray tracing reads light that diffuse surfaces send each other from a solution by radiosity.
-    pub radiosity: bool,
-    /// Error of the light that one pair of patches brings in radiosity, as a part of the mean irradiance, above 0.
-    pub patch_error: f64,
-    /// Patches are not divided below this length in radiosity, as a part of the diagonal of the scene, above 0.
-    pub finest_patch: f64,
-    /// Directions in which each patch of radiosity looks around, 1 and more.
-    pub patch_directions: u32,
-    /// Error of the solver of radiosity, as a part of the greatest irradiance, above 0.
-    pub patch_tolerance: f64,
-    /// Whether light counts that a mirror or glass throws from a lamp on what is neither. Rays from the eye find it by
-    /// chance only: such pictures take very many samples. Without it, too, highlights of lamps are cut off on what is seen
-    /// by spread light; light goes through polished bodies as if they did not bend it, and light of a sky that mirrors and
-    /// glass throw counts.
-    pub caustics: bool,
-    /// Whether light is followed from lamps through mirrors and glass and caught where it arrives, so that caustics come
-    /// out well: two-way ray tracing.
-    pub two_way: bool,
-    /// How many ways of light are followed each time.
-    pub photons: u32,
-    /// The largest radius over which caught light is spread, scene units; without one, a twentieth of the scene's diagonal.
-    pub photon_radius: Option<f64>,
-    /// Where light is followed from lamps: 2 to this power voxels are along the scene, a point in each stands for the
-    /// surface there, and rays meet these points; without a word, they meet the surfaces.
-    pub point_depth: Option<u32>,
-    /// Whether ray tracing keeps what stands between voxels and lights; the picture is the same without.
-    pub light_buffer: bool,
-    /// Whether rays carry spectra; without a word, where a material or a light has one.
-    pub spectral: Option<bool>,
-    /// Whether rays are led on to the exact surfaces behind the triangles that they meet, for position and normal.
-    pub exact_surfaces: bool,
-    /// How long the shutter is open, in the unit of time of motions.
-    pub shutter: f64,
-    /// Over how much of what a sample stands for the mean of a texture is taken: 1 is all of it, 0 a point.
-    pub texture_filter: f64,
-    /// Largest distance between exact surface and triangles, in scene units; without one, a two-thousandth of the
-    /// diagonal of each object.
-    pub tolerance: Option<f64>,
-    /// Largest turn of the normal from vertex to vertex of an exact surface, degrees. Where it is large, interpolated
-    /// normals are no longer those of the surface, however close the triangles are.
-    pub angle: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings {
-            width: 640,
-            height: 480,
-            samples: 16,
-            filter: Filter::Box,
-            seed: 1,
-            reflection_depth: 6,
-            light_samples: 1,
-            interreflection: false,
-            radiosity: false,
-            patch_error: 0.005,
-            finest_patch: 1.0 / 200.0,
-            patch_directions: 32,
-            patch_tolerance: 1e-6,
-            caustics: false,
-            two_way: false,
-            photons: 200_000,
-            photon_radius: None,
-            point_depth: None,
-            light_buffer: true,
-            spectral: None,
-            exact_surfaces: true,
-            shutter: 1.0,
-            texture_filter: 1.0,
-            tolerance: None,
-            angle: 45.0,
-        }
-    }
-}
-
 impl Scene {
     /// Checks every number in the scene.
     ///
@@ -241,7 +148,7 @@ impl Scene {
     /// How an object moves, if it does while the shutter is open.
     pub fn motion(&self, object: usize) -> Option<Motion> {
         let motion = self.motions.iter().find(|(moving, _)| *moving as usize == object).map(|(_, motion)| *motion);
-        motion.filter(|_| self.settings.shutter > 0.0)
+        motion.filter(|_| self.settings.geometry.shutter > 0.0)
     }
 
     fn check_motions(&self) -> Result<(), SceneError> {
@@ -268,7 +175,7 @@ impl Scene {
     pub fn chord_error(&self) -> Result<f64, SceneError> {
         let mut largest = 0.0f64;
         for object in self.objects.iter().filter(|o| o.shape.is_approximated()) {
-            largest = largest.max(object.chord_error(self.settings.tolerance, self.settings.angle)?);
+            largest = largest.max(object.chord_error(self.settings.geometry.tolerance, self.settings.geometry.angle)?);
         }
         Ok(largest)
     }
@@ -340,58 +247,6 @@ impl Object {
         self.material
             .as_ref()
             .map_or(Ok(()), |material| material.check().map_err(|problem| failed(problem.to_string())))
-    }
-}
-
-impl Settings {
-    fn check(&self) -> Result<(), SceneError> {
-        let pixels = u64::from(self.width) * u64::from(self.height);
-        if pixels == 0 || pixels > crate::picture::MAX_PIXELS {
-            let problem = format!("a picture of {} x {} pixels is empty or too large", self.width, self.height);
-            return Err(SceneError::Setting(problem));
-        }
-        if !(1..=MAX_SAMPLES).contains(&self.samples) {
-            return Err(SceneError::Setting(format!("{} samples are not within 1 to {MAX_SAMPLES}", self.samples)));
-        }
-        if !(1..=MAX_SAMPLES).contains(&self.light_samples) {
-            let problem = format!("{} points of a light are not within 1 to {MAX_SAMPLES}", self.light_samples);
-            return Err(SceneError::Setting(problem));
-        }
-        if !(1..=MAX_PHOTONS).contains(&self.photons) {
-            return Err(SceneError::Setting(format!(
-                "{} ways of light are not within 1 to {MAX_PHOTONS}",
-                self.photons
-            )));
-        }
-        if self.photon_radius.is_some_and(|radius| !(radius > 0.0 && radius.is_finite())) {
-            return Err(SceneError::Setting("the radius of caught light is not a length above 0".into()));
-        }
-        if self.point_depth.is_some_and(|depth| !(1..=MAX_POINT_DEPTH).contains(&depth)) {
-            return Err(SceneError::Setting(format!("a resolution of voxels is not within 1 to {MAX_POINT_DEPTH}")));
-        }
-        if self.reflection_depth > MAX_REFLECTION_DEPTH {
-            return Err(SceneError::Limit { what: "reflections in a chain", limit: u64::from(MAX_REFLECTION_DEPTH) });
-        }
-        if !(0.0..=1000.0).contains(&self.texture_filter) {
-            let problem = format!("texture filter {} is not within 0 to 1000", self.texture_filter);
-            return Err(SceneError::Setting(problem));
-        }
-        if !(self.angle > 0.0 && self.angle <= 180.0) {
-            return Err(SceneError::Setting(format!("angle {} is not within 0 to 180 degrees", self.angle)));
-        }
-        if !(self.shutter >= 0.0 && self.shutter.is_finite()) {
-            let problem = format!("a shutter that is open for {} is no shutter", self.shutter);
-            return Err(SceneError::Setting(problem));
-        }
-        self.tolerance.map_or(Ok(()), check_tolerance).map_err(SceneError::Setting)
-    }
-}
-
-fn check_tolerance(tolerance: f64) -> Result<(), String> {
-    if tolerance.is_finite() && tolerance > 0.0 {
-        Ok(())
-    } else {
-        Err(format!("tolerance {tolerance} is not a length above 0"))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Where on its surface, and in its body, a point of a triangle is: parameters and own coordinates, for textures.
 
-use super::{Object, Prepared};
+use super::{Contents, Object};
 use crate::illumination::texture::{Place, Side};
 use crate::mesh::Mesh;
 use crate::surface::Surface;
@@ -70,7 +70,7 @@ impl Object {
     }
 }
 
-impl Prepared {
+impl Contents {
     /// Where a point of a triangle is, and what of it is looked at.
     ///
     /// - `weights`: of the corners of the triangle. `sides`: tangents, scene units.
@@ -109,6 +109,7 @@ mod tests {
     use crate::color::Color;
     use crate::illumination::material::Classic;
     use crate::illumination::texture::{Laying, Motif, Paint, Pattern};
+    use crate::scene::Prepared;
     use crate::solid::Primitive;
     use glam::DMat4;
 

@@ -1,10 +1,11 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
+use super::acceleration::Built;
 use super::exact::Exact;
 use super::placing;
 use super::shape::GROUND;
 use super::shared::Shared;
-use super::{Camera, Made, Motion, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
+use super::{Camera, GeometrySettings, Made, Motion, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
 use crate::illumination::light::Patch;
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
@@ -13,6 +14,8 @@ use crate::numeric::triangle::MAX_MAGNITUDE;
 use crate::surface::Tolerance;
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 use rustc_hash::FxHashMap;
+use std::ops::Deref;
+use std::sync::Arc;
 
 /// Most triangles in a scene.
 pub const MAX_TRIANGLES: u64 = 1 << 30;
@@ -21,13 +24,21 @@ const RELATIVE_TOLERANCE: f64 = 1.0 / 2000.0;
 /// Normals of a file or surface that are this close to the plane's count as flat (sine of the angle).
 pub(super) const FLAT_SINE: f64 = 1e-6;
 
-/// A scene ready for a renderer.
+/// A scene ready for a renderer, and how it is to be rendered. Copies share all but the settings.
 #[derive(Clone, Debug)]
 pub struct Prepared {
+    contents: Arc<Contents>,
+    /// How to render it. Those of geometry were followed when it was prepared.
+    pub settings: Settings,
+}
+
+/// What is in a prepared scene, whatever its settings become.
+#[derive(Debug)]
+pub struct Contents {
     /// Corners of all triangles, in scene coordinates.
-    pub vertices: Vec<DVec3>,
+    pub vertices: Arc<Vec<DVec3>>,
     /// Triangles, counter-clockwise from outside; those of an object stand together.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Arc<Vec<[u32; 3]>>,
     /// The object that each triangle belongs to, an index into `objects`.
     pub object_of: Vec<u32>,
     /// Unit normals at the corners, for the triangles of curved objects only; see [`Prepared::corner_normals`].
@@ -50,10 +61,10 @@ pub struct Prepared {
     pub background: Bands,
     /// The camera of the scene, or one that frames it.
     pub camera: Camera,
-    /// How to render it.
-    pub settings: Settings,
     /// A box around everything.
     pub bounds: Bounds,
+    /// Its octrees, as far as they were asked for.
+    pub(super) built: Built,
 }
 
 /// One object of a prepared scene.
@@ -107,14 +118,25 @@ impl Prepared {
     /// # Errors
     /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
     pub fn new(scene: &Scene) -> Result<Prepared, SceneError> {
-        Prepared::made(scene).map_err(|error| scene.places.placed(error))
+        let contents = Contents::new(scene).map_err(|error| scene.places.placed(error))?;
+        Ok(Prepared { contents: Arc::new(contents), settings: scene.settings })
     }
+}
 
-    fn made(scene: &Scene) -> Result<Prepared, SceneError> {
+impl Deref for Prepared {
+    type Target = Contents;
+
+    fn deref(&self) -> &Contents {
+        &self.contents
+    }
+}
+
+impl Contents {
+    fn new(scene: &Scene) -> Result<Contents, SceneError> {
         scene.check()?;
-        let mut prepared = Prepared {
-            vertices: Vec::new(),
-            triangles: Vec::new(),
+        let mut contents = Contents {
+            vertices: Arc::default(),
+            triangles: Arc::default(),
             object_of: Vec::new(),
             normals: Vec::new(),
             parameters: Vec::new(),
@@ -126,20 +148,20 @@ impl Prepared {
             ambient: scene.ambient,
             background: scene.background,
             camera: Camera::framing(&Bounds::EMPTY),
-            settings: scene.settings,
             bounds: Bounds::EMPTY,
+            built: Built::default(),
         };
         let mut shared = Shared::of(scene);
-        let motions: FxHashMap<u32, Motion> = match scene.settings.shutter > 0.0 {
+        let motions: FxHashMap<u32, Motion> = match scene.settings.geometry.shutter > 0.0 {
             true => scene.motions.iter().copied().collect(),
             false => FxHashMap::default(),
         };
         for (object, index) in scene.objects.iter().zip(0u32..) {
             let (made, chord) = (shared.made(scene, index)?, shared.chord(index));
-            prepared.add(object, &made, chord, motions.get(&index).copied())?;
+            contents.add(object, &made, chord, motions.get(&index).copied(), &scene.settings.geometry)?;
         }
-        prepared.camera = scene.camera.unwrap_or_else(|| Camera::framing(&prepared.subject()));
-        Ok(prepared)
+        contents.camera = scene.camera.unwrap_or_else(|| Camera::framing(&contents.subject()));
+        Ok(contents)
     }
 
     /// A box around what is looked at: all objects that are no grounds, or everything if there are only these.
@@ -148,7 +170,14 @@ impl Prepared {
         all.map(|object| object.bounds).reduce(Bounds::union).unwrap_or(self.bounds)
     }
 
-    fn add(&mut self, object: &Object, made: &Made, chord: f64, motion: Option<Motion>) -> Result<(), SceneError> {
+    fn add(
+        &mut self,
+        object: &Object,
+        made: &Made,
+        chord: f64,
+        motion: Option<Motion>,
+        settings: &GeometrySettings,
+    ) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
         let Made { mesh, surfaces, operand_of, lines } = made;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
@@ -159,24 +188,25 @@ impl Prepared {
             .ok()
             .filter(|b| b.checked_add(mesh.vertices.len() as u32).is_some())
             .ok_or(SceneError::Limit { what: "vertices", limit: u64::from(u32::MAX) })?;
-        self.vertices.extend(mesh.vertices.iter().map(|v| object.transform.transform_point3(*v)));
-        let placed = &self.vertices[base as usize..];
+        let vertices = Arc::make_mut(&mut self.vertices);
+        vertices.extend(mesh.vertices.iter().map(|v| object.transform.transform_point3(*v)));
+        let placed = &vertices[base as usize..];
         let is_near = |v: &DVec3| v.is_finite() && v.abs().max_element() <= MAX_MAGNITUDE;
         if let Some(v) = placed.iter().find(|v| !is_near(v)) {
             return Err(failed(format!("a vertex is placed at {v}, farther than {MAX_MAGNITUDE:e} from the origin")));
         }
         let lines = lines.points.iter().map(|point| object.transform.transform_point3(*point));
         let still = Bounds::of(placed.iter().copied().chain(lines));
-        let half = 0.5 * self.settings.shutter;
+        let half = 0.5 * settings.shutter;
         let bounds = motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
         let first = self.triangles.len() as u32;
-        self.triangles.extend(mesh.triangles.iter().map(|&[a, b, c]| {
+        Arc::make_mut(&mut self.triangles).extend(mesh.triangles.iter().map(|&[a, b, c]| {
             let [b, c] = if mirrored { [c, b] } else { [b, c] };
             [a + base, b + base, c + base]
         }));
         self.object_of.resize(self.triangles.len(), self.objects.len() as u32);
         let normals_from = self.add_normals(mesh, &object.transform, mirrored);
-        let is_wanted = self.settings.exact_surfaces && normals_from.is_some();
+        let is_wanted = settings.exact_surfaces && normals_from.is_some();
         let surfaces_from = if is_wanted { self.exact.add(mesh, surfaces) } else { None };
         let needs_parameters = surfaces_from.is_some() || object.needs_parameters(operand_of);
         let parameters_from = needs_parameters.then_some(self.parameters.len() as u32);

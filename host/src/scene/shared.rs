@@ -38,7 +38,7 @@ impl Shared {
             let alike = known.entry(print_of(&object.shape)).or_default();
             let is_alike = |other: &&First| scene.objects[other.index as usize].shape == object.shape;
             let extent = alike.iter().find(is_alike).map_or_else(|| object.shape.extent(), |other| other.extent);
-            let chord = extent.map_or(0.0, |extent| object.chord_of(extent, scene.settings.tolerance));
+            let chord = extent.map_or(0.0, |extent| object.chord_of(extent, scene.settings.geometry.tolerance));
             let same = alike.iter().find(|other| chords.get(other.index as usize) == Some(&chord) && is_alike(other));
             let found = same.map(|other| other.index);
             if found.is_none() {
@@ -67,7 +67,7 @@ impl Shared {
         let made = match self.made.get(&first) {
             Some(made) => Rc::clone(made),
             None => {
-                let made = object.made(scene.settings.tolerance, scene.settings.angle)?;
+                let made = object.made(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
                 let (count, triangles) = (u64::from(*needed), made.mesh.triangles.len() as u64);
                 let objects = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
                 memory::ask(count * triangles * BYTES, || format!("{}{objects} of {triangles} triangles", object.name))

@@ -44,8 +44,8 @@ fn problems_name_the_object_or_the_light() {
             .starts_with("light 1: its direction")
     );
     assert!(problem(|s| s.background.y = f64::INFINITY).starts_with("background"));
-    assert!(problem(|s| s.settings.width = 0).contains("empty or too large"));
-    assert!(problem(|s| s.settings.samples = 0).contains("samples"));
+    assert!(problem(|s| s.settings.image.width = 0).contains("empty or too large"));
+    assert!(problem(|s| s.settings.image.samples = 0).contains("samples"));
     let camera = Camera::framing(&Bounds { min: DVec3::ZERO, max: DVec3::ONE });
     assert!(problem(|s| s.camera = Some(Camera { field_of_view: 180.0, ..camera })).starts_with("camera: field"));
     assert!(problem(|s| s.camera = Some(Camera { at: camera.from, ..camera })).starts_with("camera: from and at"));
@@ -80,7 +80,7 @@ fn placed_normals_point_outwards_whatever_the_transformation() {
 #[test]
 fn a_tolerance_holds_in_scene_units_after_scaling() {
     let mut scene = sphere(DMat4::from_scale(DVec3::splat(100.0)));
-    scene.settings.tolerance = Some(0.05);
+    scene.settings.geometry.tolerance = Some(0.05);
     let error = scene.chord_error().expect("a mesh");
     assert!(error <= 0.05 && error > 0.005, "{error}");
 }

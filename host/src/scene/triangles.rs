@@ -19,7 +19,7 @@ impl Scene {
     pub fn tessellated(&self) -> Result<Grouped, SceneError> {
         self.check()?;
         let settings = &self.settings;
-        let made = |object: &Object| object.made(settings.tolerance, settings.angle);
+        let made = |object: &Object| object.made(settings.geometry.tolerance, settings.geometry.angle);
         let all = self.objects.par_iter().map(made).collect::<Result<Vec<Made>, SceneError>>()?;
         let mut whole = Grouped::default();
         for (object, Made { mut mesh, operand_of, .. }) in self.objects.iter().zip(all) {
@@ -61,10 +61,10 @@ impl Scene {
             }
         }
         if chord.is_some() {
-            self.settings.tolerance = chord;
+            self.settings.geometry.tolerance = chord;
             self.objects.iter_mut().take(MAX_OBJECTS).for_each(release);
         }
-        self.settings.angle = angle.unwrap_or(self.settings.angle);
+        self.settings.geometry.angle = angle.unwrap_or(self.settings.geometry.angle);
         self
     }
 }

@@ -58,7 +58,7 @@ impl Builder {
         let [open, close] = self.shutter;
         let middle = 0.5 * (open + close);
         let mut scene = self.scene.clone();
-        scene.settings.shutter = close - open;
+        scene.settings.geometry.shutter = close - open;
         for (object, motion) in self.objects.iter().zip(&self.motions) {
             let Some(mut object) = object.clone() else { continue };
             if let Some(motion) = motion {

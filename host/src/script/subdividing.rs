@@ -84,7 +84,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
 ];
 
 fn subdivide(builder: &mut Builder, bound: &Bound) -> Done {
-    let (handle, angle) = (bound.object("object"), builder.scene.settings.angle);
+    let (handle, angle) = (bound.object("object"), builder.scene.settings.geometry.angle);
     let object = builder.object(handle)?;
     let chord = bound.number("coarse").unwrap_or(COARSE * object.shape.extent().unwrap_or(1.0));
     let made = object.shape.made(Tolerance::new(chord, angle)).map_err(|error| error.to_string())?;

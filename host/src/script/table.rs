@@ -4,9 +4,10 @@ use super::argument::Bound;
 use super::builder::Builder;
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
+use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
 use crate::picture::{Filter, MAX_PIXELS};
-use crate::scene::{Camera, Lens, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel, Shape};
+use crate::scene::{Camera, Caustics, Lens, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel, Shape};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use rhai::Dynamic;
 
@@ -214,8 +215,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
             if u64::from(width) * u64::from(height) > MAX_PIXELS {
                 return Err(format!("a picture has at most {MAX_PIXELS} pixels"));
             }
-            builder.scene.settings.width = width;
-            builder.scene.settings.height = height;
+            builder.scene.settings.image.width = width;
+            builder.scene.settings.image.height = height;
             Ok(Dynamic::UNIT)
         },
     },
@@ -225,7 +226,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("count", Kind::Integer(1, MAX_SAMPLES as i64), Required, "how many")],
         example: "samples(16);",
         action: |builder, bound| {
-            builder.scene.settings.samples = bound.integer("count").and_then(|i| u32::try_from(i).ok()).unwrap_or(1);
+            builder.scene.settings.image.samples =
+                bound.integer("count").and_then(|i| u32::try_from(i).ok()).unwrap_or(1);
             Ok(Dynamic::UNIT)
         },
     },
@@ -240,7 +242,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )],
         example: "filter(\"blackman-harris\");",
         action: |builder, bound| {
-            builder.scene.settings.filter = bound.text("name").and_then(Filter::of_word).unwrap_or_default();
+            builder.scene.settings.image.filter = bound.text("name").and_then(Filter::of_word).unwrap_or_default();
             Ok(Dynamic::UNIT)
         },
     },
@@ -250,7 +252,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("number", Kind::Integer(0, i64::MAX), Required, "the seed")],
         example: "seed(7);",
         action: |builder, bound| {
-            builder.scene.settings.seed = bound.integer("number").unwrap_or_default().unsigned_abs();
+            builder.scene.settings.image.seed = bound.integer("number").unwrap_or_default().unsigned_abs();
             Ok(Dynamic::UNIT)
         },
     },
@@ -261,7 +263,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "reflection_depth(4);",
         action: |builder, bound| {
             let depth = bound.integer("depth").and_then(|i| u32::try_from(i).ok());
-            builder.scene.settings.reflection_depth = depth.unwrap_or_default();
+            builder.scene.settings.light.reflection_depth = depth.unwrap_or_default();
             Ok(Dynamic::UNIT)
         },
     },
@@ -272,7 +274,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "light_samples(4);",
         action: |builder, bound| {
             let count = bound.integer("count").and_then(|i| u32::try_from(i).ok());
-            builder.scene.settings.light_samples = count.unwrap_or(1);
+            builder.scene.settings.light.samples = count.unwrap_or(1);
             Ok(Dynamic::UNIT)
         },
     },
@@ -282,7 +284,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does")],
         example: "interreflection();",
         action: |builder, bound| {
-            builder.scene.settings.interreflection = bound.flag("on").unwrap_or(true);
+            let interreflection = &mut builder.scene.settings.light.interreflection;
+            match bound.flag("on").unwrap_or(true) {
+                true => interreflection.count(),
+                false => *interreflection = Interreflection::LeftOut,
+            }
             Ok(Dynamic::UNIT)
         },
     },
@@ -314,11 +320,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "radiosity(#{ error: 0.002 });",
         action: |builder, bound| {
             let settings = &mut builder.scene.settings;
-            settings.radiosity = bound.flag("on").unwrap_or(true);
-            settings.patch_error = bound.number("error").unwrap_or(settings.patch_error);
-            settings.finest_patch = bound.number("finest").unwrap_or(settings.finest_patch);
-            settings.patch_directions = bound.integer("directions").map_or(settings.patch_directions, |n| n as u32);
-            settings.patch_tolerance = bound.number("tolerance").unwrap_or(settings.patch_tolerance);
+            match (bound.flag("on").unwrap_or(true), &mut settings.light.interreflection) {
+                (true, interreflection) => *interreflection = Interreflection::Solved,
+                (false, solved @ Interreflection::Solved) => *solved = Interreflection::LeftOut,
+                (false, _) => {}
+            }
+            settings.radiosity.error = bound.number("error").unwrap_or(settings.radiosity.error);
+            settings.radiosity.finest = bound.number("finest").unwrap_or(settings.radiosity.finest);
+            settings.radiosity.directions =
+                bound.integer("directions").map_or(settings.radiosity.directions, |n| n as u32);
+            settings.radiosity.tolerance = bound.number("tolerance").unwrap_or(settings.radiosity.tolerance);
             Ok(Dynamic::UNIT)
         },
     },
@@ -328,7 +339,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does")],
         example: "caustics();",
         action: |builder, bound| {
-            builder.scene.settings.caustics = bound.flag("on").unwrap_or(true);
+            let caustics = &mut builder.scene.settings.light.caustics;
+            match (bound.flag("on").unwrap_or(true), *caustics) {
+                (true, Caustics::LeftOut) => *caustics = Caustics::PathTraced,
+                (false, Caustics::PathTraced) => *caustics = Caustics::LeftOut,
+                _ => {}
+            }
             Ok(Dynamic::UNIT)
         },
     },
@@ -359,10 +375,15 @@ pub(super) const FUNCTIONS: &[Function] = &[
         example: "two_way(#{ photons: 500000 });",
         action: |builder, bound| {
             let settings = &mut builder.scene.settings;
-            settings.two_way = bound.flag("on").unwrap_or(true);
-            settings.photons = bound.integer("photons").and_then(|i| u32::try_from(i).ok()).unwrap_or(settings.photons);
-            settings.photon_radius = bound.number("radius").filter(|radius| *radius > 0.0);
-            settings.point_depth =
+            match (bound.flag("on").unwrap_or(true), &mut settings.light.caustics) {
+                (true, caustics) => *caustics = Caustics::PhotonMapped,
+                (false, mapped @ Caustics::PhotonMapped) => *mapped = Caustics::LeftOut,
+                (false, _) => {}
+            }
+            settings.photons.count =
+                bound.integer("photons").and_then(|i| u32::try_from(i).ok()).unwrap_or(settings.photons.count);
+            settings.photons.radius = bound.number("radius").filter(|radius| *radius > 0.0);
+            settings.photons.point_depth =
                 bound.integer("voxels").and_then(|i| u32::try_from(i).ok()).filter(|depth| *depth > 0);
             Ok(Dynamic::UNIT)
         },
@@ -373,7 +394,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does; scenes do without a word")],
         example: "exact_surfaces(false);",
         action: |builder, bound| {
-            builder.scene.settings.exact_surfaces = bound.flag("on").unwrap_or(true);
+            builder.scene.settings.geometry.exact_surfaces = bound.flag("on").unwrap_or(true);
             Ok(Dynamic::UNIT)
         },
     },
@@ -383,7 +404,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether it does; scenes do without a word")],
         example: "light_buffer(false);",
         action: |builder, bound| {
-            builder.scene.settings.light_buffer = bound.flag("on").unwrap_or(true);
+            builder.scene.settings.light.buffer = bound.flag("on").unwrap_or(true);
             Ok(Dynamic::UNIT)
         },
     },
@@ -393,7 +414,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("on", Kind::Flag, Is("true"), "whether they do")],
         example: "spectral();",
         action: |builder, bound| {
-            builder.scene.settings.spectral = Some(bound.flag("on").unwrap_or(true));
+            builder.scene.settings.light.spectral = Some(bound.flag("on").unwrap_or(true));
             Ok(Dynamic::UNIT)
         },
     },
@@ -411,8 +432,9 @@ pub(super) const FUNCTIONS: &[Function] = &[
         ],
         example: "tolerance(0.001, 20);",
         action: |builder, bound| {
-            builder.scene.settings.tolerance = bound.number("length");
-            builder.scene.settings.angle = bound.number("angle").unwrap_or(builder.scene.settings.angle);
+            builder.scene.settings.geometry.tolerance = bound.number("length");
+            builder.scene.settings.geometry.angle =
+                bound.number("angle").unwrap_or(builder.scene.settings.geometry.angle);
             Ok(Dynamic::UNIT)
         },
     },

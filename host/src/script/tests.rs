@@ -42,8 +42,11 @@ fn a_script_builds_what_it_says() {
     assert_eq!(scene.objects[0].material.clone().unwrap().appearance().mirror, DVec3::splat(0.25));
     assert_eq!(scene.objects[1].shape, Shape::Solid(Primitive::Box { size: DVec3::new(4.0, 1.0, 2.0) }));
     assert_eq!(scene.lights[0], Light::Point { at: DVec3::new(0.0, 5.0, 0.0), intensity: Color::grey(1.0) });
-    assert_eq!(scene.settings.width, 32);
-    assert_eq!((scene.settings.samples, scene.settings.seed, scene.settings.reflection_depth), (4, 9, 2));
+    assert_eq!(scene.settings.image.width, 32);
+    assert_eq!(
+        (scene.settings.image.samples, scene.settings.image.seed, scene.settings.light.reflection_depth),
+        (4, 9, 2)
+    );
     assert_eq!(made.printed, ["made 2"]);
 }
 
@@ -75,7 +78,7 @@ fn what_moves_stands_where_it_is_in_the_middle_of_the_shutter() {
         shutter(0, 0.5);
     ");
     let scene = &made.scene;
-    assert_eq!(scene.settings.shutter, 0.5);
+    assert_eq!(scene.settings.geometry.shutter, 0.5);
     assert_eq!(scene.motions.iter().map(|(object, _)| *object).collect::<Vec<_>>(), [0, 1]);
     let placed = scene.objects[0].transform;
     assert!((placed.transform_point3(DVec3::ZERO) - DVec3::new(1.0, 1.0, 0.0)).length() < 1e-15);

@@ -189,7 +189,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         parameters: &[parameter("part", Kind::Number(0.0, 1000.0), Required, "1 is all of it, 0 a point")],
         example: "texture_filter(0.5);",
         action: |builder, bound| {
-            builder.scene.settings.texture_filter = bound.number("part").unwrap_or(1.0);
+            builder.scene.settings.light.texture_filter = bound.number("part").unwrap_or(1.0);
             Ok(Dynamic::UNIT)
         },
     },

@@ -29,7 +29,7 @@ pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Resu
         return Err(StudyError::Nothing("no object of the scene is made of others"));
     }
     let coarsest = Prepared::new(scene)?.bounds.diagonal() * COARSEST;
-    let (angle, settings) = (scene.settings.angle, options.settings.clamp(1, 9));
+    let (angle, settings) = (scene.settings.geometry.angle, options.settings.clamp(1, 9));
     sweep(&Composites { shapes, coarsest, angle, settings }, watch)
 }
 

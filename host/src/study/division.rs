@@ -28,12 +28,12 @@ struct Steps {
 /// Makes the study of a scene.
 pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let mut scene = scene.clone();
-    scene.settings.tolerance = Some(Prepared::new(&scene)?.bounds.diagonal() * COARSE);
+    scene.settings.geometry.tolerance = Some(Prepared::new(&scene)?.bounds.diagonal() * COARSE);
     scene.objects.iter_mut().for_each(|object| object.tolerance = None);
     let prepared = Prepared::new(&scene)?;
     let polyhedron = |object: &crate::scene::PreparedObject| {
         let triangles = prepared.triangles[object.first as usize..(object.first + object.count) as usize].to_vec();
-        let mesh = Mesh { vertices: prepared.vertices.clone(), triangles, ..Mesh::default() };
+        let mesh = Mesh { vertices: prepared.vertices.to_vec(), triangles, ..Mesh::default() };
         Polyhedron::from_mesh(&mesh).ok()
     };
     let polyhedra: Vec<Polyhedron> = prepared.objects.iter().filter_map(polyhedron).collect();

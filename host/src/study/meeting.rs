@@ -79,7 +79,7 @@ impl Knob for Meetings {
             What::Triangles => (setting, Precision::default().newton),
             What::Newton => (self.diagonal * MIDDLE, setting),
         };
-        scene.settings.tolerance = Some(tolerance);
+        scene.settings.geometry.tolerance = Some(tolerance);
         let start = Instant::now();
         let found = meetings(&scene, &Precision { newton, chord: None })?;
         let seconds = start.elapsed().as_secs_f64();

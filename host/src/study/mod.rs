@@ -154,8 +154,8 @@ fn resized(scene: &Scene, options: &Options) -> Scene {
     let mut scene = scene.clone();
     let settings = &mut scene.settings;
     let width = options.width.max(1);
-    let rows = f64::from(settings.height) * f64::from(width) / f64::from(settings.width.max(1));
-    settings.height = (rows.round() as u32).max(1);
-    settings.width = width;
+    let rows = f64::from(settings.image.height) * f64::from(width) / f64::from(settings.image.width.max(1));
+    settings.image.height = (rows.round() as u32).max(1);
+    settings.image.width = width;
     scene
 }

@@ -49,7 +49,7 @@ impl Division {
         let (center, radius) = (prepared.bounds.center(), prepared.bounds.diagonal() * 0.5);
         // Chords of the sphere around the scene, as many as a square picture of the width has pixels.
         let chord = |index| {
-            let mut stream = Stream::new(prepared.settings.seed, index);
+            let mut stream = Stream::new(prepared.settings.image.seed, index);
             let [from, to] = [0; 2].map(|_| center + sphere(stream.point()) * radius);
             Ray { origin: from, direction: to - from }
         };

@@ -41,7 +41,7 @@ struct Residual<'a> {
 /// Makes the study of a scene.
 pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let coarsest = Prepared::new(scene)?.bounds.diagonal() * COARSEST;
-    let angle = scene.settings.angle;
+    let angle = scene.settings.geometry.angle;
     let mut shapes = Vec::new();
     scene.objects.iter().try_for_each(|object| collect(&object.shape, Tolerance::new(coarsest, angle), &mut shapes))?;
     if shapes.is_empty() {

@@ -36,7 +36,7 @@ pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Resu
 impl Tessellation {
     fn new(scene: &Scene, options: &Options) -> Result<Tessellation, StudyError> {
         let mut scene = resized(scene, options);
-        scene.settings.samples = options.samples;
+        scene.settings.image.samples = options.samples;
         let prepared = Prepared::new(&scene)?;
         let curved = scene.objects.iter().zip(&prepared.objects).filter(|(o, _)| o.shape.is_exact_and_curved());
         let largest = curved.map(|(_, p)| p.bounds.diagonal()).fold(0.0, f64::max);
@@ -66,7 +66,7 @@ impl Knob for Tessellation {
 
     fn run(&self, setting: f64, watch: &Watch<'_>) -> Result<Trial<Answer>, StudyError> {
         let mut scene = self.scene.clone();
-        scene.settings.tolerance = Some(setting);
+        scene.settings.geometry.tolerance = Some(setting);
         let start = Instant::now();
         let prepared = Prepared::new(&scene)?;
         let plan = Plan::new(&prepared, &prepared.view());

@@ -15,7 +15,7 @@ fn scene(shape: Shape) -> Scene {
     let material = Classic { diffuse: Paint::grey(1.0), ..Classic::default() }.into();
     let object =
         Object { name: "it".into(), shape, transform: DMat4::IDENTITY, material: Some(material), tolerance: None };
-    let settings = Settings { width: 40, height: 40, ..Settings::default() };
+    let settings = Settings::of_size(40, 40, 16);
     Scene { objects: vec![object], lights: vec![light], settings, ..Scene::default() }
 }
 

@@ -63,6 +63,6 @@ impl InitialView {
 
 /// The longer side of a scene's picture over the shorter one.
 fn elongation(settings: &Settings) -> f64 {
-    let (width, height) = (f64::from(settings.width), f64::from(settings.height));
+    let (width, height) = (f64::from(settings.image.width), f64::from(settings.image.height));
     width.max(height) / width.min(height)
 }

@@ -120,7 +120,7 @@ pub fn with_light(
 ) -> Result<Shown, WorkstationError> {
     let camera = &initial.camera;
     let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
-    let angle = scene.settings.angle;
+    let angle = scene.settings.geometry.angle;
     let objects: Result<Vec<Vec<Part>>, WorkstationError> = (1..)
         .zip(&scene.objects)
         .map(|(number, object)| data(number, object, angle, camera, drawing, &mut shown))

@@ -103,7 +103,7 @@ fn curve(record: &Record, curves: &Curves) -> Plot {
 /// A picture of an object in the studio.
 fn render(object: Object, file: &Destination) -> Result<PathBuf, Failure> {
     let mut scene = Scene { objects: vec![object], studio: Some(Studio::Lit), ..Scene::default() }.lit()?;
-    (scene.settings.width, scene.settings.height, scene.settings.samples) = (360, 360, 48);
+    (scene.settings.image.width, scene.settings.image.height, scene.settings.image.samples) = (360, 360, 48);
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);

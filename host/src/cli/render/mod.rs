@@ -202,11 +202,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     /// Sets what the command line says of the scene's settings.
     fn set(&self, settings: &mut Settings) {
-        (settings.width, settings.height) = size(settings.width, settings.height, self.width, self.height);
-        settings.samples = self.samples.unwrap_or(settings.samples);
-        settings.filter = self.filter.unwrap_or(settings.filter);
-        settings.seed = self.seed.unwrap_or(settings.seed);
-        settings.tolerance = self.tolerance.or(settings.tolerance);
+        (settings.image.width, settings.image.height) =
+            size(settings.image.width, settings.image.height, self.width, self.height);
+        settings.image.samples = self.samples.unwrap_or(settings.image.samples);
+        settings.image.filter = self.filter.unwrap_or(settings.image.filter);
+        settings.image.seed = self.seed.unwrap_or(settings.image.seed);
+        settings.geometry.tolerance = self.tolerance.or(settings.geometry.tolerance);
         (self.renderer.row().require)(settings);
     }
 
@@ -214,7 +215,7 @@ impl Arguments {
     fn order(&self, settings: &Settings) -> Order {
         let is_open = self.error.is_some() || self.seconds.is_some();
         Order {
-            samples: self.samples.unwrap_or(if is_open { MAX_SAMPLES } else { settings.samples }),
+            samples: self.samples.unwrap_or(if is_open { MAX_SAMPLES } else { settings.image.samples }),
             threads: self.threads,
             target: self.error,
             seconds: self.seconds,

@@ -154,7 +154,7 @@ impl Views<'_> {
     fn provenance(&self, rendering: &Rendering) -> Provenance {
         let renderer = self.arguments.renderer.row().option;
         let source = stem(&self.arguments.script);
-        let seed = self.prepared.settings.seed;
+        let seed = self.prepared.settings.image.seed;
         let provenance = rendering.provenance((source, renderer), seed, self.display, self.stops);
         match self.arguments.denoise {
             true => provenance.with("Denoiser", "first-order regression"),
@@ -170,7 +170,7 @@ impl Views<'_> {
             "height": picture.height(),
             "samples": rendering.film.samples(),
             "standard_error": Some(rendering.film.standard_error()).filter(|error| error.is_finite()),
-            "seed": self.prepared.settings.seed,
+            "seed": self.prepared.settings.image.seed,
             "exposure": self.stops,
             "tone": self.display.tone.word(),
             "triangles": self.prepared.triangles.len(),

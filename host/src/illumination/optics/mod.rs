@@ -25,6 +25,7 @@ use crate::color::{Channels, Curve};
 use glam::DVec3;
 use lobe::Lobe;
 use principled::Surface;
+use serde::{Deserialize, Serialize};
 use shade::{Changing, Quantity, Shade};
 use std::sync::Arc;
 
@@ -76,14 +77,24 @@ pub enum Which {
 }
 
 /// What becomes of light that goes from one diffuse surface to another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interreflection {
     /// It counts nothing.
+    #[default]
     LeftOut,
     /// Rays from the eye follow it.
     Followed,
     /// A radiosity solution tells of it.
     Solved,
+}
+
+impl Interreflection {
+    /// Lets it count, by rays from the eye unless it counts already.
+    pub fn count(&mut self) {
+        if *self == Interreflection::LeftOut {
+            *self = Interreflection::Followed;
+        }
+    }
 }
 
 impl Which {

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Told the triangle, whether it is its outer side, and the point. It is asked at points next to the corners of elements
 /// and to the middles of their edges, from many threads, and elements are divided where it is not linear between them, down
-/// to the finest: what is smaller than [`Settings::finest`](super::Settings) is to be spread over that much before. Light
+/// to the finest: what is smaller than [`RadiositySettings::finest`](crate::scene::RadiositySettings) is to be spread over that much before. Light
 /// of it that other surfaces send back is in the irradiance of the solution; it itself is not.
 pub type Exitance<'a> = &'a (dyn Fn(u32, bool, DVec3) -> Channels + Sync);
 
@@ -151,7 +151,7 @@ impl Sight<'_> {
     ) -> Channels {
         let appearance = &self.world.appearance;
         let combs = appearance.wavelengths.combs();
-        let least = appearance.prepared.settings.light_samples;
+        let least = appearance.prepared.settings.light.samples;
         let mut sum = Channels::ZERO;
         for (index, (number, source)) in appearance.sources.iter().enumerate() {
             let mut samples = match source.is_sharp() {

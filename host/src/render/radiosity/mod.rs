@@ -43,7 +43,7 @@ use super::world::World;
 use super::{Amount, RenderError, Watch};
 use crate::color::Channels;
 use crate::plan::{Plan, Stage};
-use crate::scene::Prepared;
+use crate::scene::{Prepared, RadiositySettings};
 use contact::Contacts;
 use corners::Corners;
 use elements::Elements;
@@ -64,36 +64,6 @@ const PASSES: usize = 4;
 const COARSEST: f64 = 16.0;
 /// The light of lights may be so many errors from linear over an element.
 const BENT: f64 = 4.0;
-
-/// How good a solution is to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Error of the light that one link brings, as a part of the mean irradiance, above 0.
-    pub error: f64,
-    /// Elements are not divided below this length, as a part of the diagonal of the scene, above 0.
-    pub finest: f64,
-    /// Error of the solver, as a part of the greatest irradiance, above 0.
-    pub tolerance: f64,
-    /// Directions in which each element looks around, 1 and more.
-    pub directions: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Settings {
-        crate::scene::Settings::default().into()
-    }
-}
-
-impl From<crate::scene::Settings> for Settings {
-    fn from(scene: crate::scene::Settings) -> Settings {
-        Settings {
-            error: scene.patch_error,
-            finest: scene.finest_patch,
-            tolerance: scene.patch_tolerance,
-            directions: scene.patch_directions,
-        }
-    }
-}
 
 /// The light of a scene, for all views.
 #[derive(Clone, Debug)]
@@ -116,7 +86,7 @@ impl Radiosity {
     pub fn new(
         world: &World<'_>,
         plan: &Plan,
-        settings: &Settings,
+        settings: &RadiositySettings,
         exitance: Option<Exitance<'_>>,
         watch: &Watch<'_>,
     ) -> Result<Radiosity, RenderError> {

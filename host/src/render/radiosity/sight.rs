@@ -41,7 +41,7 @@ impl<'a> Sight<'a> {
         let prepared = world.appearance.prepared;
         let largest = prepared.vertices.iter().fold(0.0f64, |most, vertex| most.max(vertex.abs().max_element()));
         let clearance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
-        Sight { world, clearance, seed: prepared.settings.seed, memo }
+        Sight { world, clearance, seed: prepared.settings.image.seed, memo }
     }
 
     /// What a function finds of each item, on all threads; see [`Memo::map`].

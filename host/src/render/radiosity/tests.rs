@@ -7,7 +7,7 @@ use crate::illumination::material::Classic;
 use crate::illumination::{Light, Material, Paint};
 use crate::mesh::Mesh;
 use crate::render::Unsolvable;
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::{Interreflection, Object, RadiositySettings, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
@@ -32,18 +32,18 @@ fn sphere(name: &str, radius: f64, reflectance: f64) -> Object {
 fn prepared(objects: Vec<Object>, lights: Vec<Light>) -> Prepared {
     let mut scene = Scene { objects, lights, ..Scene::default() };
     // Light that goes from surface to surface needs what is out of view.
-    scene.settings.interreflection = true;
+    scene.settings.light.interreflection = Interreflection::Followed;
     Prepared::new(&scene).expect("a scene")
 }
 
-fn solved(prepared: &Prepared, settings: &Settings, exitance: Option<Exitance<'_>>) -> Radiosity {
+fn solved(prepared: &Prepared, settings: &RadiositySettings, exitance: Option<Exitance<'_>>) -> Radiosity {
     let plan = Plan::new(prepared, &prepared.view());
     Radiosity::new(&World::new(prepared, &plan).expect("a world"), &plan, settings, exitance, &Watch::NOBODY)
         .expect("a solution")
 }
 
-fn coarse() -> Settings {
-    Settings { error: 0.1, finest: 1.0 / 16.0, ..Settings::default() }
+fn coarse() -> RadiositySettings {
+    RadiositySettings { error: 0.1, finest: 1.0 / 16.0, ..RadiositySettings::default() }
 }
 
 fn lamp(at: DVec3) -> Light {
@@ -121,12 +121,8 @@ fn light_that_nothing_takes_away_is_refused_and_no_light_is_none() {
 #[test]
 fn a_sphere_in_a_sphere_sends_all_its_light_to_it_and_gets_its_share_back() {
     let (r1, r2) = (0.5f64, 1.5f64);
-    let spheres = prepared(vec![sphere("inner", r1, 0.0), sphere("outer", r2, 0.0)], vec![]);
-    let material_has_diffuse = |prepared: &mut Prepared| {
-        prepared.objects.iter_mut().for_each(|object| object.materials = vec![matt(1e-9)]);
-    };
-    let mut spheres = spheres;
-    material_has_diffuse(&mut spheres);
+    let faint = |object: Object| Object { material: Some(matt(1e-9)), ..object };
+    let spheres = prepared(vec![faint(sphere("inner", r1, 0.0)), faint(sphere("outer", r2, 0.0))], vec![]);
     let inner = spheres.objects[0].count;
     let area = |object: usize| -> f64 {
         let of = &spheres.objects[object];
@@ -290,8 +286,11 @@ fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
         let is_in = outside && at.y.abs() < 1e-3 && at.x.abs() < half && at.z.abs() < half;
         Channels::splat(if is_in { 3.0 } else { 0.0 })
     };
-    let radiosity =
-        solved(&room, &Settings { error: 0.002, finest: 1.0 / 400.0, ..Settings::default() }, Some(&caught));
+    let radiosity = solved(
+        &room,
+        &RadiositySettings { error: 0.002, finest: 1.0 / 400.0, ..RadiositySettings::default() },
+        Some(&caught),
+    );
     // From a point at a distance of 1 above the corner of a rectangle of x by y.
     let corner = |x: f64, y: f64| {
         let part = |x: f64, y: f64| x / (1.0 + x * x).sqrt() * (y / (1.0 + x * x).sqrt()).atan();
@@ -343,7 +342,7 @@ fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
     use crate::render::{Task, ray_tracer_watched};
     use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
     let mut room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
-    (room.settings.radiosity, room.settings.patch_error) = (true, 0.02);
+    (room.settings.light.interreflection, room.settings.radiosity.error) = (Interreflection::Solved, 0.02);
     let plan = Plan::new(&room, &room.view());
     let links = |cancelled: bool| {
         let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
@@ -364,8 +363,11 @@ fn balls_of_many_small_triangles_have_few_elements_and_light_as_the_closed_form_
         let is_glowing = !outside && at.length() > 1.5;
         Channels::splat(if is_glowing { 1.0 } else { 0.0 })
     };
-    let radiosity =
-        solved(&balls, &Settings { error: 0.01, finest: 1.0 / 40.0, ..Settings::default() }, Some(&glowing));
+    let radiosity = solved(
+        &balls,
+        &RadiositySettings { error: 0.01, finest: 1.0 / 40.0, ..RadiositySettings::default() },
+        Some(&glowing),
+    );
     let Report { patches, elements, .. } = radiosity.report;
     assert!(2 * elements < patches, "{elements} of {patches}");
     // The inner one sees nothing but the outer one, which sees of itself what the inner one leaves: 1 - (1/2)².

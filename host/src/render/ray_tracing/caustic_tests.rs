@@ -41,7 +41,7 @@ fn hollow_mirror(height: f64, light: Light) -> Scene {
         object(Shape::Solid(bent), DMat4::from_rotation_y(PI / 6.0), mirror(1.0)),
     ];
     let mut scene = scene(objects, vec![light], ACROSS);
-    (scene.settings.samples, scene.settings.photons) = (9, 200_000);
+    (scene.settings.image.samples, scene.settings.photons.count) = (9, 200_000);
     scene
 }
 
@@ -132,7 +132,7 @@ fn irradiance_behind_a_lens_grows_as_its_light_draws_together() {
         ];
         let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) };
         let mut scene = scene(objects, vec![light], 8);
-        (scene.settings.samples, scene.settings.photons) = (4, 200_000);
+        (scene.settings.image.samples, scene.settings.photons.count) = (4, 200_000);
         let drawn = 1.0 - behind / focus;
         let rendering = two_way(&scene, Some(down_on(DVec3::NEG_Y * behind, 0.15 * drawn, 0.5)), 2);
         let pixels = rendering.picture.pixels();
@@ -168,8 +168,8 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
         let screen = block(DVec3::new(12.0, 0.1, 12.0), DVec3::new(0.0, -below - 0.05, 0.0), diffuse(0.5));
         let objects = vec![object(Shape::Solid(prism.clone()), turned, material.clone()), screen];
         let mut scene = scene(objects, vec![light], 41);
-        (scene.settings.samples, scene.settings.photons) = (4, 100_000);
-        (scene.settings.spectral, scene.settings.photon_radius) = (Some(true), Some(0.03));
+        (scene.settings.image.samples, scene.settings.photons.count) = (4, 100_000);
+        (scene.settings.light.spectral, scene.settings.photons.radius) = (Some(true), Some(0.03));
         let expected = below / deviation(flint.index(wavelength).expect("an index"), apex, incidence).tan();
         let rendering = two_way(&scene, Some(down_on(DVec3::new(expected, -below, 0.0), 0.15, 1.0)), 2);
         let (mut all, mut moment) = (0.0, 0.0);
@@ -187,7 +187,7 @@ fn parts(thing: Object, direction: DVec3) -> Balance {
     let floor = block(DVec3::new(200.0, 0.1, 200.0), DVec3::new(0.0, -10.0, 0.0), diffuse(0.5));
     let light = Light::Directional { direction, irradiance: Color::grey(1.0) };
     let mut scene = scene(vec![thing, floor], vec![light], 4);
-    (scene.settings.samples, scene.settings.photons) = (1, 200_000);
+    (scene.settings.image.samples, scene.settings.photons.count) = (1, 200_000);
     let balance = two_way(&scene, Some(from_above(1.0)), 2).balance.expect("light is followed");
     let met = balance.sent - balance.straight;
     Balance {

@@ -8,7 +8,7 @@ use crate::illumination::fresnel::Dielectric;
 use crate::illumination::light::Patch;
 use crate::illumination::material::{Body, Finish, Index, Material, Metal, Transparent};
 use crate::numeric::bounds::Bounds;
-use crate::scene::{Camera, Object, Parallel, Shape};
+use crate::scene::{Camera, Caustics, Interreflection, Object, Parallel, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
@@ -38,7 +38,7 @@ fn a_floor_behind_glass_gets_what_fresnel_and_bouguer_leave() {
         let light = Light::Directional { direction: DVec3::new(sin, -cos, 0.0), irradiance: Color::grey(1.0) };
         let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, diffuse(0.8));
         let mut scene = scene(vec![floor, slab([4.0, 5.0], glass(1.5, 0.3))], vec![light], 1);
-        scene.settings.samples = 4;
+        scene.settings.image.samples = 4;
         let found = red(&trace(&scene, Some(near()), false, 1), 0, 0);
         let once = 1.0 - Dielectric::new(1.0, 1.5).expect("an index").reflectance(cos).mean();
         let expected = 0.8 / PI * cos * once * once * (-0.3 / cos).exp();
@@ -61,8 +61,8 @@ fn glass_that_hardly_is_there_changes_no_light() {
                 Light::Area { patch: lamp, radiance: Color::grey(3.0) },
             ];
             let mut scene = scene([vec![floor], slabs].concat(), lights, 2);
-            (scene.settings.samples, scene.settings.reflection_depth) = (4096, 12);
-            scene.settings.spectral = Some(false);
+            (scene.settings.image.samples, scene.settings.light.reflection_depth) = (4096, 12);
+            scene.settings.light.spectral = Some(false);
             let picture = trace(&scene, Some(near()), false, 2).picture;
             picture.pixels().iter().map(|pixel| f64::from(pixel.radiance[0])).sum::<f64>() / 4.0
         };
@@ -79,8 +79,9 @@ fn caustics_that_are_asked_for_are_not_counted_twice() {
         let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, diffuse(0.7));
         let lights = vec![Light::Area { patch: lamp, radiance: Color::grey(3.0) }];
         let mut scene = scene(vec![floor, slab([4.0, 5.0], glass(1.5, 0.1))], lights, 2);
-        (scene.settings.samples, scene.settings.reflection_depth) = (4096, 12);
-        (scene.settings.caustics, scene.settings.interreflection) = (caustics, true);
+        (scene.settings.image.samples, scene.settings.light.reflection_depth) = (4096, 12);
+        (scene.settings.light.caustics, scene.settings.light.interreflection) =
+            (if caustics { Caustics::PathTraced } else { Caustics::LeftOut }, Interreflection::Followed);
         let picture = trace(&scene, Some(near()), false, 2).picture;
         picture.pixels().iter().map(|pixel| f64::from(pixel.radiance[0])).sum::<f64>() / 4.0
     });
@@ -98,7 +99,7 @@ fn what_glass_stands_on_is_seen_through_it() {
     (view.parallel, view.near) = (Some(Parallel { height: 0.02, oblique: DVec2::ZERO }), 0.5);
     let seen = |objects: Vec<Object>| {
         let mut scene = scene(objects, vec![light.clone()], 4);
-        (scene.settings.samples, scene.settings.reflection_depth) = (64, 6);
+        (scene.settings.image.samples, scene.settings.light.reflection_depth) = (64, 6);
         let picture = trace(&scene, Some(View::Camera(view)), false, 1).picture;
         picture.pixels().iter().map(|pixel| f64::from(pixel.radiance[0])).sum::<f64>() / 16.0
     };
@@ -120,7 +121,7 @@ fn bodies_that_touch_absorb_on_their_own_ways_alone() {
         let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, diffuse(0.8));
         let slabs = [slab([4.0, 5.0], glass(index, low)), slab([5.0, 6.0], glass(index, high))];
         let mut scene = scene([vec![floor], slabs.into()].concat(), vec![light.clone()], 1);
-        scene.settings.samples = 4;
+        scene.settings.image.samples = 4;
         let found = red(&trace(&scene, Some(near()), false, 1), 0, 0);
         let expected = 0.8 / PI * f64::exp(-0.3);
         assert!((found / expected - 1.0).abs() < 1e-6, "{low} {high}: {found} {expected}");
@@ -132,7 +133,7 @@ fn a_lamp_within_a_body_is_dimmed_on_the_way_through_it() {
     let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, diffuse(0.8));
     let lamp = Light::Point { at: DVec3::Y * 5.0, intensity: Color::grey(25.0) };
     let mut scene = scene(vec![floor, slab([3.0, 9.0], glass(1.0 + 1e-9, 0.2))], vec![lamp], 1);
-    scene.settings.samples = 4;
+    scene.settings.image.samples = 4;
     let found = red(&trace(&scene, Some(near()), false, 1), 0, 0);
     let expected = 0.8 / PI * f64::exp(-0.4);
     assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");

@@ -4,7 +4,7 @@ use super::tests::{diffuse, mirror, scene, trace};
 use super::two_way_tests::{ball, block, glass, lamp, two_way};
 use super::*;
 use crate::render::ray_tracer;
-use crate::scene::{Camera, Object, Scene};
+use crate::scene::{Camera, Caustics, Interreflection, Object, Scene};
 use glam::DVec3;
 
 /// A box of a length, open nowhere, of walls with a reflectance; the one on the right may be another.
@@ -39,17 +39,18 @@ fn a_room_with_a_mirror_for_a_wall_is_as_bright_as_one_twice_as_long() {
     let at = DVec3::new(-0.3, 0.4, 0.2);
     let image = DVec3::new(2.0 - at.x, at.y, at.z);
     let mut long = scene(room(4.0, 0.7, None), vec![lamp(at, 1.0), lamp(image, 1.0)], 12);
-    long.settings.interreflection = true;
-    (long.settings.samples, long.settings.reflection_depth) = (512, 40);
+    long.settings.light.interreflection = Interreflection::Followed;
+    (long.settings.image.samples, long.settings.light.reflection_depth) = (512, 40);
     let expected = mean(&trace(&long, Some(to_the_left()), false, 2));
     let wall = block(DVec3::new(0.2, 2.0, 2.0), DVec3::new(1.1, 0.0, 0.0), mirror(1.0));
     let mut short = scene(room(2.0, 0.7, Some(wall)), vec![lamp(at, 1.0)], 12);
-    short.settings.photons = 50_000;
-    (short.settings.interreflection, short.settings.samples, short.settings.reflection_depth) = (true, 64, 40);
+    short.settings.photons.count = 50_000;
+    (short.settings.light.interreflection, short.settings.image.samples, short.settings.light.reflection_depth) =
+        (Interreflection::Followed, 64, 40);
     let found = mean(&two_way(&short, Some(to_the_left()), 2));
     assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
-    (short.settings.radiosity, short.settings.samples) = (true, 16);
-    (short.settings.patch_error, short.settings.finest_patch) = (0.02, 0.03);
+    (short.settings.light.interreflection, short.settings.image.samples) = (Interreflection::Solved, 16);
+    (short.settings.radiosity.error, short.settings.radiosity.finest) = (0.02, 0.03);
     let found = mean(&two_way(&short, Some(to_the_left()), 2));
     assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
 }
@@ -78,13 +79,14 @@ fn direct_light_caustics_and_what_surfaces_send_each_other_are_all_the_light_of_
     objects.push(ball(0.35, DVec3::new(-0.3, -0.6, 0.2), glass(1.5)));
     objects.push(block(DVec3::new(0.05, 1.2, 1.2), DVec3::new(-0.9, 0.2, -0.2), mirror(0.9)));
     let mut scene = scene(objects, vec![Light::Area { patch, radiance: Color::grey(3.0) }], 12);
-    (scene.settings.interreflection, scene.settings.reflection_depth) = (true, 24);
-    (scene.settings.caustics, scene.settings.samples) = (true, 2048);
+    (scene.settings.light.interreflection, scene.settings.light.reflection_depth) = (Interreflection::Followed, 24);
+    (scene.settings.light.caustics, scene.settings.image.samples) = (Caustics::PathTraced, 2048);
     let expected = classes(&scene);
-    (scene.settings.two_way, scene.settings.samples, scene.settings.photons) = (true, 64, 100_000);
+    (scene.settings.light.caustics, scene.settings.image.samples, scene.settings.photons.count) =
+        (Caustics::PhotonMapped, 64, 100_000);
     let by_eye = classes(&scene);
-    (scene.settings.radiosity, scene.settings.samples) = (true, 16);
-    (scene.settings.patch_error, scene.settings.finest_patch) = (0.02, 0.03);
+    (scene.settings.light.interreflection, scene.settings.image.samples) = (Interreflection::Solved, 16);
+    (scene.settings.radiosity.error, scene.settings.radiosity.finest) = (0.02, 0.03);
     let solved = classes(&scene);
     for found in [by_eye, solved] {
         assert!((found[..4].iter().sum::<f64>() / found[4] - 1.0).abs() < 1e-5, "{found:?}");

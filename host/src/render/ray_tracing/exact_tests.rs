@@ -153,7 +153,7 @@ fn lit_ball(tolerance: f64, exact: bool) -> Scene {
         lens: None,
         parallel: None,
     });
-    scene.settings.exact_surfaces = exact;
+    scene.settings.geometry.exact_surfaces = exact;
     scene
 }
 
@@ -185,7 +185,7 @@ fn mirror_ball(tolerance: f64) -> Scene {
     let ball = Object { tolerance: Some(tolerance), ..object(ball(1.0), DMat4::IDENTITY, mirror(0.9)) };
     let lit = lit_ball(tolerance, true);
     let mut scene = Scene { objects: vec![ball, ground], lights: Vec::new(), ambient: DVec3::ONE, ..lit };
-    scene.settings.texture_filter = 0.0;
+    scene.settings.light.texture_filter = 0.0;
     scene
 }
 

@@ -8,7 +8,7 @@ use crate::illumination::light::Patch;
 use crate::illumination::material::{Body, Classic, Coated, Finish, Index, Material, Metal, Transparent};
 use crate::illumination::{Bands, Light};
 use crate::picture::difference;
-use crate::scene::{Camera, Parallel, Scene, Shape};
+use crate::scene::{Camera, Caustics, Interreflection, Parallel, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
@@ -40,7 +40,7 @@ fn light_of_a_disc_and_of_a_sphere_on_a_floor_follow_their_closed_forms() {
         let floor = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.8));
         let light = Light::Area { patch, radiance: Color::grey(10.0) };
         let mut scene = scene(vec![floor], vec![light], 1);
-        scene.settings.samples = 1024;
+        scene.settings.image.samples = 1024;
         // A pixel that sees a square of a hundredth around the foot of the light, from below the light.
         let mut view = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
         (view.from, view.at, view.up) = (DVec3::Y, DVec3::ZERO, DVec3::Z);
@@ -70,9 +70,9 @@ fn a_white_furnace_hides_what_loses_nothing() {
     ];
     for (material, tolerance) in materials {
         let mut scene = scene(ball(material.clone()), vec![sky(1.0)], 8);
-        scene.settings.samples = 256;
-        (scene.settings.reflection_depth, scene.settings.interreflection) = (60, true);
-        scene.settings.spectral = Some(false);
+        scene.settings.image.samples = 256;
+        (scene.settings.light.reflection_depth, scene.settings.light.interreflection) = (60, Interreflection::Followed);
+        scene.settings.light.spectral = Some(false);
         let found = mean(&trace(&scene, Some(from_above(0.7)), false, 2));
         assert!((found - 1.0).abs() < tolerance, "{}: {found}", material.word());
     }
@@ -85,8 +85,8 @@ fn glass_of_the_index_of_air_cannot_be_seen_and_absorbs_by_its_thickness() {
     for (index, absorption) in [(1.0, 0.0), (1.0, 0.4), (1.5, 0.0), (1.5, 0.4)] {
         let mut scene = scene(vec![pane(glass(index, 0.0, absorption))], vec![], 2);
         scene.background = Bands::ONE;
-        scene.settings.reflection_depth = 100;
-        scene.settings.samples = 64;
+        scene.settings.light.reflection_depth = 100;
+        scene.settings.image.samples = 64;
         let found = mean(&trace(&scene, Some(from_above(0.5)), false, 1));
         // What comes through, and what is reflected before or within and comes from the background, too.
         let (r, a) = (f64::powi((index - 1.0) / (index + 1.0), 2), f64::exp(-2.0 * absorption));
@@ -111,7 +111,7 @@ fn an_eye_in_water_sees_through_water_from_the_beginning() {
     for (objects, way) in [(vec![water.clone(), white.clone()], 3.0), (vec![water, white, clear], 2.0)] {
         let mut scene = scene(objects, vec![], 1);
         scene.ambient = Bands::ONE;
-        (scene.settings.samples, scene.settings.reflection_depth) = (16, 4);
+        (scene.settings.image.samples, scene.settings.light.reflection_depth) = (16, 4);
         let found = red(&trace(&scene, Some(View::Camera(camera)), false, 1), 0, 0);
         let expected = f64::exp(-0.3 * way);
         assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
@@ -124,9 +124,9 @@ fn rays_that_carry_spectra_show_the_colors_of_those_that_carry_bands() {
     let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::Bands(Bands::new(3.0, 2.0, 1.0)) };
     let floor = Classic { diffuse: Paint::grey(0.6), ..Classic::default() };
     let mut scene = scene(vec![object(Shape::Ground { size: 9.0 }, DMat4::IDENTITY, floor)], vec![sun], 2);
-    scene.settings.samples = 64;
+    scene.settings.image.samples = 64;
     let [bands, spectra] = [false, true].map(|spectral| {
-        scene.settings.spectral = Some(spectral);
+        scene.settings.light.spectral = Some(spectral);
         trace(&scene, Some(from_above(2.0)), false, 2).picture
     });
     let apart = difference(&spectra, &bands).expect("same size");
@@ -145,7 +145,7 @@ fn what_emits_lights_as_the_area_light_of_its_form() {
     let light = Light::Area { patch, radiance: Color::grey(5.0) };
     let mut scenes = [scene(vec![floor(), lamp], vec![], 6), scene(vec![floor()], vec![light], 6)];
     let [object, light] = scenes.each_mut().map(|scene: &mut Scene| {
-        scene.settings.samples = 256;
+        scene.settings.image.samples = 256;
         trace(scene, Some(from_above(3.0)), false, 2).picture
     });
     // Where the lamp itself is in sight, its back is seen.
@@ -164,7 +164,7 @@ fn a_hundred_mirrors_face_to_face_give_the_geometric_series() {
     let mut glowing = Material::from(mirror(0.9));
     glowing.emission = Color::grey(1.0);
     let mut scene = scene(vec![plate(0.0, glowing), plate(2.0, mirror(0.8).into())], vec![], 1);
-    (scene.settings.reflection_depth, scene.settings.samples) = (200, 64);
+    (scene.settings.light.reflection_depth, scene.settings.image.samples) = (200, 64);
     let mut down = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
     (down.from, down.at, down.up, down.field_of_view) = (DVec3::Y, DVec3::ZERO, DVec3::Z, 1e-3);
     let found = red(&trace(&scene, Some(View::Camera(down)), false, 1), 0, 0);
@@ -182,8 +182,8 @@ fn a_thin_gap_between_two_glass_spheres_is_not_lost() {
         let core = object(solid(0.5), DMat4::IDENTITY, glass(1.5, 0.0, 0.0));
         let mut scene = scene(vec![shell, hollow, core], vec![], 1);
         scene.background = Bands::ONE;
-        (scene.settings.samples, scene.settings.tolerance) = (64, Some(1e-3));
-        scene.settings.reflection_depth = 60;
+        (scene.settings.image.samples, scene.settings.geometry.tolerance) = (64, Some(1e-3));
+        scene.settings.light.reflection_depth = 60;
         let rendering = trace(&scene, Some(from_above(0.02)), false, 1);
         (mean(&rendering), rendering.rays.reflected)
     };
@@ -199,7 +199,7 @@ fn a_lens_is_sharp_where_it_is_focused_and_nowhere_else() {
         object(Shape::Solid(Primitive::Box { size: DVec3::new(1.0, 4.0, 0.01) }), DMat4::IDENTITY, diffuse(1.0));
     let mut scene = scene(vec![stripe], vec![], 16);
     scene.ambient = Bands::ONE;
-    scene.settings.samples = 64;
+    scene.settings.image.samples = 64;
     let contrast = |focus: f64| {
         let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
         (camera.from, camera.at, camera.field_of_view) = (DVec3::Z * 10.0, DVec3::ZERO, 20.0);
@@ -216,7 +216,7 @@ fn a_sphere_far_from_the_origin_is_lit_as_one_at_the_origin() {
         let center = DVec3::new(place, 0.0, 0.0);
         let shape = Shape::Solid(Primitive::Sphere { radius: 1.0 });
         let mut scene = scene(vec![object(shape, DMat4::from_translation(center), diffuse(0.7))], vec![sky(1.0)], 12);
-        scene.settings.samples = 16;
+        scene.settings.image.samples = 16;
         let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([center]));
         (camera.from, camera.at, camera.field_of_view) = (center + DVec3::Z * 5.0, center, 30.0);
         scene.camera = Some(camera);
@@ -245,8 +245,8 @@ fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
             objects.push(object(Shape::Ground { size: 20.0 }, DMat4::from_translation(DVec3::Y), clear.clone()));
         }
         let mut scene = scene(objects, vec![lamp.clone()], 12);
-        (scene.settings.samples, scene.settings.reflection_depth) = (256, depth);
-        scene.settings.interreflection = true;
+        (scene.settings.image.samples, scene.settings.light.reflection_depth) = (256, depth);
+        scene.settings.light.interreflection = Interreflection::Followed;
         let below = from_above(1.0);
         mean(&trace(&scene, Some(below), false, 2))
     };
@@ -267,7 +267,8 @@ fn highlights_that_spread_light_sees_are_cut_off_unless_caustics_count() {
         let wall = object(Shape::Ground { size: 4.0 }, wall, diffuse(0.8));
         let lamp = Light::Area { patch: lamp, radiance: Color::grey(2000.0) };
         let mut scene = scene(vec![floor, wall], vec![lamp], 24);
-        (scene.settings.samples, scene.settings.interreflection, scene.settings.caustics) = (16, true, caustics);
+        (scene.settings.image.samples, scene.settings.light.interreflection, scene.settings.light.caustics) =
+            (16, Interreflection::Followed, if caustics { Caustics::PathTraced } else { Caustics::LeftOut });
         let camera = Camera {
             from: DVec3::new(0.0, 1.0, 3.0),
             at: DVec3::new(0.0, 1.0, -1.0),
@@ -316,9 +317,9 @@ fn the_light_buffer_changes_no_picture_and_spares_rays() {
         },
     ];
     let mut scene = scene(objects, lights, 48);
-    scene.settings.samples = 16;
+    scene.settings.image.samples = 16;
     let mut drawn = |buffer: bool| {
-        scene.settings.light_buffer = buffer;
+        scene.settings.light.buffer = buffer;
         trace(&scene, Some(from_above(4.0)), false, 2)
     };
     let (with, without) = (drawn(true), drawn(false));

@@ -110,7 +110,7 @@ impl<'a> RayTracer<'a> {
     }
 
     fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>, eye: &Eye, guides: bool) -> Tracer<'b> {
-        let depth = self.world.appearance.prepared.settings.reflection_depth;
+        let depth = self.world.appearance.prepared.settings.light.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
         let around = eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default();
         Tracer::new(
@@ -131,7 +131,7 @@ impl<'a> RayTracer<'a> {
             return Ok(eye);
         }
         // The samples of a pixel share it. The slope of a relief is taken over something, at least.
-        let filter = prepared.settings.texture_filter.max(1e-3);
+        let filter = prepared.settings.light.texture_filter.max(1e-3);
         Ok(eye.with_cones(filter / f64::from(order.footprints).sqrt()))
     }
 
@@ -146,7 +146,7 @@ impl<'a> RayTracer<'a> {
     ) -> (Sample, ByClass, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let draws = Draws::new(order.seed, pixel, index, order.samples);
-        let draws = if self.world.moves() { draws.within(self.prepared().settings.shutter) } else { draws };
+        let draws = if self.world.moves() { draws.within(self.prepared().settings.geometry.shutter) } else { draws };
         let ([dx, dy], weight) = draws.position(order.filter);
         let wavelengths = &self.world.appearance.wavelengths;
         let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);

@@ -18,7 +18,7 @@ fn plate(size: f64, at: DVec3, reflectance: f64) -> Object {
 /// Objects, of which one moves, under ambient light alone: radiance is reflectance.
 fn ambient(objects: Vec<Object>, (index, motion): (u32, Motion), side: u32) -> Scene {
     let mut scene = Scene { ambient: DVec3::ONE, motions: vec![(index, motion)], ..scene(objects, Vec::new(), side) };
-    scene.settings.samples = 256;
+    scene.settings.image.samples = 256;
     scene
 }
 
@@ -67,7 +67,7 @@ fn the_time_in_which_the_shutter_is_open_scales_the_ramp() {
     for shutter in [0.0, 0.25] {
         let mut scene =
             ambient(vec![plate(20.0, DVec3::new(-10.0, 0.0, 0.0), 1.0)], (0, Motion { by: DVec3::X, ..STILL }), 64);
-        scene.settings.shutter = shutter;
+        scene.settings.geometry.shutter = shutter;
         let rendering = trace(&scene, Some(from_above(1.0)), false, 2);
         let blurred = (0..64).filter(|x| (0.01..0.99).contains(&red(&rendering, *x, 31))).count();
         assert!(blurred.abs_diff((shutter * 32.0) as usize) <= 1, "{shutter}: {blurred}");
@@ -109,7 +109,7 @@ fn a_moving_plate_throws_a_shadow_that_is_a_ramp() {
     let objects = vec![plate(200.0, DVec3::ZERO, 1.0), plate(20.0, DVec3::new(10.0 + 6.0, 6.0, 0.0), 1.0)];
     let mut scene = scene(objects, vec![light], 64);
     scene.motions = vec![(1, Motion { by: DVec3::X, ..STILL })];
-    scene.settings.samples = 256;
+    scene.settings.image.samples = 256;
     // A point right of the edge is dark; the edge passes to the right, so that it becomes bright.
     compare(&trace(&scene, Some(from_above(1.0)), false, 2), |from, to| ramp(0.5 - to, 0.5 - from));
 }
@@ -134,7 +134,7 @@ fn what_stands_still_in_an_octree_of_its_own_gives_the_same_picture() {
     };
     let light = Light::Point { at: DVec3::new(1.0, 3.0, 1.0), intensity: Color::grey(20.0) };
     let mut scene = scene(vec![plate(4.0, DVec3::Y * -0.5, 0.7), ball], vec![light], 32);
-    scene.settings.samples = 4;
+    scene.settings.image.samples = 4;
     let [lean, forced] = [false, true].map(|everything| trace(&scene, Some(from_above(1.0)), everything, 2).picture);
     assert_eq!(lean.pixels(), forced.pixels(), "no time is drawn where nothing moves");
     scene.motions = vec![(1, STILL)];
@@ -155,7 +155,7 @@ fn a_ball_that_rolls_keeps_its_texture_and_its_outline() {
     };
     let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(PI) };
     let mut scene = scene(vec![ball], vec![light], 32);
-    scene.settings.samples = 64;
+    scene.settings.image.samples = 64;
     scene.motions = vec![(0, Motion { angle: 3.0, axis: DVec3::new(0.6, 0.0, 0.8), ..STILL })];
     let rendering = trace(&scene, Some(from_above(1.0)), false, 2);
     for (x, y) in [(16, 16), (22, 16), (16, 7), (25, 20)] {

@@ -37,8 +37,8 @@ fn passed(mut objects: Vec<Object>, degrees: f64) -> f64 {
     lamp.emission = Color::grey(1.0);
     objects.push(object(Shape::Ground { size: 4000.0 }, DMat4::from_translation(DVec3::NEG_Y * 20.0), lamp));
     let mut scene = scene(objects, vec![], 1);
-    (scene.settings.samples, scene.settings.reflection_depth) = (2048, 200);
-    scene.settings.tolerance = Some(1e-3);
+    (scene.settings.image.samples, scene.settings.light.reflection_depth) = (2048, 200);
+    scene.settings.geometry.tolerance = Some(1e-3);
     let mut view = Camera::framing(&Bounds::of([DVec3::ZERO]));
     let (sin, cos) = degrees.to_radians().sin_cos();
     (view.from, view.at, view.up) = (DVec3::new(sin, cos, 0.0) * 10.0, DVec3::ZERO, DVec3::Z);

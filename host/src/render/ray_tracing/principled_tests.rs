@@ -5,7 +5,7 @@ use crate::color::Color;
 use crate::illumination::material::{Body, Principled};
 use crate::illumination::texture::{Band, Laying, Motif, Number, Pattern, Varying};
 use crate::illumination::{Bands, Light, Material, Paint};
-use crate::scene::Shape;
+use crate::scene::{Interreflection, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
@@ -55,8 +55,8 @@ fn a_white_furnace_hides_it_with_whatever_numbers() {
         let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, of(principled));
         let mut scene = scene(vec![ball], vec![], 8);
         scene.lights = vec![Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 }];
-        (scene.settings.samples, scene.settings.reflection_depth) = (256, 100);
-        scene.settings.interreflection = true;
+        (scene.settings.image.samples, scene.settings.light.reflection_depth) = (256, 100);
+        scene.settings.light.interreflection = Interreflection::Followed;
         let rendering = trace(&scene, Some(from_above(0.8)), false, 2);
         let mean = rendering.picture.pixels().iter().map(|pixel| f64::from(pixel.radiance[0])).sum::<f64>() / 64.0;
         assert!((mean - 1.0).abs() < tolerance, "{words}: {mean}");
@@ -75,7 +75,7 @@ fn a_polished_pane_lets_lamps_through_as_fresnel_tells() {
         let size = if degrees == 0.0 || !specular { 20.0 } else { 4.0 };
         let plate = object(Shape::Ground { size }, DMat4::from_translation(beside), of(pane.clone()));
         let mut scene = scene(vec![floor, plate], vec![light], 1);
-        (scene.settings.samples, scene.settings.reflection_depth) = (512, 8);
+        (scene.settings.image.samples, scene.settings.light.reflection_depth) = (512, 8);
         let found = red(&trace(&scene, Some(from_above(0.01)), false, 1), 0, 0);
         let through = |cosine: f64| {
             let once =
@@ -97,7 +97,7 @@ fn ambient_light_and_a_background_show_what_it_reflects() {
     ] {
         let mut scene = scene(vec![ball(principled)], vec![], 1);
         (scene.ambient, scene.background) = (Bands::ONE, Bands::ONE);
-        scene.settings.samples = 16;
+        scene.settings.image.samples = 16;
         let found = red(&trace(&scene, Some(from_above(0.01)), false, 1), 0, 0);
         assert!((found - expected).abs() < 2e-3, "{found} {expected}");
     }

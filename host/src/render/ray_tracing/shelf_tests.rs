@@ -8,7 +8,7 @@ use crate::illumination::Light;
 use crate::picture::Picture;
 use crate::render::two_way::Balance;
 use crate::render::{Task, ray_tracer_watched};
-use crate::scene::Scene;
+use crate::scene::{Caustics, Scene};
 use glam::DVec3;
 use std::path::Path;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use std::time::Duration;
 fn two_lamps() -> Scene {
     let mut scene = mirror_under_a_ceiling(3.0, 12);
     scene.lights.push(lamp(DVec3::new(0.1, 0.8, 0.0), 5.0));
-    (scene.settings.photons, scene.settings.two_way) = (40_000, true);
+    (scene.settings.photons.count, scene.settings.light.caustics) = (40_000, Caustics::PhotonMapped);
     scene
 }
 
@@ -47,10 +47,10 @@ fn light_from_a_database_gives_the_same_picture_to_the_bit_and_is_not_followed_a
     assert!(balance.before > balance.ways * 4 / 5 && balance.before < balance.ways, "{balance}");
     let before = balance.before;
     // Neither the size of the picture nor the samples matter, nor where light is looked for.
-    (scene.settings.width, scene.settings.samples, scene.settings.photon_radius) = (9, 2, Some(0.1));
+    (scene.settings.image.width, scene.settings.image.samples, scene.settings.photons.radius) = (9, 2, Some(0.1));
     assert_eq!(picture(&scene, Some(&path)).1.before, before);
     // Each pass has its own light.
-    scene.settings.samples = 2 * SHARING;
+    scene.settings.image.samples = 2 * SHARING;
     let (plain, _) = picture(&scene, None);
     assert_eq!(picture(&scene, Some(&path)).0, plain);
     let store = Store::open(&path).expect("a database");
@@ -69,7 +69,7 @@ fn where_one_lamp_changes_the_light_of_the_other_is_taken_from_the_database() {
     assert_eq!(changed, plain);
     assert!(balance.before > whole / 4 && balance.before < whole * 9 / 10, "{balance}");
     // More ways of a lamp are added to those that are there.
-    scene.settings.photons = 50_000;
+    scene.settings.photons.count = 50_000;
     let (plain, _) = picture(&scene, None);
     let (more, balance) = picture(&scene, Some(&path));
     assert_eq!(more, plain);
@@ -87,7 +87,7 @@ fn nothing_is_taken_where_surfaces_or_how_light_is_followed_have_changed() {
     let mut painted = scene.clone();
     painted.objects[1].material = Some(super::tests::diffuse(0.25).into());
     let (mut seeded, mut shallow) = (scene.clone(), scene.clone());
-    (seeded.settings.seed, shallow.settings.reflection_depth) = (5, 1);
+    (seeded.settings.image.seed, shallow.settings.light.reflection_depth) = (5, 1);
     for other in [moved, painted, seeded, shallow] {
         let (taken, balance) = picture(&other, Some(&path));
         assert_eq!(balance.before, 0);

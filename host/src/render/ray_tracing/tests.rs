@@ -27,7 +27,7 @@ pub(super) fn mirror(k: f64) -> Classic {
 }
 
 pub(super) fn scene(objects: Vec<Object>, lights: Vec<Light>, side: u32) -> Scene {
-    let settings = Settings { width: side, height: side, samples: 1, ..Settings::default() };
+    let settings = Settings::of_size(side, side, 1);
     Scene { objects, lights, settings, ..Scene::default() }
 }
 
@@ -94,7 +94,7 @@ fn still_life() -> Scene {
     };
     let mut scene = scene(objects, lights, 40);
     (scene.camera, scene.ambient, scene.background) = (Some(camera), Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
-    scene.settings.samples = 3;
+    scene.settings.image.samples = 3;
     scene
 }
 
@@ -107,7 +107,7 @@ fn a_diffuse_sphere_under_parallel_light_follows_lambert() {
         vec![light],
         40,
     );
-    scene.settings.tolerance = Some(2e-4);
+    scene.settings.geometry.tolerance = Some(2e-4);
     let to_clip = DMat4::from_scale(DVec3::new(1.0, 1.0, -0.1));
     let rendering = trace(&scene, Some(View::Projection(Projection { to_clip, depth_clipping: false })), false, 2);
     let mut compared = 0;
@@ -162,7 +162,7 @@ fn a_mirror_shows_the_luminance_of_what_it_reflects() {
     let seen = |scene: &Scene, z: f64| red(&trace(scene, Some(View::Camera(look(z))), false, 1), 0, 0);
     assert!((seen(&scene, -7.0) - 0.8 * 0.5 * 0.3).abs() < 1e-6, "the wall, 3 above its foot");
     assert!((seen(&scene, -5.0) - 0.8 * 2.0).abs() < 1e-6, "past the wall, 5 above its foot");
-    scene.settings.reflection_depth = 0;
+    scene.settings.light.reflection_depth = 0;
     assert_eq!(seen(&scene, -7.0), 0.0, "without reflection a mirror is black");
 }
 
@@ -182,9 +182,9 @@ fn two_facing_mirrors_end_by_depth_or_by_energy() {
         lens: None,
         parallel: None,
     };
-    scene.settings.reflection_depth = 5;
+    scene.settings.light.reflection_depth = 5;
     assert_eq!(trace(&scene, Some(View::Camera(straight_down)), false, 1).rays.reflected, 5);
-    scene.settings.reflection_depth = 1000;
+    scene.settings.light.reflection_depth = 1000;
     let chain = trace(&scene, Some(View::Camera(straight_down)), false, 1).rays.reflected;
     assert!((12..40).contains(&chain), "0.5^12 is the last that is surely followed, not {chain}");
 }
@@ -214,7 +214,7 @@ fn no_surface_shadows_itself_at_any_scale_or_place() {
         let towards = DVec3::new(0.2, 0.3, 1.0).normalize();
         let lights = vec![Light::Directional { direction: -towards, irradiance: Color::grey(PI) }];
         let mut scene = scene(vec![ball], lights, 64);
-        scene.settings.samples = 1;
+        scene.settings.image.samples = 1;
         scene.camera = Some(Camera {
             from: center + towards * size * 1e3,
             at: center,
@@ -272,7 +272,7 @@ fn a_coarse_sphere_has_no_jagged_terminator() {
         vec![light],
         48,
     );
-    scene.settings.tolerance = Some(0.01);
+    scene.settings.geometry.tolerance = Some(0.01);
     let to_clip = DMat4::from_scale(DVec3::new(1.0, 1.0, -0.1));
     let rendering = trace(&scene, Some(View::Projection(Projection { to_clip, depth_clipping: false })), false, 2);
     // Right of the terminator (x > 0) every pixel is lit: none is black where the exact luminance is above 0.1.
@@ -303,7 +303,7 @@ fn the_picture_is_the_same_for_any_number_of_threads() {
 fn another_seed_gives_another_picture_of_the_same_scene() {
     let scene = still_life();
     let mut other = scene.clone();
-    other.settings.seed = 2;
+    other.settings.image.seed = 2;
     let (a, b) = (trace(&scene, None, false, 2).picture, trace(&other, None, false, 2).picture);
     let d = difference(&a, &b).expect("same size");
     assert!(d.rmse > 0.0 && d.rmse < 0.1, "{d:?}");
@@ -322,7 +322,7 @@ fn forcing_everything_gives_the_same_picture() {
     black.ambient = Bands::ZERO;
     black.objects.iter_mut().for_each(|o| o.material = Some(mirror(0.0).into()));
     let mut plain = full.clone();
-    (plain.settings.samples, plain.settings.reflection_depth) = (1, 0);
+    (plain.settings.image.samples, plain.settings.light.reflection_depth) = (1, 0);
     let mut empty = full.clone();
     empty.objects.clear();
     let mut away = full.clone();
@@ -347,7 +347,7 @@ fn forcing_everything_gives_the_same_picture() {
 fn a_camera_and_the_matrix_of_the_workstation_show_the_same_silhouette() {
     let mut scene = still_life();
     scene.objects.remove(0);
-    scene.settings.samples = 1;
+    scene.settings.image.samples = 1;
     let camera = scene.camera.expect("set");
     // What LOOK and FIELD_OF_VIEW make of the scene with its z negated: rows times matrix, left-handed.
     let negated = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
@@ -372,8 +372,8 @@ fn stratified_samples_converge_faster_than_random_ones() {
     let error = |samples: u32| {
         let reference = 1.2f64 * 1.2 / 4.0;
         let runs = (0..24).map(|seed| {
-            scene.settings.samples = samples;
-            scene.settings.seed = seed;
+            scene.settings.image.samples = samples;
+            scene.settings.image.seed = seed;
             let picture = trace(&scene, Some(view), false, 1).picture;
             let mean = picture.pixels().iter().map(|p| f64::from(p.coverage)).sum::<f64>() / 144.0;
             (mean - reference).powi(2)
@@ -426,7 +426,7 @@ fn degenerate_views_are_errors() {
 #[test]
 fn a_matte_over_the_background_is_the_picture() {
     let mut scene = still_life();
-    scene.settings.samples = 5;
+    scene.settings.image.samples = 5;
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);

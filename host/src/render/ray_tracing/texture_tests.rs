@@ -48,7 +48,7 @@ fn an_image_on_a_square_is_seen_as_it_is() {
 fn tiles_that_are_smaller_than_a_pixel_have_their_mean() {
     for samples in [1, 4, 64] {
         let mut scene = square(painted(Motif::Checker, sized(1.0 / 1000.0)), 8);
-        scene.settings.samples = samples;
+        scene.settings.image.samples = samples;
         let picture = trace(&scene, Some(from_above(0.7)), false, 1).picture;
         let worst = picture.pixels().iter().map(|p| (p.radiance[0] - 0.5).abs()).fold(0.0, f32::max);
         assert!(worst < 0.02, "{samples} samples: {worst}");
@@ -69,7 +69,7 @@ fn filtered_tiles_to_the_horizon_agree_with_many_points() {
     };
     let at = |samples: u32, filter: f64, motif: &Motif| {
         let mut scene = square(painted(motif.clone(), sized(0.06)), 32);
-        (scene.settings.samples, scene.settings.texture_filter) = (samples, filter);
+        (scene.settings.image.samples, scene.settings.light.texture_filter) = (samples, filter);
         scene.camera = Some(camera);
         trace(&scene, None, false, 2).picture
     };
@@ -158,7 +158,7 @@ fn light_from_lamps_follows_the_slope_of_a_relief() {
     ];
     let sun = Light::Directional { direction: -DVec3::Y, irradiance: Color::grey(2.0) };
     let mut scene = scene(objects, vec![sun], 8);
-    (scene.settings.samples, scene.settings.photons) = (4, 200_000);
+    (scene.settings.image.samples, scene.settings.photons.count) = (4, 200_000);
     let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
     (camera.from, camera.at, camera.field_of_view) = (DVec3::Y * 3.0, DVec3::new(-3.0, 3.0, 0.0), 26.0);
     let rendering = two_way(&scene, Some(View::Camera(camera)), 1);

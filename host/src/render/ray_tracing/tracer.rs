@@ -13,6 +13,7 @@ use crate::render::indirect::{IndirectLight, Part};
 use crate::render::two_way::CaughtLight;
 use crate::render::world::{Cone, Found, Media, Met, Sight, World, diffuse};
 use crate::render::{Class, RayCounts};
+use crate::scene::Caustics;
 use glam::DVec3;
 
 /// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.
@@ -185,17 +186,6 @@ pub(super) struct Tracer<'a> {
     guides: bool,
 }
 
-/// What becomes of light of a lamp that narrow lobes throw on a broad one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Caustics {
-    /// Rays from the eye find it, if they do.
-    Met,
-    /// It was caught there: rays from the eye may not find it again.
-    Caught,
-    /// It does not count, or only as far as it is faint.
-    LeftOut,
-}
-
 impl<'a> Tracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
     /// - `catches`: whether light of lamps was followed; `caught` is what was caught. `around`: what the eye is in.
@@ -211,15 +201,16 @@ impl<'a> Tracer<'a> {
         guides: bool,
     ) -> Tracer<'a> {
         let settings = &world.appearance.prepared.settings;
-        let caustics = match (catches, settings.caustics) {
-            (true, _) => Caustics::Caught,
-            (false, true) => Caustics::Met,
-            (false, false) => Caustics::LeftOut,
+        let caustics = match settings.light.caustics {
+            // Rays from the eye may not find again what was caught.
+            _ if catches => Caustics::PhotonMapped,
+            Caustics::PathTraced => Caustics::PathTraced,
+            _ => Caustics::LeftOut,
         };
         let appearance = &world.appearance;
         let has_others =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.is_caught());
-        let direct = Direct::new(world, shadows, settings.light_samples.max(1));
+        let direct = Direct::new(world, shadows, settings.light.samples.max(1));
         Tracer { world, direct, depth, caustics, caught, indirect, has_others, around, guides }
     }
 
@@ -430,12 +421,12 @@ impl<'a> Tracer<'a> {
         let is_caustic = leg.density.is_none() && leg.course != Course::Seen;
         match self.caustics {
             // What is not followed from lamps counts wherever it is met.
-            Caustics::Caught if !source.is_caught() => counted(leg.density, density),
-            Caustics::Caught if leg.is_known => 0.0,
+            Caustics::PhotonMapped if !source.is_caught() => counted(leg.density, density),
+            Caustics::PhotonMapped if leg.is_known => 0.0,
             // A shadow ray has gone through what is polished.
             Caustics::LeftOut if leg.turn == Turn::Through && self.world.appearance.clears => 0.0,
             Caustics::LeftOut if source.is_sky() => counted(leg.density, density),
-            Caustics::Caught | Caustics::LeftOut if is_caustic => 0.0,
+            Caustics::PhotonMapped | Caustics::LeftOut if is_caustic => 0.0,
             _ => leg.lamps * counted(leg.density, density),
         }
     }
@@ -443,7 +434,7 @@ impl<'a> Tracer<'a> {
     /// The greatest value with which narrow lobes may reflect a lamp where a leg arrives, 1/sr.
     fn highest(&self, leg: &Leg) -> f64 {
         match self.caustics {
-            Caustics::Caught if leg.course != Course::Seen => 0.0,
+            Caustics::PhotonMapped if leg.course != Course::Seen => 0.0,
             Caustics::LeftOut if leg.course != Course::Seen => HIGHEST,
             _ => f64::INFINITY,
         }
@@ -462,7 +453,7 @@ impl<'a> Tracer<'a> {
         if is_last && (onward.density.is_none() || !self.direct.is_spread()) {
             return None;
         }
-        let goes_back = self.caustics == Caustics::Caught && !onward.is_broad && leg.course != Course::Seen;
+        let goes_back = self.caustics == Caustics::PhotonMapped && !onward.is_broad && leg.course != Course::Seen;
         let is_known = leg.is_known || goes_back;
         if is_known && !self.has_others {
             return None;

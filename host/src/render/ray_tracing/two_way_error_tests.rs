@@ -5,7 +5,7 @@ use super::two_way_tests::{ball, block, glass, lamp};
 use super::*;
 use crate::color::srgb::LUMINANCE;
 use crate::render::ray_tracer;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Caustics, Scene};
 
 /// A glass ball over a plane: its caustic fills a third of the picture.
 fn caustic() -> Scene {
@@ -17,7 +17,7 @@ fn caustic() -> Scene {
     let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO, DVec3::ONE]));
     (camera.from, camera.at, camera.field_of_view) = (DVec3::new(-4.0, 3.0, 3.0), DVec3::new(-0.6, 0.3, 0.0), 30.0);
     scene.camera = Some(camera);
-    (scene.settings.two_way, scene.settings.photons) = (true, 4_000);
+    (scene.settings.light.caustics, scene.settings.photons.count) = (Caustics::PhotonMapped, 4_000);
     scene
 }
 
@@ -25,7 +25,7 @@ fn caustic() -> Scene {
 fn renderings(scene: &Scene, target: Option<f64>) -> Vec<Rendering> {
     let rendering = |seed: u64| {
         let mut scene = scene.clone();
-        scene.settings.seed = seed;
+        scene.settings.image.seed = seed;
         let prepared = Prepared::new(&scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());
         let tracer = ray_tracer(&prepared, &plan).expect("an octree");
@@ -55,7 +55,7 @@ fn the_standard_error_that_is_told_is_how_far_renderings_are_apart() {
     let mut scene = caustic();
     // Within one pass of light, chance in it counts as if ways of light were independent: that is more than it is.
     for (samples, most) in [(8, 2.0), (16, 1.5), (20, 1.5), (32, 1.5)] {
-        scene.settings.samples = samples;
+        scene.settings.image.samples = samples;
         let all = renderings(&scene, None);
         let told = all.iter().map(|one| one.film.standard_error().powi(2)).sum::<f64>() / all.len() as f64;
         let pixels = spread(&all);
@@ -68,7 +68,7 @@ fn the_standard_error_that_is_told_is_how_far_renderings_are_apart() {
 #[test]
 fn samples_are_added_until_the_error_is_as_asked_for() {
     let mut scene = caustic();
-    scene.settings.samples = 96;
+    scene.settings.image.samples = 96;
     for target in [0.2, 0.1] {
         let all = renderings(&scene, Some(target));
         let [least, most] = all[0].film.samples();

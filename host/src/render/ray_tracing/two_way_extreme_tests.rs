@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 
 /// Follows light, and asks that it is finite and that no more arrives than was sent.
 fn followed(mut scene: Scene, view: Option<View>, photons: u32) -> (Rendering, Balance) {
-    scene.settings.photons = photons;
+    scene.settings.photons.count = photons;
     let rendering = two_way(&scene, view, 2);
     let finite = |pixel: &crate::picture::Pixel| pixel.radiance.iter().all(|band| band.is_finite() && *band >= 0.0);
     assert!(rendering.picture.pixels().iter().all(finite));
@@ -57,7 +57,7 @@ fn a_burning_mirror_gathers_all_light_in_a_point() {
     let hollow = Object { material: None, ..object(Shape::Composite(Box::new(hollow)), DMat4::IDENTITY, mirror(0.9)) };
     let light = Light::Directional { direction: DVec3::Y, irradiance: Color::grey(1.0) };
     let mut scene = scene(vec![hollow, small], vec![light], 32);
-    scene.settings.samples = 16;
+    scene.settings.image.samples = 16;
     let (rendering, balance) = followed(scene, Some(down_on(DVec3::ZERO, 0.02, 0.2)), 50_000);
     let expected = 0.9 * (PI - 0.04);
     assert!((balance.caught / expected - 1.0).abs() < 0.01, "{} {expected}", balance.caught);
@@ -69,7 +69,7 @@ fn a_burning_mirror_gathers_all_light_in_a_point() {
 fn a_ball_of_index_2_gathers_light_where_it_stands() {
     let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) };
     let mut scene = scene(vec![ball(1.0, DVec3::Y, glass(2.0)), floor(6.0, 0.0)], vec![light], 16);
-    scene.settings.samples = 4;
+    scene.settings.image.samples = 4;
     let (_, balance) = followed(scene, Some(from_above(2.0)), 30_000);
     assert!(balance.caught > 0.5 * PI && balance.caught < PI);
 }
@@ -153,7 +153,7 @@ fn a_cut_diamond_gives_back_all_light_that_falls_on_its_table() {
         outer: 4.0,
     };
     let mut scene = scene(objects, vec![light], 8);
-    scene.settings.samples = 1;
+    scene.settings.image.samples = 1;
     let (_, balance) = followed(scene, Some(from_above(3.9)), 20_000);
     assert!(balance.straight == 0.0 && balance.escaped == 0.0, "{balance}");
     assert!(balance.caught > 0.999 * balance.sent && balance.stopped < 1e-3 * balance.sent, "{balance}");
@@ -167,7 +167,7 @@ fn a_box_of_perfect_mirrors_keeps_all_light_for_the_ball_in_it() {
         objects.extend([-1.0, 1.0].map(|sign| block(size, axis * sign * 1.05, mirror(1.0))));
     }
     let mut scene = scene(objects, vec![lamp(DVec3::new(0.3, 0.5, -0.2), 1.0)], 8);
-    scene.settings.samples = 1;
+    scene.settings.image.samples = 1;
     let (_, balance) = followed(scene, Some(from_above(0.9)), 5_000);
     assert!(balance.escaped.abs() < 1e-6 * balance.sent && balance.absorbed.abs() < 1e-9 * balance.sent, "{balance}");
     let all = balance.straight + balance.caught + balance.stopped;

@@ -8,7 +8,7 @@ use crate::illumination::material::{Body, Index, Material, Transparent};
 use crate::illumination::{Bands, Light};
 use crate::picture::difference;
 use crate::render::ray_tracer;
-use crate::scene::{Camera, Object, Scene, Shape};
+use crate::scene::{Camera, Caustics, Interreflection, Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
@@ -40,7 +40,7 @@ pub(super) fn from_below() -> View {
 
 pub(super) fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
     let mut scene = scene.clone();
-    scene.settings.two_way = true;
+    scene.settings.light.caustics = Caustics::PhotonMapped;
     let prepared = Prepared::new(&scene).unwrap_or_else(|e| panic!("{e}"));
     let view = view.unwrap_or(prepared.view());
     let plan = Plan::new(&prepared, &view);
@@ -62,7 +62,7 @@ pub(super) fn mirror_under_a_ceiling(size: f64, side: u32) -> Scene {
         block(DVec3::new(0.4, 0.02, 0.4), DVec3::new(0.0, 1.2, 0.0), diffuse(0.0)),
     ];
     let mut scene = scene(objects, vec![lamp(DVec3::new(0.0, 1.0, 0.0), 10.0)], side);
-    (scene.settings.samples, scene.settings.photons) = (4, 200_000);
+    (scene.settings.image.samples, scene.settings.photons.count) = (4, 200_000);
     scene
 }
 
@@ -98,7 +98,7 @@ fn a_mirror_lights_a_ceiling_as_a_lamp_behind_it_would() {
 fn more_light_makes_it_more_right() {
     let error = |photons: u32| {
         let mut scene = mirror_under_a_ceiling(3.0, 16);
-        (scene.settings.photons, scene.settings.samples) = (photons, 1);
+        (scene.settings.photons.count, scene.settings.image.samples) = (photons, 1);
         let rendering = two_way(&scene, Some(from_below()), 2);
         let square = |(i, pixel): (usize, &crate::picture::Pixel)| {
             let at = |i: usize| (i as f64 + 0.5) / 16.0 * 3.0 - 1.5;
@@ -125,16 +125,16 @@ fn ball_and_mirror() -> Scene {
     let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::splat(-2.0), DVec3::splat(2.0)]));
     (camera.from, camera.at) = (DVec3::new(0.0, 5.0, 7.0), DVec3::new(0.0, 0.5, 0.0));
     scene.camera = Some(camera);
-    (scene.settings.interreflection, scene.settings.reflection_depth) = (true, 12);
+    (scene.settings.light.interreflection, scene.settings.light.reflection_depth) = (Interreflection::Followed, 12);
     scene
 }
 
 #[test]
 fn rays_from_the_eye_alone_find_the_same_light() {
     let mut scene = ball_and_mirror();
-    scene.settings.samples = 64;
+    scene.settings.image.samples = 64;
     let found = two_way(&scene, None, 2);
-    (scene.settings.caustics, scene.settings.samples) = (true, 1024);
+    (scene.settings.light.caustics, scene.settings.image.samples) = (Caustics::PathTraced, 1024);
     let expected = super::tests::trace(&scene, None, false, 2);
     let mean = |rendering: &Rendering, rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
         let pixels = rows.flat_map(|y| columns.clone().map(move |x| (x as u32, y as u32)));
@@ -163,9 +163,9 @@ fn sky_with_a_sun() -> Light {
 fn light_of_a_sky_with_a_sun_is_found_once_whoever_looks_for_it() {
     let mut scene = ball_and_mirror();
     scene.lights = vec![sky_with_a_sun()];
-    scene.settings.samples = 64;
+    scene.settings.image.samples = 64;
     let found = two_way(&scene, None, 2);
-    (scene.settings.caustics, scene.settings.samples) = (true, 1024);
+    (scene.settings.light.caustics, scene.settings.image.samples) = (Caustics::PathTraced, 1024);
     let expected = super::tests::trace(&scene, None, false, 2);
     let mean = |rendering: &Rendering| {
         (0..256).map(|i| red(rendering, i % 16, i / 16)).filter(|radiance| *radiance < 2.0).sum::<f64>()
@@ -187,19 +187,19 @@ fn classes_of_light_add_up_and_are_the_same_by_both_ways_of_finding_it() {
         for (tally, classes) in film.tallies().iter().zip(film.classes()) {
             assert!((tally.sum - classes.iter().copied().sum::<DVec3>()).length() <= 1e-9 * tally.sum.length());
         }
-        let count = f64::from(scene.settings.samples) * 256.0;
+        let count = f64::from(scene.settings.image.samples) * 256.0;
         [0, 1, 2, 3].map(|class| film.classes().iter().map(|classes| classes[class].x).sum::<f64>() / count)
     };
-    (scene.settings.samples, scene.settings.two_way) = (64, true);
+    (scene.settings.image.samples, scene.settings.light.caustics) = (64, Caustics::PhotonMapped);
     let found = classes(&scene);
-    (scene.settings.samples, scene.settings.two_way, scene.settings.caustics) = (512, false, true);
+    (scene.settings.image.samples, scene.settings.light.caustics) = (512, Caustics::PathTraced);
     let expected = classes(&scene);
     // Of so little indirect light, chance takes more.
     for ((a, b), most) in found.iter().zip(expected).zip([0.03, 0.01, 0.03, 0.15]) {
         assert!(*a > 0.0 && (a / b - 1.0).abs() < most, "{found:?} {expected:?}");
     }
     // Left out, caustics are not there, neither straight nor carried on; light goes straight through glass instead.
-    scene.settings.caustics = false;
+    scene.settings.light.caustics = Caustics::LeftOut;
     let without = classes(&scene);
     assert!(without[2] == 0.0 && without[3] < expected[3], "{without:?} {expected:?}");
     assert!(without[1] > expected[1] && without[1] < expected[1] + expected[2], "{without:?} {expected:?}");
@@ -219,19 +219,19 @@ fn a_closed_dark_room_stays_dark_whatever_shines_outside() {
     objects.push(wall(DVec3::new(4.0, 0.1, 4.0), DVec3::new(0.0, 2.05, 0.0)));
     let lights = [-4.0, 4.0].map(|x| lamp(DVec3::new(x, 5.0, x), 100.0));
     let mut scene = scene(objects, lights.to_vec(), 24);
-    (scene.settings.samples, scene.settings.photons) = (4, 50_000);
-    scene.settings.interreflection = true;
+    (scene.settings.image.samples, scene.settings.photons.count) = (4, 50_000);
+    scene.settings.light.interreflection = Interreflection::Followed;
     let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
     (camera.from, camera.at, camera.up) = (DVec3::new(0.0, 1.5, 0.0), DVec3::ZERO, DVec3::Z);
     camera.field_of_view = 120.0;
     // Also where points stand for walls.
     for (from, at, point_depth) in [(1.9, 0.0, None), (0.3, 1.99, None), (1.9, 0.0, Some(7))] {
-        (camera.from.y, camera.at.y, scene.settings.point_depth) = (from, at, point_depth);
+        (camera.from.y, camera.at.y, scene.settings.photons.point_depth) = (from, at, point_depth);
         let rendering = two_way(&scene, Some(View::Camera(camera)), 2);
         assert!(rendering.picture.pixels().iter().all(|pixel| pixel.radiance == [0.0; 3]), "from {from}");
     }
     // From outside it is light enough.
-    scene.settings.point_depth = None;
+    scene.settings.photons.point_depth = None;
     let outside = two_way(&scene, Some(from_above(5.0)), 2);
     assert!(outside.picture.pixels().iter().any(|pixel| pixel.radiance[0] > 1.0));
 }
@@ -239,11 +239,11 @@ fn a_closed_dark_room_stays_dark_whatever_shines_outside() {
 #[test]
 fn points_that_stand_for_surfaces_come_near_them_as_voxels_get_small() {
     let mut scene = ball_and_mirror();
-    (scene.settings.samples, scene.settings.photons) = (16, 50_000);
+    (scene.settings.image.samples, scene.settings.photons.count) = (16, 50_000);
     let exact = two_way(&scene, None, 2);
     let caught = |rendering: &Rendering| rendering.balance.map_or(0.0, |balance| balance.caught / balance.sent);
     let off = [(6, 0.1), (8, 0.03)].map(|(depth, most)| {
-        scene.settings.point_depth = Some(depth);
+        scene.settings.photons.point_depth = Some(depth);
         let rendering = two_way(&scene, None, 2);
         let off = caught(&rendering) / caught(&exact) - 1.0;
         assert!(off.abs() < most, "{off} at {depth}");
@@ -257,11 +257,11 @@ fn points_that_stand_for_surfaces_come_near_them_as_voxels_get_small() {
 #[test]
 fn the_picture_is_the_same_for_any_number_of_threads_and_with_nothing_left_out() {
     let mut scene = ball_and_mirror();
-    (scene.settings.samples, scene.settings.photons) = (9, 5_000);
+    (scene.settings.image.samples, scene.settings.photons.count) = (9, 5_000);
     let one = two_way(&scene, None, 1);
     let two = two_way(&scene, None, 2);
     assert!(one.picture == two.picture && one.balance == two.balance);
-    scene.settings.two_way = true;
+    scene.settings.light.caustics = Caustics::PhotonMapped;
     let all = super::tests::trace(&scene, None, true, 2);
     assert!(one.picture == all.picture, "{:?}", difference(&one.picture, &all.picture));
 }
@@ -269,7 +269,8 @@ fn the_picture_is_the_same_for_any_number_of_threads_and_with_nothing_left_out()
 #[test]
 fn a_second_view_takes_the_light_that_was_caught_for_the_first() {
     let mut scene = ball_and_mirror();
-    (scene.settings.samples, scene.settings.photons, scene.settings.two_way) = (2, 5_000, true);
+    (scene.settings.image.samples, scene.settings.photons.count, scene.settings.light.caustics) =
+        (2, 5_000, Caustics::PhotonMapped);
     let prepared = Prepared::new(&scene).expect("sound");
     let plan = Plan::new(&prepared, &prepared.view());
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
@@ -296,12 +297,12 @@ fn scenes_without_mirrors_or_lamps_do_without_it() {
     ];
     for (objects, lights) in cases {
         let mut scene = Scene { background: Bands::ONE, ..scene(objects, lights, 8) };
-        scene.settings.two_way = true;
+        scene.settings.light.caustics = Caustics::PhotonMapped;
         let prepared = Prepared::new(&scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());
         assert!(!plan.needs(Stage::CaughtLight));
         let with = super::tests::trace(&scene, None, false, 1);
-        scene.settings.two_way = false;
+        scene.settings.light.caustics = Caustics::LeftOut;
         assert!(with.picture == super::tests::trace(&scene, None, false, 1).picture);
     }
 }

@@ -134,7 +134,7 @@ impl<'a> ScanLine<'a> {
         let passable = seen_through(&appearance, &groups);
         let shadows = plan.needs(Stage::Shadows) && solution.is_none();
         let casters = Casters::new(prepared, if shadows { triangles.clone() } else { Vec::new() }, groups);
-        let samples = prepared.settings.light_samples.max(1);
+        let samples = prepared.settings.light.samples.max(1);
         let mut lamps = Vec::new();
         for (source, (_, light)) in appearance.sources.iter().enumerate().filter(|_| solution.is_none()) {
             for point in light.points(samples) {
@@ -209,7 +209,7 @@ impl<'a> ScanLine<'a> {
         let samples = order.samples.max(1);
         let size = [order.width, order.height];
         let eye = Eye::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
-        let filter = prepared.settings.texture_filter.max(1e-3);
+        let filter = prepared.settings.light.texture_filter.max(1e-3);
         // Where the samples of a pixel are too many to be looked at together, the groups of them share it.
         let groups = (samples as usize).div_ceil(MOST_LINES) as f64;
         let eye = if self.plan.needs(Stage::Textures) { eye.with_cones(filter / groups.sqrt()) } else { eye };
@@ -393,7 +393,7 @@ impl Renderer for ScanLine<'_> {
         if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the light of the sky throws no shadows");
         }
-        if self.appearance.prepared.settings.filter != Filter::Box {
+        if self.appearance.prepared.settings.image.filter != Filter::Box {
             left_out.push("pixels are means over their areas: the filter is a box");
         }
         if self.plan.needs(Stage::Motion) {

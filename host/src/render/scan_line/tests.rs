@@ -87,7 +87,7 @@ fn usual() -> Camera {
 }
 
 fn scene(objects: Vec<Object>, lights: Lamps, camera: Camera) -> Scene {
-    let settings = Settings { width: 72, height: 64, samples: 16, ..Settings::default() };
+    let settings = Settings::of_size(72, 64, 16);
     let (ambient, background) = (Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
     Scene { objects, lights, settings, camera: Some(camera), ambient, background, ..Scene::default() }
 }
@@ -226,7 +226,7 @@ fn a_light_with_a_size_gives_its_light_from_its_points() {
     let patch = Patch::Rectangle { corner: DVec3::new(-1.5, 4.0, -0.5), across, up };
     let light = crate::illumination::Light::Area { patch, radiance: Color::grey(20.0) };
     let mut scene = scene(boxes(), vec![light], usual());
-    scene.settings.light_samples = 64;
+    scene.settings.light.samples = 64;
     let [mean, ..] = compared(&scene, None);
     assert!(mean < 8e-3, "off by {mean}");
 }
@@ -234,7 +234,7 @@ fn a_light_with_a_size_gives_its_light_from_its_points() {
 #[test]
 fn a_diffuse_floor_under_a_lamp_follows_its_closed_form() {
     let mut scene = scene(vec![ground(50.0)], vec![lamp(DVec3::new(0.0, 2.0, 0.0))], usual());
-    (scene.settings.width, scene.settings.height, scene.settings.samples) = (21, 21, 1);
+    (scene.settings.image.width, scene.settings.image.height, scene.settings.image.samples) = (21, 21, 1);
     scene.ambient = Bands::ZERO;
     let half = 5.25;
     let rows = [
@@ -298,7 +298,7 @@ fn a_highlight_is_the_same_however_many_samples_see_it() {
     let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, shiny);
     let mut scene = scene(vec![ball], vec![lamp(DVec3::new(2.0, 3.0, 4.0))], camera(DVec3::Z * 6.0, DVec3::ZERO));
     let mut drawn = |samples: u32| {
-        scene.settings.samples = samples;
+        scene.settings.image.samples = samples;
         scan(&scene, None, 1).film
     };
     let (one, few, many) = (drawn(1), drawn(4), drawn(64));
@@ -393,7 +393,7 @@ fn patterns_are_as_sharp_where_many_samples_are_looked_at_in_groups() {
     let tiles = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, Classic { diffuse: squares, ..diffuse(0.0) });
     let mut scene = scene(vec![tiles], vec![sun()], usual());
     let mut drawn = |samples: u32| {
-        scene.settings.samples = samples;
+        scene.settings.image.samples = samples;
         scan(&scene, None, 2).film
     };
     let (few, many) = (drawn(64), drawn(128));
@@ -415,7 +415,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 fn pixels_have_as_many_samples_as_were_asked_for() {
     for samples in [1, 3, 31, 40, 100] {
         let mut scene = scene(boxes(), vec![sun()], usual());
-        (scene.settings.width, scene.settings.height, scene.settings.samples) = (9, 7, samples);
+        (scene.settings.image.width, scene.settings.image.height, scene.settings.image.samples) = (9, 7, samples);
         let drawn = scan(&scene, None, 2);
         assert!(drawn.complete && drawn.film.samples() == [samples; 2], "{samples}");
     }

@@ -8,7 +8,7 @@ use crate::illumination::{Material, Paint};
 use crate::render::Watch;
 use crate::render::World;
 use crate::render::indirect::{IndirectLight, Part};
-use crate::render::radiosity::Settings;
+use crate::scene::{Interreflection, RadiositySettings};
 use crate::scene::{Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::DMat4;
@@ -41,13 +41,13 @@ fn room() -> Prepared {
 }
 
 fn ready(mut scene: Scene) -> Prepared {
-    scene.settings.interreflection = true;
+    scene.settings.light.interreflection = Interreflection::Followed;
     Prepared::new(&scene).expect("a scene")
 }
 
 fn tiling(prepared: &Prepared, most: usize) -> (Radiosity, Tiling) {
     let plan = Plan::new(prepared, &prepared.view());
-    let settings = Settings { error: 0.02, finest: 1.0 / 64.0, ..Settings::default() };
+    let settings = RadiositySettings { error: 0.02, finest: 1.0 / 64.0, ..RadiositySettings::default() };
     let solution =
         Radiosity::new(&World::new(prepared, &plan).expect("a world"), &plan, &settings, None, &Watch::NOBODY)
             .expect("a solution");

@@ -48,7 +48,7 @@ impl TwoWay<'_> {
     /// - `lamps`: indices into the sources. `everything`: the ball around what sends light on by broad turns; none if
     ///   nothing does.
     pub(super) fn divide(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<Ball>) {
-        let photons = world.appearance.prepared.settings.photons;
+        let photons = world.appearance.prepared.settings.photons.count;
         let wide = everything.map(|ball| {
             self.balls.push(ball);
             self.balls.len() - 1

@@ -149,9 +149,9 @@ impl<'s> TwoWay<'s> {
             surfaces: Surfaces::new(prepared, takes),
             opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(opaque),
             lamps: Vec::new(),
-            turns: settings.reflection_depth.max(LEAST_TURNS),
-            reach: settings.photon_radius.unwrap_or_else(|| widest_disc(prepared)),
-            seed: settings.seed,
+            turns: settings.light.reflection_depth.max(LEAST_TURNS),
+            reach: settings.photons.radius.unwrap_or_else(|| widest_disc(prepared)),
+            seed: settings.image.seed,
             kept: Mutex::new(Vec::new()),
             shelf,
             bodies: balls.len(),
@@ -160,7 +160,7 @@ impl<'s> TwoWay<'s> {
         let spreads = |triangle: u32| matches!(of(triangle), (true, optics) if optics.is_broad());
         two_way.divide(world, &lamps, aim::everything(prepared, spreads));
         if let Some(shelf) = shelf {
-            let (photons, lamps) = (settings.photons, lamps.len());
+            let (photons, lamps) = (settings.photons.count, lamps.len());
             for lamp in &mut two_way.lamps {
                 let pilot = TwoWay::pilot(photons, lamps, lamp.aims.len());
                 lamp.name = Some(shelf.name(world, lamp, &keeps, pilot));
@@ -317,7 +317,7 @@ impl<'s> TwoWay<'s> {
         let source = &appearance.sources[lamp.source].1;
         let [comb, time] = choices.point(Purpose::Wavelengths, 0);
         let comb = appearance.wavelengths.comb(comb);
-        let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.shutter } else { 0.0 };
+        let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.geometry.shutter } else { 0.0 };
         let place = aim.guide.draw(choices.point(Purpose::Aim, 0));
         let ball = &self.balls[aim.ball];
         // However a way might have been drawn.

@@ -10,8 +10,9 @@ use super::lamps::Lamp;
 use super::{Block, CHUNK, Chunk};
 use crate::color::{Channels, Color, LANES, Origin};
 use crate::database::{CaughtBlock, CaughtLight, Content, DatabaseError, Kind, Record, Store};
+use crate::illumination::optics::Interreflection;
 use crate::render::world::World;
-use crate::scene::{Prepared, Scene, Settings};
+use crate::scene::{ImageSettings, LightSettings, PhotonSettings, Prepared, RadiositySettings, Scene, Settings};
 use bincode::config::standard;
 use glam::DVec3;
 use serde::Serialize;
@@ -94,21 +95,19 @@ impl Shelf {
             material.emission = Color::grey(0.0);
         }
         // What only pictures depend on, radiosity, and where caught light is looked for.
-        let none = Settings::default();
+        let Settings { image, geometry, light, photons, .. } = scene.settings;
+        let PhotonSettings { count, radius, .. } = PhotonSettings::default();
+        let LightSettings { samples, buffer, .. } = LightSettings::default();
+        let interreflection = match light.interreflection {
+            Interreflection::Solved => Interreflection::LeftOut,
+            other => other,
+        };
         dark.settings = Settings {
-            width: none.width,
-            height: none.height,
-            samples: none.samples,
-            light_samples: none.light_samples,
-            light_buffer: none.light_buffer,
-            radiosity: none.radiosity,
-            patch_error: none.patch_error,
-            finest_patch: none.finest_patch,
-            patch_directions: none.patch_directions,
-            patch_tolerance: none.patch_tolerance,
-            photons: none.photons,
-            photon_radius: none.photon_radius,
-            ..dark.settings
+            image: ImageSettings { filter: image.filter, seed: image.seed, ..ImageSettings::default() },
+            geometry,
+            light: LightSettings { samples, buffer, interreflection, ..light },
+            photons: PhotonSettings { count, radius, ..photons },
+            radiosity: RadiositySettings::default(),
         };
         let mut sum = Sum::new();
         sum.add(&(FORM, &dark));

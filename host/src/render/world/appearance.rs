@@ -8,7 +8,7 @@ use crate::numeric::print_of;
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::Prepared;
+use crate::scene::{Caustics, Prepared};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -73,7 +73,7 @@ impl<'a> Appearance<'a> {
         }
         appearance.add_emitters(plan);
         appearance.passing = appearance.optics.iter().any(Optics::is_passable);
-        let is_followed = plan.needs(Stage::CaughtLight) || prepared.settings.caustics;
+        let is_followed = plan.needs(Stage::CaughtLight) || prepared.settings.light.caustics == Caustics::PathTraced;
         appearance.clears = !is_followed && appearance.optics.iter().any(Optics::is_clear);
         let is_transparent =
             |numbers: &&Vec<u32>| numbers.iter().any(|number| appearance.optics[*number as usize].interior.is_some());
@@ -97,11 +97,11 @@ impl<'a> Appearance<'a> {
                     continue;
                 }
                 let failed = |source| RenderError::Material { object: object.name.clone(), source };
-                let diffuse = match self.prepared.settings.interreflection {
+                let diffuse = match self.prepared.settings.light.interreflection {
                     // What radiosity knows is not looked for again.
                     _ if plan.needs(Stage::Radiosity) => Interreflection::Solved,
-                    true => Interreflection::Followed,
-                    false => Interreflection::LeftOut,
+                    Interreflection::Followed => Interreflection::Followed,
+                    _ => Interreflection::LeftOut,
                 };
                 let number = self.optics.len() as u32;
                 self.optics.push(library.optics(material, diffuse).map_err(failed)?);

@@ -10,12 +10,13 @@ use crate::illumination::light::Source;
 use crate::illumination::optics::{Interior, Painting};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
-use crate::octree::{Octree, OctreeError, Settings as OctreeSettings, Shaft, SurfacePoints};
+use crate::octree::{Octree, Shaft, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::{Motion, Moved, Prepared, footprint};
+use crate::scene::{Acceleration, Kept, Moved, Prepared, SceneOctree, footprint};
 use glam::DVec3;
-use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// Most surfaces of transparent bodies in one place.
 const MOST_COINCIDENT: usize = 8;
@@ -23,22 +24,11 @@ const MOST_COINCIDENT: usize = 8;
 /// A scene as rays meet it: geometry with its index, lights and materials. It knows no renderer.
 pub struct World<'a> {
     pub(in crate::render) appearance: Appearance<'a>,
-    /// None if the plan needs no octree, or everything moves.
-    pub(in crate::render) octree: Option<Octree>,
-    /// The triangle of the scene behind each triangle of the octree; empty if they are the same.
-    triangle_of: Vec<u32>,
-    /// What moves while the shutter is open, each motion with an octree of its own.
-    moving: Vec<Moving>,
+    /// The octrees of what the plan keeps; empty if it needs none.
+    acceleration: Arc<Acceleration>,
     light_buffer: Option<LightBuffer>,
     /// Points that stand for what stands still, if rays are to meet these.
     points: Option<SurfacePoints>,
-}
-
-/// Objects of one motion, where they are in the middle of the time in which the shutter is open.
-struct Moving {
-    motion: Motion,
-    octree: Octree,
-    triangle_of: Vec<u32>,
 }
 
 impl<'a> World<'a> {
@@ -47,33 +37,30 @@ impl<'a> World<'a> {
     /// # Errors
     /// [`RenderError`].
     pub fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
-        let (octree, triangle_of) = octree(prepared, plan)?;
-        let moving = if plan.needs(Stage::Motion) { moving(prepared, plan)? } else { Vec::new() };
+        let keeps = |object: usize| plan.needs(Stage::Octree) && plan.keeps_object(object);
+        let objects = (0..prepared.objects.len()).map(keeps).collect();
+        let acceleration = prepared.acceleration(Kept { objects, motions: plan.needs(Stage::Motion) })?;
         let appearance = Appearance::new(prepared, plan)?;
-        let light_buffer = octree.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|_| {
-            let triangles = || match &triangle_of[..] {
-                [] => Box::new(0..prepared.triangles.len() as u32) as Box<dyn Iterator<Item = u32>>,
-                kept => Box::new(kept.iter().copied()),
-            };
+        let light_buffer = acceleration.still.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|still| {
             let is_opaque = |t: u32| {
                 let optics = appearance.optics(prepared.object_of[t as usize], prepared.material_number(t));
                 !(optics.is_passable() || appearance.clears && optics.is_clear())
             };
             let has_open = appearance.passing || appearance.clears;
-            let opaque = has_open.then(|| triangles().map(is_opaque).collect());
+            let opaque = has_open.then(|| still.triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
-        let points = octree.as_ref().filter(|_| plan.needs(Stage::SurfacePoints)).map(|octree| {
+        let points = acceleration.still.as_ref().filter(|_| plan.needs(Stage::SurfacePoints)).map(|still| {
             let settings = &prepared.settings;
             let surface = |triangle: u32| {
-                let triangle = triangle_of.get(triangle as usize).copied().unwrap_or(triangle);
+                let triangle = still.triangle(triangle);
                 let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
                 // Rays go on straight through panes, and would meet them again.
                 (!appearance.optics(object, material).is_passable()).then_some((object, material))
             };
-            SurfacePoints::new(octree, settings.point_depth.unwrap_or(0), surface, settings.seed)
+            SurfacePoints::new(&still.octree, settings.photons.point_depth.unwrap_or(0), surface, settings.image.seed)
         });
-        Ok(World { appearance, octree, triangle_of, moving, light_buffer, points })
+        Ok(World { appearance, acceleration, light_buffer, points })
     }
 
     /// The scene.
@@ -83,7 +70,17 @@ impl<'a> World<'a> {
 
     /// The octree, if the plan needs one.
     pub fn octree(&self) -> Option<&Octree> {
-        self.octree.as_ref()
+        self.still().map(|still| &still.octree)
+    }
+
+    /// What stands still, if anything does.
+    fn still(&self) -> Option<&SceneOctree> {
+        self.acceleration.still.as_ref()
+    }
+
+    /// How long it took to build its octrees, whether for it or for an earlier one.
+    pub fn octree_time(&self) -> Duration {
+        self.acceleration.build
     }
 
     /// Whether no light comes through a triangle.
@@ -96,28 +93,27 @@ impl<'a> World<'a> {
 
     /// What stands still between a point and a light, if the light buffer knows.
     pub(in crate::render) fn way(&self, from: DVec3, light: usize) -> Option<&Way> {
-        self.light_buffer.as_ref()?.way(self.octree.as_ref()?, from, light)
+        self.light_buffer.as_ref()?.way(self.octree()?, from, light)
     }
 
     /// Whether something moves, so that samples need a time.
     pub(in crate::render) fn moves(&self) -> bool {
-        !self.moving.is_empty()
+        !self.acceleration.moving.is_empty()
     }
 
     /// The first triangle in sight at a time, and where what it belongs to has moved to.
     fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Moved>)> {
         let hit = match &self.points {
             Some(points) => points.closest(ray, t_min, t_max),
-            None => self.octree.as_ref().and_then(|octree| octree.closest(ray, t_min, t_max)),
+            None => self.octree().and_then(|octree| octree.closest(ray, t_min, t_max)),
         };
-        let of =
-            |triangle_of: &[u32], hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
-        let mut first = hit.map(|hit| (hit, of(&self.triangle_of, &hit), None));
-        for Moving { motion, octree, triangle_of } in &self.moving {
+        let still = |own: u32| self.still().map_or(own, |still| still.triangle(own));
+        let mut first = hit.map(|hit| (hit, still(hit.triangle), None));
+        for (motion, carried) in &self.acceleration.moving {
             let moved = motion.at(time);
             let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
-            if let Some(hit) = octree.closest(&moved.still(ray), t_min, t_max) {
-                first = Some((hit, of(triangle_of, &hit), Some(moved)));
+            if let Some(hit) = carried.octree.closest(&moved.still(ray), t_min, t_max) {
+                first = Some((hit, carried.triangle(hit.triangle), Some(moved)));
             }
         }
         first
@@ -212,14 +208,14 @@ impl<'a> World<'a> {
         let optics = |triangle: u32| {
             self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
-        let octree = self.octree.as_ref().filter(|_| optics(triangle).interior.is_some())?;
+        let still = self.still().filter(|_| optics(triangle).interior.is_some())?;
         let width = clearance(prepared.corners(triangle)) / slope(prepared.corners(triangle), ray.direction).abs();
         if !width.is_finite() {
             return None;
         }
         let mut contact = None;
-        octree.each_hit(ray, hit.t - width, hit.t + width, |other| {
-            let triangle = self.triangle_of.get(other.triangle as usize).copied().unwrap_or(other.triangle);
+        still.octree.each_hit(ray, hit.t - width, hit.t + width, |other| {
+            let triangle = still.triangle(other.triangle);
             let optics = optics(triangle);
             let is_opaque = optics.interior.is_none() && !optics.is_passable();
             if is_opaque {
@@ -239,7 +235,7 @@ impl<'a> World<'a> {
         found: &Found<'_>,
         mut give: impl FnMut(f64, u32, u32, bool),
     ) {
-        let Some(octree) = self.octree.as_ref().filter(|_| self.appearance.has_nested) else { return };
+        let Some(still) = self.still().filter(|_| self.appearance.has_nested) else { return };
         let prepared = self.appearance.prepared;
         let height = ray.direction.dot(found.element.face).abs();
         let width = found.element.clearance / height;
@@ -248,8 +244,8 @@ impl<'a> World<'a> {
         }
         let mut seen = [(found.object, found.element.outside); MOST_COINCIDENT];
         let mut count = 1;
-        octree.each_hit(ray, found.t - width, found.t + width, |hit| {
-            let triangle = self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+        still.octree.each_hit(ray, found.t - width, found.t + width, |hit| {
+            let triangle = still.triangle(hit.triangle);
             let object = prepared.object_of[triangle as usize];
             let material = prepared.material_number(triangle);
             let is_outside = slope(prepared.corners(triangle), ray.direction) < 0.0;
@@ -266,26 +262,26 @@ impl<'a> World<'a> {
 
     /// Whether any triangle that counts and stands still is met on the first length of a ray's direction.
     pub(in crate::render) fn any_between(&self, ray: &Ray, counts: impl Fn(u32) -> bool) -> bool {
-        let of = |hit: Hit| self.triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
-        self.octree.as_ref().is_some_and(|octree| octree.each_hit(ray, 0.0, 1.0, |hit| counts(of(hit))))
+        self.still()
+            .is_some_and(|still| still.octree.each_hit(ray, 0.0, 1.0, |hit| counts(still.triangle(hit.triangle))))
     }
 
     /// Gives the triangles that stand still and may be in a box, some of them more than once.
     pub(in crate::render) fn each_near(&self, bounds: Bounds, mut give: impl FnMut(u32)) {
-        let of = |triangle: u32| self.triangle_of.get(triangle as usize).copied().unwrap_or(triangle);
-        if let Some(octree) = &self.octree {
-            octree.each_near(bounds, |triangle| give(of(triangle)));
+        if let Some(still) = self.still() {
+            still.octree.each_near(bounds, |triangle| give(still.triangle(triangle)));
         }
     }
 
     /// Whether nothing that counts may be met on ways from one box to another; false where that is not known.
     pub(in crate::render) fn is_clear(&self, [from, to]: [Bounds; 2], counts: impl Fn(u32) -> bool) -> bool {
-        let of = |triangle: u32| self.triangle_of.get(triangle as usize).copied().unwrap_or(triangle);
+        let is_clear =
+            |still: &SceneOctree| still.octree.is_clear(from, to, |triangle| counts(still.triangle(triangle)));
         let lamps = self.appearance.sources.iter().filter(|(_, source)| source.is_surface());
         let mut lamps = lamps.filter_map(|(_, source)| source.place()?.ok());
-        self.moving.is_empty()
+        !self.moves()
             && !lamps.any(|lamp| Octree::may_stand_between(from, to, lamp))
-            && self.octree.as_ref().is_none_or(|octree| octree.is_clear(from, to, |triangle| counts(of(triangle))))
+            && self.still().is_none_or(is_clear)
     }
 
     /// The part of light that comes along a way: nothing, if something opaque is in between; and whether it went through
@@ -311,14 +307,12 @@ impl<'a> World<'a> {
             Some(Way::Few(shaft)) => Some(&**shaft),
             _ => None,
         };
-        let still = self.octree.as_ref();
-        let (mut part, mut is_cleared) = still.map_or((Channels::ONE, false), |octree| {
-            self.passed_by((octree, &self.triangle_of, shaft), ray, t_max, comb)
-        });
-        for Moving { motion, octree, triangle_of } in &self.moving {
+        let still = self.still();
+        let (mut part, mut is_cleared) =
+            still.map_or((Channels::ONE, false), |still| self.passed_by(still, shaft, ray, t_max, comb));
+        for (motion, carried) in &self.acceleration.moving {
             if part != Channels::ZERO {
-                let (passed, cleared) =
-                    self.passed_by((octree, triangle_of, None), &motion.at(time).still(ray), t_max, comb);
+                let (passed, cleared) = self.passed_by(carried, None, &motion.at(time).still(ray), t_max, comb);
                 part *= passed;
                 is_cleared |= cleared;
             }
@@ -329,20 +323,21 @@ impl<'a> World<'a> {
     /// The part of light that the triangles of an octree let pass, or those of a shaft.
     fn passed_by(
         &self,
-        (octree, triangle_of, shaft): (&Octree, &[u32], Option<&Shaft>),
+        over: &SceneOctree,
+        shaft: Option<&Shaft>,
         ray: &Ray,
         t_max: f64,
         comb: usize,
     ) -> (Channels, bool) {
         if !(self.appearance.passing || self.appearance.clears) {
             let occluded = match shaft {
-                Some(shaft) => octree.occluded_in(shaft, ray, 0.0, t_max),
-                None => octree.occluded(ray, 0.0, t_max),
+                Some(shaft) => over.octree.occluded_in(shaft, ray, 0.0, t_max),
+                None => over.octree.occluded(ray, 0.0, t_max),
             };
             return (if occluded { Channels::ZERO } else { Channels::ONE }, false);
         }
         let prepared = self.appearance.prepared;
-        let of = |hit: &Hit| triangle_of.get(hit.triangle as usize).copied().unwrap_or(hit.triangle);
+        let of = |hit: &Hit| over.triangle(hit.triangle);
         let optics = |triangle: u32| {
             self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
@@ -357,8 +352,8 @@ impl<'a> World<'a> {
             !passable
         };
         let stopped = match shaft {
-            Some(shaft) => octree.each_hit_in(shaft, ray, 0.0, t_max, enough),
-            None => octree.each_hit(ray, 0.0, t_max, enough),
+            Some(shaft) => over.octree.each_hit_in(shaft, ray, 0.0, t_max, enough),
+            None => over.octree.each_hit(ray, 0.0, t_max, enough),
         };
         if stopped {
             return (Channels::ZERO, false);
@@ -415,55 +410,4 @@ fn weights(hit: &Hit) -> [f64; 3] {
 fn through(ray: &Ray, hit: &Hit, corners: [DVec3; 3]) -> Ray {
     let [a, b, c] = weights(hit);
     Ray { origin: corners[0] * a + corners[1] * b + corners[2] * c - ray.direction * hit.t, ..*ray }
-}
-
-/// The octree over the objects that a plan keeps and that stand still, and which triangles of the scene it holds, if not
-/// all.
-fn octree(prepared: &Prepared, plan: &Plan) -> Result<(Option<Octree>, Vec<u32>), OctreeError> {
-    let moves = |index: usize| plan.needs(Stage::Motion) && prepared.objects[index].motion.is_some();
-    let stands = |index: usize| plan.keeps_object(index) && !moves(index);
-    let all = (0..prepared.objects.len()).all(stands);
-    let settings = OctreeSettings::default();
-    if !plan.needs(Stage::Octree) || prepared.triangles.is_empty() {
-        Ok((None, Vec::new()))
-    } else if all {
-        Ok((Some(Octree::build(&prepared.vertices, &prepared.triangles, &settings)?), Vec::new()))
-    } else {
-        let stands = |triangle: &u32| stands(prepared.object_of[*triangle as usize] as usize);
-        let kept: Vec<u32> = (0..prepared.triangles.len() as u32).filter(stands).collect();
-        if kept.is_empty() {
-            return Ok((None, Vec::new()));
-        }
-        let triangles: Vec<[u32; 3]> = kept.iter().map(|&t| prepared.triangles[t as usize]).collect();
-        Ok((Some(Octree::build(&prepared.vertices, &triangles, &settings)?), kept))
-    }
-}
-
-/// Octrees over the objects that a plan keeps and that move, one for each motion.
-fn moving(prepared: &Prepared, plan: &Plan) -> Result<Vec<Moving>, OctreeError> {
-    let mut groups: Vec<(Motion, Vec<u32>)> = Vec::new();
-    for (index, object) in prepared.objects.iter().enumerate() {
-        let Some(motion) = object.motion.filter(|_| plan.keeps_object(index) && object.count > 0) else { continue };
-        let triangles = object.first..object.first + object.count;
-        match groups.iter_mut().find(|(other, _)| *other == motion) {
-            Some((_, of)) => of.extend(triangles),
-            None => groups.push((motion, triangles.collect())),
-        }
-    }
-    let made = |(motion, triangle_of): (Motion, Vec<u32>)| {
-        // Only the vertices that it has: there may be many motions.
-        let mut vertices = Vec::new();
-        let mut numbers = HashMap::new();
-        let mut number = |vertex: u32| {
-            *numbers.entry(vertex).or_insert_with(|| {
-                vertices.push(prepared.vertices[vertex as usize]);
-                vertices.len() as u32 - 1
-            })
-        };
-        let triangles: Vec<[u32; 3]> =
-            triangle_of.iter().map(|&t| prepared.triangles[t as usize].map(&mut number)).collect();
-        let octree = Octree::build(&vertices, &triangles, &OctreeSettings::default())?;
-        Ok(Moving { motion, octree, triangle_of })
-    };
-    groups.into_iter().map(made).collect()
 }

@@ -2,11 +2,12 @@
 
 use super::setup::{Base, Setup};
 use crate::illumination::Light;
+use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
 use crate::plan::Stage;
 use crate::render::Technique;
 use crate::render::two_way::widest_disc;
-use crate::scene::MAX_PHOTONS;
+use crate::scene::{Caustics, MAX_PHOTONS};
 
 /// The coarsest tolerance, as a part of the diagonal of the largest curved object, and how much finer the next one is.
 const COARSEST: f64 = 1.0 / 60.0;
@@ -80,8 +81,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: |_| None,
         values: |base| doubled(base).filter(|n| *n <= f64::from(base.options.samples / 4).max(1.0)).collect(),
         best: |base, _| f64::from(base.options.samples / 2).max(2.0),
-        get: |setup| f64::from(setup.settings.samples),
-        set: |setup, value| setup.settings.samples = value as u32,
+        get: |setup| f64::from(setup.settings.image.samples),
+        set: |setup, value| setup.settings.image.samples = value as u32,
     },
     RenderKnob {
         name: "error",
@@ -102,7 +103,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         is_model: false,
         remodels: false,
         idle: |base| {
-            (base.settings().samples < 2).then_some("the scene has one sample in each pixel, and a denoiser needs two")
+            (base.settings().image.samples < 2)
+                .then_some("the scene has one sample in each pixel, and a denoiser needs two")
         },
         values: |_| vec![0.0, 1.0],
         best: |_, _| 0.0,
@@ -119,10 +121,10 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         values: |base| DEPTHS.into_iter().take(base.options.settings as usize + 1).collect(),
         best: |base, _| {
             let last = DEPTHS[(base.options.settings as usize).min(DEPTHS.len() - 1)];
-            f64::max(2.0 * last, f64::from(base.settings().reflection_depth))
+            f64::max(2.0 * last, f64::from(base.settings().light.reflection_depth))
         },
-        get: |setup| f64::from(setup.settings.reflection_depth),
-        set: |setup, value| setup.settings.reflection_depth = value as u32,
+        get: |setup| f64::from(setup.settings.light.reflection_depth),
+        set: |setup, value| setup.settings.light.reflection_depth = value as u32,
     },
     RenderKnob {
         name: "light_samples",
@@ -133,15 +135,15 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: |base| (!has_spread_light(base)).then_some("no light of the scene has a size"),
         values: |base| doubled(base).take(6).collect(),
         best: |base, technique| {
-            let own = f64::from(base.settings().light_samples);
+            let own = f64::from(base.settings().light.samples);
             match technique.row().adds_samples {
                 // Every sample of a pixel draws points of its own: their number makes no difference in the end.
                 true => own,
                 false => doubled(base).take(6).fold(own, f64::max) * MORE_POINTS,
             }
         },
-        get: |setup| f64::from(setup.settings.light_samples),
-        set: |setup, value| setup.settings.light_samples = value as u32,
+        get: |setup| f64::from(setup.settings.light.samples),
+        set: |setup, value| setup.settings.light.samples = value as u32,
     },
     RenderKnob {
         name: "texture_filter",
@@ -153,8 +155,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         values: |base| halved(base, WIDEST_FILTER).take(base.options.settings as usize - 1).chain([0.0]).collect(),
         // Scan line finds light once for a pixel: there, a point instead of the mean is no better.
         best: |_, technique| if technique.row().adds_samples { 0.0 } else { 1.0 },
-        get: |setup| setup.settings.texture_filter,
-        set: |setup, value| setup.settings.texture_filter = value,
+        get: |setup| setup.settings.light.texture_filter,
+        set: |setup, value| setup.settings.light.texture_filter = value,
     },
     RenderKnob {
         name: "tolerance",
@@ -165,8 +167,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: curved,
         values: |base| tolerances(base).collect(),
         best: |base, _| tolerances(base).last().unwrap_or(0.0) / TOLERANCE_STEP,
-        get: |setup| if setup.own_tolerances { 0.0 } else { setup.settings.tolerance.unwrap_or(0.0) },
-        set: |setup, value| (setup.settings.tolerance, setup.own_tolerances) = (Some(value), false),
+        get: |setup| if setup.own_tolerances { 0.0 } else { setup.settings.geometry.tolerance.unwrap_or(0.0) },
+        set: |setup, value| (setup.settings.geometry.tolerance, setup.own_tolerances) = (Some(value), false),
     },
     RenderKnob {
         name: "angle",
@@ -177,8 +179,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: curved,
         values: |base| halved(base, LARGEST_ANGLE).take(6).collect(),
         best: |base, _| halved(base, LARGEST_ANGLE).take(6).last().unwrap_or(LARGEST_ANGLE),
-        get: |setup| setup.settings.angle,
-        set: |setup, value| setup.settings.angle = value,
+        get: |setup| setup.settings.geometry.angle,
+        set: |setup, value| setup.settings.geometry.angle = value,
     },
     RenderKnob {
         name: "exact_surfaces",
@@ -189,8 +191,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: curved,
         values: |_| vec![0.0, 1.0],
         best: |_, _| 1.0,
-        get: |setup| f64::from(u8::from(setup.settings.exact_surfaces)),
-        set: |setup, value| setup.settings.exact_surfaces = value > 0.0,
+        get: |setup| f64::from(u8::from(setup.settings.geometry.exact_surfaces)),
+        set: |setup, value| setup.settings.geometry.exact_surfaces = value > 0.0,
     },
     RenderKnob {
         name: "spectral",
@@ -201,8 +203,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: |base| base.lacks(Stage::Spectra, "no material and no light has a spectrum"),
         values: |_| vec![0.0, 1.0],
         best: |_, _| 1.0,
-        get: |setup| f64::from(u8::from(setup.settings.spectral != Some(false))),
-        set: |setup, value| setup.settings.spectral = Some(value > 0.0),
+        get: |setup| f64::from(u8::from(setup.settings.light.spectral != Some(false))),
+        set: |setup, value| setup.settings.light.spectral = Some(value > 0.0),
     },
     RenderKnob {
         name: "interreflection",
@@ -210,11 +212,14 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         techniques: RAYS,
         is_model: true,
         remodels: false,
-        idle: |base| (base.settings().reflection_depth == 0).then_some("the depth of the scene is 0"),
+        idle: |base| (base.settings().light.reflection_depth == 0).then_some("the depth of the scene is 0"),
         values: |_| vec![0.0, 1.0],
         best: |_, _| 1.0,
-        get: |setup| f64::from(u8::from(setup.settings.interreflection)),
-        set: |setup, value| setup.settings.interreflection = value > 0.0,
+        get: |setup| f64::from(u8::from(setup.settings.light.interreflection != Interreflection::LeftOut)),
+        set: |setup, value| match value > 0.0 {
+            true => setup.settings.light.interreflection.count(),
+            false => setup.settings.light.interreflection = Interreflection::LeftOut,
+        },
     },
     RenderKnob {
         name: "caustics",
@@ -225,8 +230,10 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: |base| base.lacks(Stage::Reflection, "nothing in the scene reflects, refracts or carries light on"),
         values: |_| vec![0.0, 1.0],
         best: |_, _| 1.0,
-        get: |setup| f64::from(u8::from(setup.settings.caustics)),
-        set: |setup, value| setup.settings.caustics = value > 0.0,
+        get: |setup| f64::from(u8::from(setup.settings.light.caustics == Caustics::PathTraced)),
+        set: |setup, value| {
+            setup.settings.light.caustics = if value > 0.0 { Caustics::PathTraced } else { Caustics::LeftOut };
+        },
     },
     RenderKnob {
         name: "photons",
@@ -235,10 +242,10 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         is_model: false,
         remodels: false,
         idle: |_| None,
-        values: |base| around(base, f64::from(base.settings().photons), PHOTON_STEP).map(f64::round).collect(),
-        best: |base, _| (f64::from(base.settings().photons) * PHOTON_STEP).min(f64::from(MAX_PHOTONS)),
-        get: |setup| f64::from(setup.settings.photons),
-        set: |setup, value| setup.settings.photons = (value as u32).clamp(1, MAX_PHOTONS),
+        values: |base| around(base, f64::from(base.settings().photons.count), PHOTON_STEP).map(f64::round).collect(),
+        best: |base, _| (f64::from(base.settings().photons.count) * PHOTON_STEP).min(f64::from(MAX_PHOTONS)),
+        get: |setup| f64::from(setup.settings.photons.count),
+        set: |setup, value| setup.settings.photons.count = (value as u32).clamp(1, MAX_PHOTONS),
     },
     RenderKnob {
         name: "radius",
@@ -249,8 +256,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         idle: |_| None,
         values: |base| around(base, own_radius(base), 1.0 / RADIUS_STEP).collect(),
         best: |base, _| own_radius(base) / RADIUS_STEP,
-        get: |setup| setup.settings.photon_radius.unwrap_or(0.0),
-        set: |setup, value| setup.settings.photon_radius = Some(value),
+        get: |setup| setup.settings.photons.radius.unwrap_or(0.0),
+        set: |setup, value| setup.settings.photons.radius = Some(value),
     },
     RenderKnob {
         name: "voxels",
@@ -267,8 +274,8 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
                 .collect()
         },
         best: |_, _| 0.0,
-        get: |setup| setup.settings.point_depth.map_or(0.0, f64::from),
-        set: |setup, value| setup.settings.point_depth = Some(value as u32).filter(|depth| *depth > 0),
+        get: |setup| setup.settings.photons.point_depth.map_or(0.0, f64::from),
+        set: |setup, value| setup.settings.photons.point_depth = Some(value as u32).filter(|depth| *depth > 0),
     },
     RenderKnob {
         name: "radiosity_error",
@@ -277,10 +284,10 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         is_model: false,
         remodels: false,
         idle: no_radiosity,
-        values: |base| halved(base, COARSEST_PATCHES * base.settings().patch_error).collect(),
-        best: |base, _| base.settings().patch_error * BEST_PATCHES,
-        get: |setup| setup.settings.patch_error,
-        set: |setup, value| setup.settings.patch_error = value,
+        values: |base| halved(base, COARSEST_PATCHES * base.settings().radiosity.error).collect(),
+        best: |base, _| base.settings().radiosity.error * BEST_PATCHES,
+        get: |setup| setup.settings.radiosity.error,
+        set: |setup, value| setup.settings.radiosity.error = value,
     },
     RenderKnob {
         name: "radiosity_finest",
@@ -289,10 +296,10 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         is_model: false,
         remodels: false,
         idle: no_radiosity,
-        values: |base| halved(base, COARSEST_PATCHES * base.settings().finest_patch).collect(),
-        best: |base, _| base.settings().finest_patch * BEST_PATCHES,
-        get: |setup| setup.settings.finest_patch,
-        set: |setup, value| setup.settings.finest_patch = value,
+        values: |base| halved(base, COARSEST_PATCHES * base.settings().radiosity.finest).collect(),
+        best: |base, _| base.settings().radiosity.finest * BEST_PATCHES,
+        get: |setup| setup.settings.radiosity.finest,
+        set: |setup, value| setup.settings.radiosity.finest = value,
     },
     RenderKnob {
         name: "radiosity_directions",
@@ -302,9 +309,9 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         remodels: false,
         idle: no_radiosity,
         values: |base| doubled(base).map(|n| 4.0 * n).collect(),
-        best: |base, _| 4.0 * f64::from(base.settings().patch_directions),
-        get: |setup| f64::from(setup.settings.patch_directions),
-        set: |setup, value| setup.settings.patch_directions = value as u32,
+        best: |base, _| 4.0 * f64::from(base.settings().radiosity.directions),
+        get: |setup| f64::from(setup.settings.radiosity.directions),
+        set: |setup, value| setup.settings.radiosity.directions = value as u32,
     },
     RenderKnob {
         name: "radiosity_tolerance",
@@ -314,9 +321,9 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         remodels: false,
         idle: no_radiosity,
         values: |base| (1..=base.options.settings as i32).map(|i| 10f64.powi(-i)).collect(),
-        best: |base, _| base.settings().patch_tolerance * 0.1,
-        get: |setup| setup.settings.patch_tolerance,
-        set: |setup, value| setup.settings.patch_tolerance = value,
+        best: |base, _| base.settings().radiosity.tolerance * 0.1,
+        get: |setup| setup.settings.radiosity.tolerance,
+        set: |setup, value| setup.settings.radiosity.tolerance = value,
     },
 ];
 
@@ -338,7 +345,7 @@ fn around(base: &Base, own: f64, step: f64) -> impl Iterator<Item = f64> + use<>
 
 /// The radius of the largest disc that the scene has.
 fn own_radius(base: &Base) -> f64 {
-    base.settings().photon_radius.unwrap_or_else(|| widest_disc(&base.prepared))
+    base.settings().photons.radius.unwrap_or_else(|| widest_disc(&base.prepared))
 }
 
 /// Tolerances for the largest curved object.

@@ -4,11 +4,11 @@ use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::render::two_way::widest_disc;
 use crate::render::{Memo, Order, RENDERERS, Ready, Task, Technique, Watch};
-use crate::scene::{Prepared, Scene, Settings};
+use crate::scene::{Caustics, Prepared, Scene, Settings};
 use crate::study::{Options, StudyError, resized};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Added to the seed of a reference, so that its samples are independent of those under test.
 const REFERENCE_SEED: u64 = 0x5EED;
@@ -20,7 +20,11 @@ pub fn studied() -> impl Iterator<Item = Technique> {
 
 /// Those by which a scene is studied unless others are asked for: scan line, and ray tracing as the scene has it.
 pub fn usual(settings: &Settings) -> [Technique; 2] {
-    [if settings.two_way { Technique::TwoWay } else { Technique::RayTracing }, Technique::ScanLine]
+    let rays = match settings.light.caustics {
+        Caustics::PhotonMapped => Technique::TwoWay,
+        _ => Technique::RayTracing,
+    };
+    [rays, Technique::ScanLine]
 }
 
 /// How every knob is set.
@@ -69,9 +73,9 @@ impl Base {
         let curved = scene.objects.iter().zip(&prepared.objects).filter(|(o, _)| o.shape.is_exact_and_curved());
         let largest_curved = curved.map(|(_, p)| p.bounds.diagonal()).fold(0.0, f64::max);
         let mut free = prepared.clone();
-        free.settings.reflection_depth = free.settings.reflection_depth.max(1);
-        free.settings.spectral = free.settings.spectral.filter(|spectral| *spectral);
-        free.settings.two_way = true;
+        free.settings.light.reflection_depth = free.settings.light.reflection_depth.max(1);
+        free.settings.light.spectral = free.settings.light.spectral.filter(|spectral| *spectral);
+        free.settings.light.caustics = Caustics::PhotonMapped;
         let plan = Plan::new(&free, &free.view());
         Ok(Base { scene, prepared, options, plan, largest_curved })
     }
@@ -89,9 +93,13 @@ impl Base {
     pub(super) fn own(&self, technique: Technique) -> Setup {
         let mut settings = self.scene.settings;
         // In words, so that setups that are the same are equal.
-        settings.spectral = Some(settings.spectral.unwrap_or(self.plan.needs(Stage::Spectra)));
-        settings.two_way = technique == Technique::TwoWay;
-        settings.photon_radius = Some(settings.photon_radius.unwrap_or_else(|| widest_disc(&self.prepared)));
+        settings.light.spectral = Some(settings.light.spectral.unwrap_or(self.plan.needs(Stage::Spectra)));
+        match (technique, &mut settings.light.caustics) {
+            (Technique::TwoWay, caustics) => *caustics = Caustics::PhotonMapped,
+            (_, caustics @ Caustics::PhotonMapped) => *caustics = Caustics::LeftOut,
+            _ => {}
+        }
+        settings.photons.radius = Some(settings.photons.radius.unwrap_or_else(|| widest_disc(&self.prepared)));
         Setup { technique, settings, target: None, denoise: false, own_tolerances: true }
     }
 
@@ -158,8 +166,8 @@ impl Base {
         let modelling = start.elapsed().as_secs_f64();
         // With a target, as many samples as a half of the reference has, at the most.
         let samples = match setup.target {
-            Some(_) => setup.settings.samples.max(self.options.samples / 2),
-            None => setup.settings.samples,
+            Some(_) => setup.settings.image.samples.max(self.options.samples / 2),
+            None => setup.settings.image.samples,
         };
         let order = Order {
             samples,
@@ -179,13 +187,15 @@ impl Base {
         while !is_enough(&shots) {
             if is_followed {
                 // Light is followed from lamps by the seed of the scene, and kept for all further pictures.
-                prepared.settings.seed = varied(&shots).seed;
+                prepared.settings.image.seed = varied(&shots).seed;
             }
-            let start = Instant::now();
+            let (start, built) = (Instant::now(), prepared.accelerations());
             let view = prepared.view();
             let plan = Plan::new(&prepared, &view);
             let Ready { renderer, .. } = setup.technique.prepare(&Task::new(&prepared, &plan))?;
-            let build = modelling + start.elapsed().as_secs_f64();
+            // An octree of an earlier setting is part of what this one costs, too.
+            let shared = if prepared.accelerations() == built { renderer.octree_time() } else { Duration::ZERO };
+            let build = modelling + (start.elapsed() + shared).as_secs_f64();
             while !is_enough(&shots) {
                 let rendering = renderer.any().render(&view, &varied(&shots), &quiet)?;
                 if !rendering.complete || watch.cancelled.load(Ordering::Relaxed) {
@@ -203,7 +213,7 @@ impl Base {
     fn prepared_for(&self, setup: &Setup) -> Result<Prepared, StudyError> {
         let Setup { settings, own_tolerances, .. } = *setup;
         let own = self.settings();
-        let modelled = |s: &Settings| (s.tolerance, s.angle, s.exact_surfaces);
+        let modelled = |s: &Settings| s.geometry;
         if own_tolerances && modelled(&settings) == modelled(own) {
             let mut prepared = self.prepared.clone();
             prepared.settings = settings;

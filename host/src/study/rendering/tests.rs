@@ -7,7 +7,7 @@ use crate::illumination::material::{Classic, Material};
 use crate::illumination::texture::{Laying, Motif, Pattern};
 use crate::illumination::{Light, Paint};
 use crate::numeric::ray::Ray;
-use crate::scene::{Camera, Object, Settings, Shape};
+use crate::scene::{Camera, Interreflection, Object, Settings, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
@@ -33,7 +33,7 @@ fn camera(from: DVec3, at: DVec3, up: DVec3, field_of_view: f64) -> Camera {
 }
 
 fn scene(objects: Vec<Object>, lights: Vec<Light>, camera: Camera) -> Scene {
-    let settings = Settings { width: 20, height: 20, ..Settings::default() };
+    let settings = Settings::of_size(20, 20, 16);
     Scene { objects, lights, camera: Some(camera), settings, ..Scene::default() }
 }
 
@@ -42,6 +42,18 @@ fn ball() -> Scene {
     let light = Light::Directional { direction: DVec3::new(-1.0, -1.0, -1.5), irradiance: Color::grey(3.0) };
     let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(1.0));
     scene(vec![ball], vec![light], camera(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, 30.0))
+}
+
+#[test]
+fn eight_settings_of_samples_need_one_octree() {
+    let base = setup::Base::new(&all_knobs(), &Options { width: 8, settings: 8, ..SMALL }).expect("a scene");
+    for samples in (0..8).map(|power| 1 << power) {
+        let mut setup = base.own(Technique::RayTracing);
+        setup.settings.image.samples = samples;
+        let shots = base.trials(&setup, &|shots| !shots.is_empty(), &Watch::NOBODY).expect("a picture");
+        assert!(shots[0].build > 0.0);
+    }
+    assert_eq!(base.prepared.accelerations(), 1);
 }
 
 /// Every knob has something to do: a ball that mirrors, on tiles beside a colored wall, under a lamp with a spectrum.
@@ -70,7 +82,7 @@ fn all_knobs() -> Scene {
     let radiance = Color::light_of(&steep, 12.0).expect("a light");
     let eye = camera(DVec3::new(0.8, 1.4, 4.0), DVec3::new(0.0, 0.5, 0.0), DVec3::Y, 34.0);
     let mut scene = scene(objects, vec![Light::Area { patch, radiance }], eye);
-    (scene.settings.interreflection, scene.settings.photons) = (true, 1000);
+    (scene.settings.light.interreflection, scene.settings.photons.count) = (Interreflection::Followed, 1000);
     scene
 }
 
@@ -157,7 +169,7 @@ fn the_error_of_a_depth_is_what_is_left_of_the_geometric_series() {
 #[test]
 fn a_coarse_tessellation_bends_the_curve_of_the_samples_and_is_named() {
     let mut scene = ball();
-    scene.settings.tolerance = Some(0.08);
+    scene.settings.geometry.tolerance = Some(0.08);
     let [found] = study(&scene, &["samples"], Options { settings: 7, ..SMALL }).try_into().expect("one knob");
     let Some(Bend::Bias { from, causes }) = &found.bend else { panic!("{}", found.table()) };
     assert!(*from < 4 && causes[0].0 == "tolerance" && causes[0].1 > 0.9, "{}", found.table());
@@ -176,8 +188,9 @@ fn knobs_of_radiosity_are_idle_without_it_and_change_the_picture_with_it() {
     let names = ["radiosity_error", "radiosity_finest"];
     let options = Options { width: 12, samples: 16, settings: 2, ..SMALL };
     for is_on in [false, true] {
-        box_on_ground.settings.radiosity = is_on;
-        (box_on_ground.settings.patch_error, box_on_ground.settings.finest_patch) = (0.02, 0.02);
+        box_on_ground.settings.light.interreflection =
+            if is_on { Interreflection::Solved } else { Interreflection::LeftOut };
+        (box_on_ground.settings.radiosity.error, box_on_ground.settings.radiosity.finest) = (0.02, 0.02);
         for study in study(&box_on_ground, &names, options) {
             assert_eq!(is_on, !study.verdict.contains("changes nothing"), "{}", study.table());
         }
@@ -234,7 +247,8 @@ fn denoising_lowers_the_error_of_a_picture_with_noise() {
     ];
     let eye = camera(DVec3::new(0.8, 2.0, 4.0), DVec3::new(0.0, 0.5, 0.0), DVec3::Y, 40.0);
     let mut noisy = scene(objects, vec![Light::Area { patch, radiance: Color::grey(4.0) }], eye);
-    (noisy.settings.interreflection, noisy.settings.light_samples, noisy.settings.samples) = (true, 1, 4);
+    (noisy.settings.light.interreflection, noisy.settings.light.samples, noisy.settings.image.samples) =
+        (Interreflection::Followed, 1, 4);
     let options = Options { width: 80, samples: 128, settings: 2, ..SMALL };
     let [found] = study(&noisy, &["denoise"], options).try_into().expect("one knob");
     let [without, with] = [0, 1].map(|row| found.rows[row].measures);
