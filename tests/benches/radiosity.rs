@@ -19,7 +19,7 @@ fn main() {
     // `cargo bench` passes `--bench`; without it the proof is enough.
     let is_bench = std::env::args().any(|argument| argument == "--bench");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
-    let ball = prepared(vec![object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DVec3::ZERO, 0.99)], vec![]);
+    let ball = prepared(vec![object(Shape::from(Primitive::Sphere { radius: 1.0 }), DVec3::ZERO, 0.99)], vec![]);
     let inside = |_: u32, outside: bool, _: DVec3| if outside { Channels::ZERO } else { Channels::ONE };
     let furnace = pool.install(|| solved(&ball, RadiositySettings::default(), Some(&inside)));
     let found = 1.0 + 0.99 * furnace.irradiance(0, false, [1.0 / 3.0; 3], Part::All).0[0];
@@ -69,9 +69,9 @@ fn object(shape: Shape, at: DVec3, grey: f64) -> Object {
 fn room() -> Prepared {
     let ball = |k: i32| {
         let at = DVec3::new(0.7 * f64::from(k - 2), -0.6 + 0.1 * f64::from(k * k % 5), 0.3 * f64::from(k % 3) - 0.3);
-        object(Shape::Solid(Primitive::Sphere { radius: 0.3 }), at, 0.7)
+        object(Shape::from(Primitive::Sphere { radius: 0.3 }), at, 0.7)
     };
-    let walls = object(Shape::Solid(Primitive::Box { size: DVec3::new(4.0, 2.0, 3.0) }), DVec3::ZERO, 0.6);
+    let walls = object(Shape::from(Primitive::Box { size: DVec3::new(4.0, 2.0, 3.0) }), DVec3::ZERO, 0.6);
     let lamp = Light::Point { at: DVec3::new(0.3, 0.9, 0.2), intensity: Color::grey(1.0) };
     prepared((0..5).map(ball).chain([walls]).collect(), vec![lamp])
 }

@@ -6,7 +6,7 @@ use host::plan::Plan;
 use host::render::radiosity::Radiosity;
 use host::render::scan_line::ScanLine;
 use host::render::{Order, Renderer, Watch, World, ray_tracer};
-use host::scene::{Interreflection, Prepared};
+use host::scene::Prepared;
 use host::script::{Definition, Inputs, load_file};
 use serde_json::Value;
 use std::path::Path;
@@ -83,19 +83,14 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
     let theirs: Vec<Vec<[f64; 3]>> = serde_json::from_value(kept["regions"].clone()).expect("regions");
     let mut scene = load_file(&folder.join("../host/scenes/cornell.rhai"), &Inputs::default()).expect("the box").scene;
     (scene.settings.image.width, scene.settings.image.height) = (128, 128);
-    scene.settings.light.interreflection = Interreflection::Followed;
+    scene.settings.light.interreflection.count();
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let solution = Radiosity::new(
-        &World::new(&prepared, &plan).expect("a world"),
-        &plan,
-        &prepared.settings.radiosity,
-        None,
-        &Watch::NOBODY,
-    )
-    .expect("a solution");
-    let scan_line = ScanLine::showing(Arc::new(solution), &prepared, &plan).expect("a renderer");
+    let world = World::new(&prepared, &plan).expect("a world");
+    let solution = Radiosity::new(&world, &plan, &prepared.settings.radiosity, None, &Watch::NOBODY);
+    let solution = solution.expect("a solution");
+    let scan_line = ScanLine::showing(Arc::new(solution), world, &plan);
     let picture = scan_line.render(&view, &Order::of(&prepared.settings), &Watch::NOBODY).expect("a picture").picture;
     let side = 128 / theirs.len();
     let mean_of = |bands: &[f64; 3]| bands.iter().sum::<f64>() / 3.0;

@@ -2,7 +2,6 @@
 //! dials set.
 
 use glam::DMat4;
-use host::scene::Interreflection;
 use host::{
     picture::Picture,
     plan::Plan,
@@ -54,7 +53,8 @@ fn difference(a: &[[u8; 3]], b: &[[u8; 3]]) -> (f64, f64) {
 /// What the host shows of its solution.
 fn shown(solution: &Arc<Radiosity>, prepared: &Prepared, plan: &Plan, matrix: &DMat4) -> Vec<[u8; 3]> {
     let view = View::Projection(Projection::from_workstation(matrix, false));
-    let scan_line = ScanLine::showing(Arc::clone(solution) as Arc<dyn IndirectLight>, prepared, plan).unwrap();
+    let world = World::new(prepared, plan).unwrap();
+    let scan_line = ScanLine::showing(Arc::clone(solution) as Arc<dyn IndirectLight>, world, plan);
     let order = Order::of(&prepared.settings);
     let picture: Picture = scan_line.render(&view, &order, &Watch::NOBODY).unwrap().picture;
     picture.to_srgb8().as_chunks::<3>().0.to_vec()
@@ -75,7 +75,7 @@ fn the_light_of_a_solution_is_seen_on_the_workstation_from_wherever_the_dials_tu
 
     let scene = script::evaluate(&cornell(), "box", Path::new(""), &script::Inputs::default()).unwrap().scene;
     let mut prepared = Prepared::new(&scene).unwrap();
-    prepared.settings.light.interreflection = Interreflection::Followed;
+    prepared.settings.light.interreflection.count();
     let plan = Plan::new(&prepared, &prepared.view());
     let world = World::new(&prepared, &plan).unwrap();
     let solution = Radiosity::new(&world, &plan, &prepared.settings.radiosity, None, &Watch::NOBODY).unwrap();

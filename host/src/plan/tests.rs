@@ -22,7 +22,7 @@ fn object(name: &str, shape: Shape, at: DVec3) -> Object {
 
 /// A cube in view, a cube far to the right, and light from the right.
 fn scene() -> Scene {
-    let cube = Shape::Solid(Primitive::Box { size: DVec3::ONE });
+    let cube = Shape::from(Primitive::Box { size: DVec3::ONE });
     let objects = vec![object("middle", cube.clone(), DVec3::ZERO), object("right", cube, DVec3::new(50.0, 0.0, 0.0))];
     let lights = vec![Light::Directional { direction: DVec3::new(-1.0, 0.0, 0.0), irradiance: Color::grey(1.0) }];
     let camera = Camera {
@@ -71,7 +71,7 @@ fn each_property_brings_its_stage() {
     assert!(with(|s| material(s).specular = Paint::grey(0.1)).needs(Stage::Specular));
     assert!(with(|s| s.ambient = Bands::splat(0.1)).needs(Stage::Ambient));
     assert!(with(|s| s.settings.image.samples = 2).needs(Stage::AntiAliasing));
-    assert!(with(|s| s.objects[0].shape = Shape::Solid(Primitive::Sphere { radius: 1.0 })).needs(Stage::Normals));
+    assert!(with(|s| s.objects[0].shape = Shape::from(Primitive::Sphere { radius: 1.0 })).needs(Stage::Normals));
     let dark = with(|s| s.lights.clear());
     assert!(!dark.needs(Stage::Shadows) && !dark.needs(Stage::Diffuse));
     let shallow = with(|s| {

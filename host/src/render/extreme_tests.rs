@@ -23,11 +23,11 @@ fn ground(size: f64, transform: DMat4, material: impl Into<Material>) -> Object 
 }
 
 fn ball(radius: f64, at: DVec3, material: impl Into<Material>) -> Object {
-    object(Shape::Solid(Primitive::Sphere { radius }), DMat4::from_translation(at), material)
+    object(Shape::from(Primitive::Sphere { radius }), DMat4::from_translation(at), material)
 }
 
 fn cuboid(size: DVec3, at: DVec3, material: impl Into<Material>) -> Object {
-    object(Shape::Solid(Primitive::Box { size }), DMat4::from_translation(at), material)
+    object(Shape::from(Primitive::Box { size }), DMat4::from_translation(at), material)
 }
 
 fn diffuse(k: f64) -> Classic {

@@ -110,7 +110,7 @@ pub const RENDERERS: [RendererRow; 4] = [
             let world = World::new(task.prepared, task.plan)?;
             let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.radiosity, None, &task.watch)?;
             let radiosity = Some(solution.report);
-            let scan_line = ScanLine::showing(Arc::new(solution), task.prepared, task.plan)?;
+            let scan_line = ScanLine::showing(Arc::new(solution), world, task.plan);
             Ok(Ready { renderer: Made::Whole(Box::new(scan_line)), radiosity })
         },
     },

@@ -142,7 +142,7 @@ mod tests {
     fn octrees_are_built_once_for_the_same_objects_whatever_the_settings_become() {
         let cube = |x: f64| Object {
             name: "cube".into(),
-            shape: Shape::Solid(Primitive::Box { size: DVec3::ONE }),
+            shape: Shape::from(Primitive::Box { size: DVec3::ONE }),
             transform: DMat4::from_translation(DVec3::X * x),
             material: None,
             tolerance: None,

@@ -200,11 +200,11 @@ mod tests {
     }
 
     fn solid(primitive: Primitive) -> Object {
-        object(Shape::Solid(primitive), DMat4::IDENTITY)
+        object(Shape::from(primitive), DMat4::IDENTITY)
     }
 
     fn cube(x: f64) -> Object {
-        object(Shape::Solid(Primitive::Box { size: DVec3::ONE }), DMat4::from_translation(DVec3::X * x))
+        object(Shape::from(Primitive::Box { size: DVec3::ONE }), DMat4::from_translation(DVec3::X * x))
     }
 
     fn within(chord: f64) -> Tolerance {

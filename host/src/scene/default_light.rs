@@ -108,7 +108,7 @@ mod tests {
     use glam::DMat4;
 
     fn scene(size: f64, at: DVec3) -> Scene {
-        let shape = Shape::Solid(Primitive::Box { size: DVec3::splat(size) });
+        let shape = Shape::from(Primitive::Box { size: DVec3::splat(size) });
         let transform = DMat4::from_translation(at);
         let object = Object { name: "a".into(), shape, transform, material: None, tolerance: None };
         Scene { objects: vec![object], ..Scene::default() }

@@ -19,6 +19,7 @@ mod settings;
 mod shape;
 mod shared;
 mod soft_box;
+mod solid;
 mod studio;
 mod triangles;
 mod view;
@@ -39,6 +40,7 @@ pub use settings::{
     PhotonSettings, RadiositySettings, Settings,
 };
 pub use shape::{Made, Rounded, Shape, ShapeError};
+pub use solid::Solid;
 pub use studio::Studio;
 pub use view::{Camera, Lens, Parallel, Projection, View};
 

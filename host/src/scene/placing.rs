@@ -125,7 +125,7 @@ mod tests {
     fn places_on_a_ball_have_the_parameters_of_the_ball() {
         let transform =
             DMat4::from_translation(DVec3::new(5.0, 1.0, -2.0)) * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        let prepared = textured(Shape::Solid(Primitive::Sphere { radius: 2.0 }), transform);
+        let prepared = textured(Shape::from(Primitive::Sphere { radius: 2.0 }), transform);
         let third = [1.0 / 3.0; 3];
         let mut seen = [DVec2::splat(9.0), DVec2::splat(-9.0)];
         for triangle in 0..prepared.triangles.len() as u32 {

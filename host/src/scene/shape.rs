@@ -6,6 +6,7 @@ use super::composite::{Composite, MAX_NESTING};
 use super::meeting::meet;
 use super::prepared::largest_stretch;
 use super::sculpture::{Sculpture, SculptureError};
+use super::solid::Solid;
 use crate::database::{Content, DatabaseError, Kind, Library};
 use crate::intersection::Precision;
 use crate::memory;
@@ -87,7 +88,7 @@ pub enum Shape {
     /// The Stanford bunny, about 2 high.
     Bunny,
     /// A solid of a few measures.
-    Solid(Primitive),
+    Solid(Solid),
     /// All that is behind a plane; it must be combined with other solids.
     HalfSpace {
         /// Towards the empty side, any length above 0.
@@ -149,13 +150,19 @@ pub struct Made {
     pub lines: Polylines,
 }
 
+impl From<Primitive> for Shape {
+    fn from(primitive: Primitive) -> Shape {
+        Shape::Solid(primitive.into())
+    }
+}
+
 impl Shape {
     /// The word for the kind.
     pub fn word(&self) -> &'static str {
         match self {
             Shape::Teapot => "teapot",
             Shape::Bunny => "bunny",
-            Shape::Solid(primitive) => primitive.word(),
+            Shape::Solid(solid) => solid.primitive().word(),
             Shape::HalfSpace { .. } => "half_space",
             Shape::Ground { .. } => GROUND,
             Shape::Mesh { .. } => "mesh",
@@ -176,7 +183,7 @@ impl Shape {
             Shape::Bunny if cfg!(feature = "bunny") => Ok(()),
             Shape::Bunny => Err(NoBunny.to_string()),
             Shape::Subdivision(cage) => cage.polyhedron().map(|_| ()).map_err(|error| error.to_string()),
-            Shape::Solid(primitive) => primitive.body().map(|_| ()).map_err(|error| error.to_string()),
+            Shape::Solid(solid) => solid.body().map(|_| ()).map_err(|error| error.to_string()),
             Shape::HalfSpace { normal, .. } if normal.try_normalize().is_some() => Ok(()),
             Shape::HalfSpace { normal, .. } => Err(format!("normal {normal} has no length")),
             Shape::Ground { size } if size.is_finite() && *size > 0.0 => Ok(()),
@@ -214,7 +221,7 @@ impl Shape {
     pub fn extent(&self) -> Option<f64> {
         match self {
             Shape::Teapot => Some(TEAPOT_DIAGONAL),
-            Shape::Solid(primitive) => primitive.body().ok()?.curved_extent(),
+            Shape::Solid(solid) => solid.body().ok()?.curved_extent(),
             Shape::Sculpture(sculpture) => Some(sculpture.extent()),
             Shape::Subdivision(cage) => Some(cage.extent()),
             Shape::Composite(composite) => composite.extent(),
@@ -235,8 +242,8 @@ impl Shape {
     /// # Errors
     /// [`ShapeError`] if the file cannot be read, the tolerance asks for too many triangles, or there is no such solid.
     pub fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
-        let known = |mesh: Mesh, surfaces: Vec<Box<dyn Surface>>| {
-            let surfaces = surfaces.into_iter().map(|surface| Some(Arc::from(surface))).collect();
+        let known = |mesh: Mesh, surfaces: Vec<Arc<dyn Surface>>| {
+            let surfaces = surfaces.into_iter().map(Some).collect();
             Made { mesh, surfaces, ..Made::default() }
         };
         match self {
@@ -265,17 +272,17 @@ impl Shape {
                 }
             }
             Shape::HalfSpace { .. } => Err(PrimitiveError::Endless.into()),
-            Shape::Solid(primitive) => {
-                let body = primitive.body()?;
-                Ok(known(body.tessellate(tolerance)?, body.into_surfaces()))
+            Shape::Solid(solid) => {
+                let body = solid.body()?;
+                Ok(known(body.tessellate(tolerance)?, body.surfaces()))
             }
             Shape::Teapot => {
-                let patches = surface::teapot().into_iter().map(|patch| Box::new(patch) as Box<dyn Surface>);
+                let patches = surface::teapot().into_iter().map(|patch| Arc::new(patch) as Arc<dyn Surface>);
                 let patches: Vec<_> = patches.collect();
                 Ok(known(tessellate(&patches, tolerance)?, patches))
             }
             Shape::Ground { size } => {
-                let square: Vec<Box<dyn Surface>> = vec![Box::new(ground(DVec3::ZERO, *size))];
+                let square: Vec<Arc<dyn Surface>> = vec![Arc::new(ground(DVec3::ZERO, *size))];
                 Ok(known(tessellate(&square, tolerance)?, square))
             }
         }

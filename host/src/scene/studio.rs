@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn the_studio_is_as_large_as_what_stands_in_it_and_leaves_it_where_it_is() {
         for (size, shift) in [(1e-3, DVec3::ZERO), (1.0, DVec3::new(10.0, -3.0, 2.0)), (1e4, DVec3::Y)] {
-            let shape = Shape::Solid(Primitive::Box { size: DVec3::splat(size) });
+            let shape = Shape::from(Primitive::Box { size: DVec3::splat(size) });
             let transform = DMat4::from_translation(shift);
             let object = Object { name: "a".into(), shape, transform, material: None, tolerance: None };
             let bare = Scene { objects: vec![object.clone()], studio: Some(Studio::Bare), ..Scene::default() };

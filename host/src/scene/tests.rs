@@ -9,7 +9,7 @@ use crate::solid::Primitive;
 use glam::DVec3;
 
 fn sphere(transform: DMat4) -> Scene {
-    let shape = Shape::Solid(Primitive::Sphere { radius: 1.0 });
+    let shape = Shape::from(Primitive::Sphere { radius: 1.0 });
     let object = Object { name: "ball".into(), shape, transform, material: None, tolerance: None };
     Scene { objects: vec![object], ..Scene::default() }
 }
@@ -35,7 +35,7 @@ fn problems_name_the_object_or_the_light() {
     assert!(problem(|s| s.objects[0].transform = DMat4::ZERO).starts_with("ball: its transformation"));
     assert!(problem(|s| s.objects[0].transform.x_axis = s.objects[0].transform.y_axis).contains("singular"));
     assert!(
-        problem(|s| s.objects[0].shape = Shape::Solid(Primitive::Sphere { radius: -1.0 }))
+        problem(|s| s.objects[0].shape = Shape::from(Primitive::Sphere { radius: -1.0 }))
             .starts_with("ball: radius -1")
     );
     assert!(problem(|s| s.objects[0].tolerance = Some(0.0)).starts_with("ball: tolerance"));
@@ -88,7 +88,7 @@ fn a_tolerance_holds_in_scene_units_after_scaling() {
 #[test]
 fn flat_objects_carry_no_normals() {
     let mut scene = sphere(DMat4::IDENTITY);
-    scene.objects[0].shape = Shape::Solid(Primitive::Box { size: DVec3::new(1.0, 2.0, 3.0) });
+    scene.objects[0].shape = Shape::from(Primitive::Box { size: DVec3::new(1.0, 2.0, 3.0) });
     let prepared = Prepared::new(&scene).expect("a scene");
     assert!(!prepared.objects[0].is_curved() && prepared.corner_normals(0).is_none());
     assert_eq!(prepared.triangles.len(), 12);

@@ -128,7 +128,7 @@ mod tests {
 
     fn object(name: &str, primitive: Primitive, x: f64) -> Object {
         let transform = DMat4::from_translation(DVec3::X * x);
-        Object { name: name.into(), shape: Shape::Solid(primitive), transform, material: None, tolerance: Some(0.2) }
+        Object { name: name.into(), shape: Shape::from(primitive), transform, material: None, tolerance: Some(0.2) }
     }
 
     #[test]

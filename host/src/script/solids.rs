@@ -4,7 +4,7 @@ use super::argument::Bound;
 use super::builder::Builder;
 use super::function::Default::{Is, Required};
 use super::function::{Done, Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
-use crate::scene::{Operation, Shape};
+use crate::scene::{Operation, Shape, Solid};
 use crate::solid::Primitive;
 use glam::{DVec2, DVec3};
 use rhai::Dynamic;
@@ -317,8 +317,9 @@ pub(super) const FUNCTIONS: &[Function] = &[
 
 /// Adds a solid if there is one of these measures.
 fn add(builder: &mut Builder, bound: &Bound, primitive: Primitive) -> Done {
-    primitive.body().map_err(|error| error.to_string())?;
-    builder.add(Shape::Solid(primitive), bound.number("tolerance")).map(Dynamic::from)
+    let solid = Solid::from(primitive);
+    solid.body().map_err(|error| error.to_string())?;
+    builder.add(Shape::Solid(solid), bound.number("tolerance")).map(Dynamic::from)
 }
 
 fn add_box(builder: &mut Builder, bound: &Bound) -> Done {

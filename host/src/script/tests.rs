@@ -37,10 +37,10 @@ fn a_script_builds_what_it_says() {
     let scene = &made.scene;
     assert_eq!(scene.objects.len(), 2);
     assert_eq!(scene.objects[0].name, "ball");
-    assert_eq!(scene.objects[0].shape, Shape::Solid(Primitive::Sphere { radius: 2.0 }));
+    assert_eq!(scene.objects[0].shape, Shape::from(Primitive::Sphere { radius: 2.0 }));
     assert_eq!(scene.objects[0].transform.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(scene.objects[0].material.clone().unwrap().appearance().mirror, DVec3::splat(0.25));
-    assert_eq!(scene.objects[1].shape, Shape::Solid(Primitive::Box { size: DVec3::new(4.0, 1.0, 2.0) }));
+    assert_eq!(scene.objects[1].shape, Shape::from(Primitive::Box { size: DVec3::new(4.0, 1.0, 2.0) }));
     assert_eq!(scene.lights[0], Light::Point { at: DVec3::new(0.0, 5.0, 0.0), intensity: Color::grey(1.0) });
     assert_eq!(scene.settings.image.width, 32);
     assert_eq!(

@@ -69,13 +69,13 @@ pub struct Measures {
 
 /// A solid between exact surfaces that close, outside out.
 pub struct Body {
-    curved: Vec<Box<dyn Surface>>,
+    curved: Vec<Arc<dyn Surface>>,
     faces: Vec<Face>,
 }
 
 impl Body {
     /// The solid between surfaces and flat faces. Where they meet they agree bit by bit.
-    pub fn new(curved: Vec<Box<dyn Surface>>, faces: Vec<Face>) -> Body {
+    pub fn new(curved: Vec<Arc<dyn Surface>>, faces: Vec<Face>) -> Body {
         Body { curved, faces }
     }
 
@@ -86,7 +86,7 @@ impl Body {
 
     /// The body moved by an affine map that is not singular.
     pub fn placed(self, placement: DAffine3) -> Body {
-        let moved = |surface| Box::new(Placed::new(surface, placement)) as Box<dyn Surface>;
+        let moved = |surface| Arc::new(Placed::new(surface, placement)) as Arc<dyn Surface>;
         let is_mirrored = placement.matrix3.determinant() < 0.0;
         let face = |face: Face| {
             let corners = face.corners.iter().map(|corner| placement.transform_point3(*corner)).collect();
@@ -97,10 +97,9 @@ impl Body {
     }
 
     /// Its surfaces, in the order in which triangles name them.
-    pub fn into_surfaces(self) -> Vec<Box<dyn Surface>> {
-        let planes = self.faces.iter().map(|face| Box::new(face.plane()) as Box<dyn Surface>);
-        let planes: Vec<_> = planes.collect();
-        self.curved.into_iter().chain(planes).collect()
+    pub fn surfaces(&self) -> Vec<Arc<dyn Surface>> {
+        let planes = self.faces.iter().map(|face| Arc::new(face.plane()) as Arc<dyn Surface>);
+        self.curved.iter().cloned().chain(planes).collect()
     }
 
     /// A closed mesh with normals, parameters and surfaces; flat faces stay flat.
@@ -130,7 +129,7 @@ impl Body {
     /// [`PrimitiveError`] if the tolerance is not positive or too fine, or triangles collapse.
     pub fn solid(self, tolerance: Tolerance) -> Result<ExactSolid, PrimitiveError> {
         let mesh = self.tessellate(tolerance)?;
-        let surfaces = self.into_surfaces().into_iter().map(|surface| Some(Arc::from(surface))).collect();
+        let surfaces = self.surfaces().into_iter().map(Some).collect();
         Ok(ExactSolid::new(mesh, surfaces)?)
     }
 

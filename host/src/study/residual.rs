@@ -66,8 +66,11 @@ fn collect<'a>(shape: &'a Shape, tolerance: Tolerance, shapes: &mut Vec<Exact<'a
 /// The surfaces of shapes that have them as a whole: round ones as closed rational forms.
 fn whole(shape: &Shape, tolerance: Tolerance) -> Result<Option<Surfaces>, StudyError> {
     let rational = match shape {
-        Shape::Solid(Primitive::Sphere { radius }) => rational_sphere(*radius).ok(),
-        Shape::Solid(Primitive::Torus { ring, tube }) => rational_torus(*ring, *tube).ok(),
+        Shape::Solid(solid) => match solid.primitive() {
+            Primitive::Sphere { radius } => rational_sphere(*radius).ok(),
+            Primitive::Torus { ring, tube } => rational_torus(*ring, *tube).ok(),
+            _ => None,
+        },
         Shape::Sculpture(sculpture) if sculpture.is_trimmed() => return Ok(None),
         Shape::Sculpture(_) | Shape::Teapot => return Ok(shape.made(tolerance)?.surfaces.into_iter().collect()),
         _ => None,

@@ -20,7 +20,7 @@ fn scene(shape: Shape) -> Scene {
 }
 
 fn sphere() -> Scene {
-    scene(Shape::Solid(Primitive::Sphere { radius: 1.0 }))
+    scene(Shape::from(Primitive::Sphere { radius: 1.0 }))
 }
 
 fn row(name: &str) -> &'static KnobRow {
@@ -43,7 +43,7 @@ fn a_finer_tolerance_follows_the_sphere_more_closely() {
 fn a_scene_without_curved_surfaces_has_no_tolerance_to_study() {
     let options = row("tessellate").options;
     let result =
-        (row("tessellate").run)(&scene(Shape::Solid(Primitive::Box { size: DVec3::ONE })), &options, &Watch::NOBODY);
+        (row("tessellate").run)(&scene(Shape::from(Primitive::Box { size: DVec3::ONE })), &options, &Watch::NOBODY);
     assert!(matches!(result, Err(StudyError::Nothing(_))));
 }
 
@@ -69,7 +69,7 @@ fn leaf_size_and_depth_change_no_hit() {
 
 #[test]
 fn steps_of_subdivision_come_nearer_to_the_limit() {
-    let scene = scene(Shape::Solid(Primitive::Box { size: DVec3::ONE }));
+    let scene = scene(Shape::from(Primitive::Box { size: DVec3::ONE }));
     let study = (row("subdivide").run)(&scene, &row("subdivide").options, &Watch::NOBODY).expect("a study");
     // The distance falls by four with each step where the surface is smooth, the angle by two.
     for pair in study.rows.windows(2).skip(1) {
@@ -93,10 +93,10 @@ fn adaptive_triangles_keep_their_tolerance() {
 
 #[test]
 fn the_residual_of_any_exact_surface_falls_with_its_tolerance() {
-    let torus = Shape::Solid(Primitive::Torus { ring: 2.0, tube: 0.5 });
+    let torus = Shape::from(Primitive::Torus { ring: 2.0, tube: 0.5 });
     let surface = Box::new(crate::surface::rational_torus(2.0, 0.5).expect("a torus"));
     let sculpture = Sculpture { sheets: vec![Sheet::Spline { surface, loops: Vec::new() }] };
-    let tube = Shape::Solid(Primitive::Cylinder { radius: 0.5, height: 4.0 });
+    let tube = Shape::from(Primitive::Cylinder { radius: 0.5, height: 4.0 });
     let operands = vec![scene(torus.clone()).objects.remove(0), scene(tube.clone()).objects.remove(0)];
     let both = Composite { operation: Operation::Union, operands, nesting: 1 };
     let options = Options { settings: 3, ..row("surface").options };
@@ -124,9 +124,9 @@ fn triangles_of_a_limit_surface_are_measured() {
 
 #[test]
 fn a_drilled_ball_loses_error_as_its_tolerance_falls() {
-    let ball = Object { material: None, ..scene(Shape::Solid(Primitive::Sphere { radius: 1.0 })).objects[0].clone() };
+    let ball = Object { material: None, ..scene(Shape::from(Primitive::Sphere { radius: 1.0 })).objects[0].clone() };
     let mut drill = ball.clone();
-    drill.shape = Shape::Solid(Primitive::Box { size: DVec3::new(0.5, 3.0, 0.5) });
+    drill.shape = Shape::from(Primitive::Box { size: DVec3::new(0.5, 3.0, 0.5) });
     let composite = Composite { operation: Operation::Difference, operands: vec![ball, drill], nesting: 1 };
     let scene = scene(Shape::Composite(Box::new(composite)));
     let options = Options { settings: 4, ..row("boolean").options };
@@ -142,7 +142,7 @@ fn a_drilled_ball_loses_error_as_its_tolerance_falls() {
 #[test]
 fn finer_triangles_bring_lines_nearer_to_the_curve_and_a_finer_iteration_the_points() {
     let mut scene = sphere();
-    let tube = Shape::Solid(Primitive::Cylinder { radius: 0.5, height: 4.0 });
+    let tube = Shape::from(Primitive::Cylinder { radius: 0.5, height: 4.0 });
     let transform = DMat4::from_rotation_x(0.3);
     scene.objects.push(Object { name: "tube".into(), shape: tube, transform, material: None, tolerance: None });
     let run = |name: &str| {

@@ -326,7 +326,7 @@ mod tests {
     fn drilled() -> Scene {
         let operand = |primitive, diffuse| Object {
             name: "operand".into(),
-            shape: Shape::Solid(primitive),
+            shape: Shape::from(primitive),
             transform: DMat4::IDENTITY,
             material: Some(Classic { diffuse: Color::Bands(diffuse).into(), ..Classic::default() }.into()),
             tolerance: None,

@@ -42,7 +42,7 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Folder) -> Result<()
         Content::Material(material) => {
             let ball = Object {
                 name: name.clone(),
-                shape: Shape::Solid(Primitive::Sphere { radius: 1.0 }),
+                shape: Shape::from(Primitive::Sphere { radius: 1.0 }),
                 transform: DMat4::from_translation(DVec3::Y),
                 material: Some((**material).clone()),
                 tolerance: None,

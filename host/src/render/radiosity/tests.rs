@@ -22,11 +22,11 @@ fn object(name: &str, shape: Shape, reflectance: f64) -> Object {
 }
 
 fn cube(name: &str, size: f64, reflectance: f64) -> Object {
-    object(name, Shape::Solid(Primitive::Box { size: DVec3::splat(size) }), reflectance)
+    object(name, Shape::from(Primitive::Box { size: DVec3::splat(size) }), reflectance)
 }
 
 fn sphere(name: &str, radius: f64, reflectance: f64) -> Object {
-    object(name, Shape::Solid(Primitive::Sphere { radius }), reflectance)
+    object(name, Shape::from(Primitive::Sphere { radius }), reflectance)
 }
 
 fn prepared(objects: Vec<Object>, lights: Vec<Light>) -> Prepared {
@@ -151,7 +151,7 @@ fn a_closed_dark_room_with_lights_outside_stays_dark_to_the_last_bit() {
     // Two rooms that touch, a slab on which both stand, and lamps all around and in one of them.
     let mut lit = cube("lit room", 2.0, 0.7);
     lit.transform = DMat4::from_translation(DVec3::new(2.0, 0.0, 0.0));
-    let mut slab = object("slab", Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 0.5, 9.0) }), 0.6);
+    let mut slab = object("slab", Shape::from(Primitive::Box { size: DVec3::new(9.0, 0.5, 9.0) }), 0.6);
     slab.transform = DMat4::from_translation(DVec3::new(0.0, -1.25, 0.0));
     let lights = vec![
         lamp(DVec3::new(3.0, 4.0, 2.0)),
@@ -276,7 +276,7 @@ fn scenes_of_any_size_have_the_same_light() {
 #[test]
 fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
     let plate = |name: &str, y: f64| {
-        let mut plate = object(name, Shape::Solid(Primitive::Box { size: DVec3::new(4.0, 0.2, 4.0) }), 0.001);
+        let mut plate = object(name, Shape::from(Primitive::Box { size: DVec3::new(4.0, 0.2, 4.0) }), 0.001);
         plate.transform = DMat4::from_translation(DVec3::new(0.0, y, 0.0));
         plate
     };

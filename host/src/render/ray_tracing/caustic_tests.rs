@@ -38,7 +38,7 @@ fn hollow_mirror(height: f64, light: Light) -> Scene {
     let bent = Primitive::Turning { contours: vec![corners.to_vec()], turn: 1.0 / 3.0 };
     let objects = vec![
         block(DVec3::new(5.0, 0.1, 5.0), DVec3::new(0.0, -0.05, 0.0), diffuse(0.5)),
-        object(Shape::Solid(bent), DMat4::from_rotation_y(PI / 6.0), mirror(1.0)),
+        object(Shape::from(bent), DMat4::from_rotation_y(PI / 6.0), mirror(1.0)),
     ];
     let mut scene = scene(objects, vec![light], ACROSS);
     (scene.settings.image.samples, scene.settings.photons.count) = (9, 200_000);
@@ -127,7 +127,7 @@ fn irradiance_behind_a_lens_grows_as_its_light_draws_together() {
     let ghost = ((index - 1.0) / curvature + 2.0 * index / curvature).recip();
     for behind in [5.0, 8.0, 12.0, 16.0] {
         let objects = vec![
-            object(Shape::Solid(lens.clone()), DMat4::IDENTITY, glass(index)),
+            object(Shape::from(lens.clone()), DMat4::IDENTITY, glass(index)),
             block(DVec3::new(2.0, 0.1, 2.0), DVec3::new(0.0, -behind - 0.05, 0.0), diffuse(0.5)),
         ];
         let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) };
@@ -166,7 +166,7 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
         let light = Light::Directional { direction: DVec3::X, irradiance: Color::Spectrum(line) };
         // Along the light, so that none of it falls there straight.
         let screen = block(DVec3::new(12.0, 0.1, 12.0), DVec3::new(0.0, -below - 0.05, 0.0), diffuse(0.5));
-        let objects = vec![object(Shape::Solid(prism.clone()), turned, material.clone()), screen];
+        let objects = vec![object(Shape::from(prism.clone()), turned, material.clone()), screen];
         let mut scene = scene(objects, vec![light], 41);
         (scene.settings.image.samples, scene.settings.photons.count) = (4, 100_000);
         (scene.settings.light.spectral, scene.settings.photons.radius) = (Some(true), Some(0.03));

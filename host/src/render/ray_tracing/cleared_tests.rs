@@ -27,7 +27,7 @@ fn near() -> View {
 }
 
 fn slab([low, high]: [f64; 2], material: Material) -> Object {
-    let shape = Shape::Solid(Primitive::Box { size: DVec3::new(60.0, high - low, 60.0) });
+    let shape = Shape::from(Primitive::Box { size: DVec3::new(60.0, high - low, 60.0) });
     object(shape, DMat4::from_translation(DVec3::new(0.0, 0.5 * (low + high), 0.0)), material)
 }
 

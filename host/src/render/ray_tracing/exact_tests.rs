@@ -21,7 +21,7 @@ fn coarse(shape: Shape, transform: DMat4) -> Object {
 }
 
 fn ball(radius: f64) -> Shape {
-    Shape::Solid(Primitive::Sphere { radius })
+    Shape::from(Primitive::Sphere { radius })
 }
 
 /// Sends parallel rays from many sides and tells of each that meets something: where it began, its direction, what it met.
@@ -80,7 +80,7 @@ fn an_uneven_placement_keeps_the_normals_of_its_ellipsoid() {
 
 #[test]
 fn a_coarse_torus_is_met_exactly_but_where_rays_pass_by_it() {
-    let torus = Shape::Solid(Primitive::Torus { ring: 2.0, tube: 0.7 });
+    let torus = Shape::from(Primitive::Torus { ring: 2.0, tube: 0.7 });
     let mut missed = 0;
     let count = met(vec![coarse(torus, DMat4::IDENTITY)], |_, found| {
         let at = found.element.position;
@@ -119,8 +119,7 @@ fn patches_of_a_coarse_teapot_are_met_on_the_patches() {
 
 #[test]
 fn a_boolean_of_two_has_the_points_and_normals_of_both() {
-    let drill =
-        coarse(Shape::Solid(Primitive::Cylinder { radius: 0.5, height: 4.0 }), DMat4::from_rotation_x(PI / 2.0));
+    let drill = coarse(Shape::from(Primitive::Cylinder { radius: 0.5, height: 4.0 }), DMat4::from_rotation_x(PI / 2.0));
     let operands = vec![coarse(ball(1.0), DMat4::IDENTITY), drill];
     let composite = Composite { operation: Operation::Difference, operands, nesting: 1 };
     let mut on = [0; 3];

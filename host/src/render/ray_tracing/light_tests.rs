@@ -23,7 +23,7 @@ fn sky(radiance: f64) -> Light {
 }
 
 fn ball(material: impl Into<Material>) -> Vec<crate::scene::Object> {
-    vec![object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, material)]
+    vec![object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, material)]
 }
 
 fn mean(rendering: &crate::render::Rendering) -> f64 {
@@ -81,7 +81,7 @@ fn a_white_furnace_hides_what_loses_nothing() {
 #[test]
 fn glass_of_the_index_of_air_cannot_be_seen_and_absorbs_by_its_thickness() {
     let pane =
-        |material| object(Shape::Solid(Primitive::Box { size: DVec3::new(4.0, 2.0, 4.0) }), DMat4::IDENTITY, material);
+        |material| object(Shape::from(Primitive::Box { size: DVec3::new(4.0, 2.0, 4.0) }), DMat4::IDENTITY, material);
     for (index, absorption) in [(1.0, 0.0), (1.0, 0.4), (1.5, 0.0), (1.5, 0.4)] {
         let mut scene = scene(vec![pane(glass(index, 0.0, absorption))], vec![], 2);
         scene.background = Bands::ONE;
@@ -98,13 +98,13 @@ fn glass_of_the_index_of_air_cannot_be_seen_and_absorbs_by_its_thickness() {
 #[test]
 fn an_eye_in_water_sees_through_water_from_the_beginning() {
     let block = |size: f64, at: DVec3, material: Material| {
-        let shape = Shape::Solid(Primitive::Box { size: DVec3::splat(size) });
+        let shape = Shape::from(Primitive::Box { size: DVec3::splat(size) });
         object(shape, DMat4::from_translation(at), material)
     };
     let water = block(20.0, DVec3::ZERO, glass(1.33, 0.0, 0.3));
     // Light that is the same everywhere on something that reflects all of it: radiance 1.
     let white = block(2.0, DVec3::NEG_Z * 4.0, diffuse(1.0).into());
-    let ball = Shape::Solid(Primitive::Sphere { radius: 0.5 });
+    let ball = Shape::from(Primitive::Sphere { radius: 0.5 });
     let clear = object(ball, DMat4::from_translation(DVec3::NEG_Z), glass(1.33, 0.0, 0.0));
     let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
     (camera.from, camera.at, camera.field_of_view) = (DVec3::ZERO, DVec3::NEG_Z, 0.1);
@@ -175,7 +175,7 @@ fn a_hundred_mirrors_face_to_face_give_the_geometric_series() {
 #[test]
 fn a_thin_gap_between_two_glass_spheres_is_not_lost() {
     // A sphere of the same glass within a shell of it: the gap of air remains, however thin.
-    let solid = |radius: f64| Shape::Solid(Primitive::Sphere { radius });
+    let solid = |radius: f64| Shape::from(Primitive::Sphere { radius });
     let through = |gap: f64| {
         let shell = object(solid(1.0), DMat4::IDENTITY, glass(1.5, 0.0, 0.0));
         let hollow = object(solid(0.5 + gap), DMat4::IDENTITY, glass(1.0, 0.0, 0.0));
@@ -196,7 +196,7 @@ fn a_thin_gap_between_two_glass_spheres_is_not_lost() {
 #[test]
 fn a_lens_is_sharp_where_it_is_focused_and_nowhere_else() {
     let stripe =
-        object(Shape::Solid(Primitive::Box { size: DVec3::new(1.0, 4.0, 0.01) }), DMat4::IDENTITY, diffuse(1.0));
+        object(Shape::from(Primitive::Box { size: DVec3::new(1.0, 4.0, 0.01) }), DMat4::IDENTITY, diffuse(1.0));
     let mut scene = scene(vec![stripe], vec![], 16);
     scene.ambient = Bands::ONE;
     scene.settings.image.samples = 64;
@@ -214,7 +214,7 @@ fn a_lens_is_sharp_where_it_is_focused_and_nowhere_else() {
 fn a_sphere_far_from_the_origin_is_lit_as_one_at_the_origin() {
     let at = |place: f64| {
         let center = DVec3::new(place, 0.0, 0.0);
-        let shape = Shape::Solid(Primitive::Sphere { radius: 1.0 });
+        let shape = Shape::from(Primitive::Sphere { radius: 1.0 });
         let mut scene = scene(vec![object(shape, DMat4::from_translation(center), diffuse(0.7))], vec![sky(1.0)], 12);
         scene.settings.image.samples = 16;
         let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([center]));
@@ -293,7 +293,7 @@ fn the_light_buffer_changes_no_picture_and_spares_rays() {
     // A lamp, the sun and a large light over a bunny, walls with a hole, and a pane of red glass.
     let sheet = |width: f64, x: f64, material: Classic| {
         let size = DVec3::new(width, 4.0, 0.1);
-        object(Shape::Solid(Primitive::Box { size }), DMat4::from_translation(DVec3::new(x, 2.0, 2.0)), material)
+        object(Shape::from(Primitive::Box { size }), DMat4::from_translation(DVec3::new(x, 2.0, 2.0)), material)
     };
     let red = Color::Bands(DVec3::new(0.6, 0.1, 0.1));
     let pane = Classic { transparency: red.into(), ..diffuse(0.0) };

@@ -120,7 +120,7 @@ fn a_rising_mirror_shows_an_edge_as_a_ramp() {
     // the height x + c: a wall above the height 0.
     let tilted = DMat4::from_rotation_z(FRAC_PI_4);
     let mirror = object(Shape::Ground { size: 20.0 }, tilted, mirror(1.0));
-    let wall = Shape::Solid(Primitive::Box { size: DVec3::new(0.5, 50.0, 50.0) });
+    let wall = Shape::from(Primitive::Box { size: DVec3::new(0.5, 50.0, 50.0) });
     let wall = object(wall, DMat4::from_translation(DVec3::new(-30.0, 25.0, 0.0)), diffuse(1.0));
     let scene = ambient(vec![wall, mirror], (1, Motion { by: DVec3::Y, ..STILL }), 64);
     compare(&trace(&scene, Some(from_above(1.0)), false, 2), |from, to| ramp(from + 0.5, to + 0.5));
@@ -130,7 +130,7 @@ fn a_rising_mirror_shows_an_edge_as_a_ramp() {
 fn what_stands_still_in_an_octree_of_its_own_gives_the_same_picture() {
     let ball = Object {
         tolerance: Some(0.05),
-        ..object(Shape::Solid(Primitive::Sphere { radius: 0.5 }), DMat4::IDENTITY, mirror(0.6))
+        ..object(Shape::from(Primitive::Sphere { radius: 0.5 }), DMat4::IDENTITY, mirror(0.6))
     };
     let light = Light::Point { at: DVec3::new(1.0, 3.0, 1.0), intensity: Color::grey(20.0) };
     let mut scene = scene(vec![plate(4.0, DVec3::Y * -0.5, 0.7), ball], vec![light], 32);
@@ -151,7 +151,7 @@ fn a_ball_that_rolls_keeps_its_texture_and_its_outline() {
     // A turn about its middle changes nothing of a ball of one colour, wherever the exact surface is met.
     let ball = Object {
         tolerance: Some(0.1),
-        ..object(Shape::Solid(Primitive::Sphere { radius: 0.8 }), DMat4::IDENTITY, diffuse(1.0))
+        ..object(Shape::from(Primitive::Sphere { radius: 0.8 }), DMat4::IDENTITY, diffuse(1.0))
     };
     let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(PI) };
     let mut scene = scene(vec![ball], vec![light], 32);

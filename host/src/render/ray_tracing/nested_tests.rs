@@ -23,7 +23,7 @@ fn body(index: f64, absorption: f64, priority: i32) -> Material {
 fn slab([low, high]: [f64; 2], material: Material) -> Object {
     let size = DVec3::new(40.0, high - low, 40.0);
     let mut slab = object(
-        Shape::Solid(Primitive::Box { size }),
+        Shape::from(Primitive::Box { size }),
         DMat4::from_translation(DVec3::new(0.0, 0.5 * (low + high), 0.0)),
         material,
     );
@@ -141,7 +141,7 @@ fn of_bodies_in_one_place_the_greatest_priority_and_then_the_smallest_is_there()
 #[test]
 fn nested_spheres_pass_along_their_axis_what_slabs_do() {
     let ball = |radius: f64, material: Material| {
-        let mut ball = object(Shape::Solid(Primitive::Sphere { radius }), DMat4::IDENTITY, material);
+        let mut ball = object(Shape::from(Primitive::Sphere { radius }), DMat4::IDENTITY, material);
         ball.tolerance = Some(1e-4);
         ball
     };

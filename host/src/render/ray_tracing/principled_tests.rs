@@ -52,7 +52,7 @@ fn a_white_furnace_hides_it_with_whatever_numbers() {
         // Light goes to and fro many times in a rough body, each time by chance.
         let tolerance = if principled.transmits() { 1.2e-2 } else { 4e-3 };
         let words = format!("{principled:?}");
-        let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, of(principled));
+        let ball = object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, of(principled));
         let mut scene = scene(vec![ball], vec![], 8);
         scene.lights = vec![Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 }];
         (scene.settings.image.samples, scene.settings.light.reflection_depth) = (256, 100);
@@ -90,7 +90,7 @@ fn a_polished_pane_lets_lamps_through_as_fresnel_tells() {
 
 #[test]
 fn ambient_light_and_a_background_show_what_it_reflects() {
-    let ball = |principled| object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, of(principled));
+    let ball = |principled| object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, of(principled));
     for (principled, expected) in [
         (Principled { specular: 0.0.into(), base_color: Paint::grey(0.5), ..white() }, 0.5),
         (Principled { metallic: 1.0.into(), roughness: 0.0.into(), base_color: Paint::grey(0.5), ..white() }, 0.5),

@@ -62,17 +62,17 @@ fn still_life() -> Scene {
     let objects = vec![
         object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.6)),
         object(
-            Shape::Solid(Primitive::Sphere { radius: 1.0 }),
+            Shape::from(Primitive::Sphere { radius: 1.0 }),
             DMat4::from_translation(DVec3::new(-1.0, 1.0, 0.0)),
             shiny,
         ),
         object(
-            Shape::Solid(Primitive::Box { size: DVec3::new(1.0, 2.0, 1.0) }),
+            Shape::from(Primitive::Box { size: DVec3::new(1.0, 2.0, 1.0) }),
             DMat4::from_translation(DVec3::new(1.4, 1.0, -0.5)) * DMat4::from_rotation_y(0.4),
             diffuse(0.5),
         ),
         object(
-            Shape::Solid(Primitive::Sphere { radius: 0.5 }),
+            Shape::from(Primitive::Sphere { radius: 0.5 }),
             DMat4::from_translation(DVec3::new(0.0, 0.5, 30.0)),
             diffuse(0.9),
         ),
@@ -103,7 +103,7 @@ fn a_diffuse_sphere_under_parallel_light_follows_lambert() {
     let towards = DVec3::new(0.3, 0.5, 0.81).normalize();
     let light = Light::Directional { direction: -towards, irradiance: Color::grey(2.0) };
     let mut scene = scene(
-        vec![object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(0.8))],
+        vec![object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(0.8))],
         vec![light],
         40,
     );
@@ -142,7 +142,7 @@ fn a_point_light_over_a_plane_falls_with_the_cube_of_the_slant_distance() {
 fn a_mirror_shows_the_luminance_of_what_it_reflects() {
     // A mirror on the floor, seen at 45 degrees, shows a wall of ambient luminance, and above it the background.
     let wall = object(
-        Shape::Solid(Primitive::Box { size: DVec3::new(100.0, 4.0, 1.0) }),
+        Shape::from(Primitive::Box { size: DVec3::new(100.0, 4.0, 1.0) }),
         DMat4::from_translation(DVec3::new(0.0, 2.0, -10.5)),
         diffuse(0.5),
     );
@@ -209,7 +209,7 @@ fn no_surface_shadows_itself_at_any_scale_or_place() {
     for (size, shift) in [(1e-6, 0.0), (1.0, 0.0), (1e6, 0.0), (1.0, 1e7), (1e3, 1e7)] {
         let center = DVec3::new(shift, -0.5 * shift, shift);
         let place = DMat4::from_translation(center) * DMat4::from_scale(DVec3::splat(size));
-        let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), place, diffuse(1.0));
+        let ball = object(Shape::from(Primitive::Sphere { radius: 1.0 }), place, diffuse(1.0));
         // The light stands behind the eye: whatever is seen is lit.
         let towards = DVec3::new(0.2, 0.3, 1.0).normalize();
         let lights = vec![Light::Directional { direction: -towards, irradiance: Color::grey(PI) }];
@@ -268,7 +268,7 @@ fn grazing_light_on_a_plane_is_not_shadowed_by_the_plane() {
 fn a_coarse_sphere_has_no_jagged_terminator() {
     let light = Light::Directional { direction: DVec3::NEG_X, irradiance: Color::grey(PI) };
     let mut scene = scene(
-        vec![object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(1.0))],
+        vec![object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(1.0))],
         vec![light],
         48,
     );
@@ -317,7 +317,7 @@ fn forcing_everything_gives_the_same_picture() {
     let mut dark = full.clone();
     dark.lights.clear();
     let mut flat = full.clone();
-    flat.objects.retain(|o| matches!(o.shape, Shape::Solid(Primitive::Box { .. }) | Shape::Ground { .. }));
+    flat.objects.retain(|o| matches!(o.shape.word(), "box" | "ground"));
     let mut black = full.clone();
     black.ambient = Bands::ZERO;
     black.objects.iter_mut().for_each(|o| o.material = Some(mirror(0.0).into()));
@@ -362,7 +362,7 @@ fn a_camera_and_the_matrix_of_the_workstation_show_the_same_silhouette() {
 fn stratified_samples_converge_faster_than_random_ones() {
     // An edge across the picture: its coverage is known exactly.
     let mut scene = scene(
-        vec![object(Shape::Solid(Primitive::Box { size: DVec3::ONE }), DMat4::from_rotation_z(0.3), diffuse(0.5))],
+        vec![object(Shape::from(Primitive::Box { size: DVec3::ONE }), DMat4::from_rotation_z(0.3), diffuse(0.5))],
         vec![],
         12,
     );

@@ -42,12 +42,12 @@ fn shown(rendering: &Rendering, half: f64) -> f64 {
 fn a_burning_mirror_gathers_all_light_in_a_point() {
     // A paraboloid cut into a plate, hollow downwards; its focus 1 below its tip.
     let cut = object(
-        Shape::Solid(Primitive::Paraboloid { radius: 1.0, height: 0.25 }),
+        Shape::from(Primitive::Paraboloid { radius: 1.0, height: 0.25 }),
         DMat4::from_translation(DVec3::Y * (1.0 - 0.125)),
         mirror(0.9),
     );
     let plate = object(
-        Shape::Solid(Primitive::Box { size: DVec3::new(2.4, 0.5, 2.4) }),
+        Shape::from(Primitive::Box { size: DVec3::new(2.4, 0.5, 2.4) }),
         DMat4::from_translation(DVec3::Y),
         diffuse(0.0),
     );

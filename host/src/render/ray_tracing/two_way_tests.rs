@@ -19,11 +19,11 @@ pub(super) fn glass(index: f64) -> Material {
 }
 
 pub(super) fn block(size: DVec3, at: DVec3, material: impl Into<Material>) -> Object {
-    object(Shape::Solid(Primitive::Box { size }), DMat4::from_translation(at), material)
+    object(Shape::from(Primitive::Box { size }), DMat4::from_translation(at), material)
 }
 
 pub(super) fn ball(radius: f64, at: DVec3, material: impl Into<Material>) -> Object {
-    object(Shape::Solid(Primitive::Sphere { radius }), DMat4::from_translation(at), material)
+    object(Shape::from(Primitive::Sphere { radius }), DMat4::from_translation(at), material)
 }
 
 pub(super) fn lamp(at: DVec3, intensity: f64) -> Light {

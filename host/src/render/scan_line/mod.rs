@@ -33,7 +33,7 @@ mod visibility;
 use super::film::Film;
 use super::indirect::IndirectLight;
 use super::tally::Tally;
-use super::world::{AHEAD, Appearance, Eye};
+use super::world::{AHEAD, Appearance, Eye, World};
 use super::{Amount, Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::Source;
@@ -106,28 +106,17 @@ impl<'a> ScanLine<'a> {
     /// # Errors
     /// [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<ScanLine<'a>, RenderError> {
-        ScanLine::lit(prepared, plan, None)
+        Ok(ScanLine::lit(Appearance::new(prepared, plan)?, plan, None))
     }
 
-    /// As [`ScanLine::new`], but shows the light of a solution by radiosity: no highlights and no ambient light, and no
-    /// shadows but those that are in it.
-    ///
-    /// # Errors
-    /// [`RenderError::Material`].
-    pub fn showing(
-        solution: Arc<dyn IndirectLight>,
-        prepared: &'a Prepared,
-        plan: &'a Plan,
-    ) -> Result<ScanLine<'a>, RenderError> {
-        ScanLine::lit(prepared, plan, Some(solution))
+    /// A renderer of the light of a solution by radiosity: no highlights and no ambient light, and no shadows but those that
+    /// are in it. It takes materials and lights over from the world that was solved.
+    pub fn showing(solution: Arc<dyn IndirectLight>, world: World<'a>, plan: &'a Plan) -> ScanLine<'a> {
+        ScanLine::lit(world.appearance, plan, Some(solution))
     }
 
-    fn lit(
-        prepared: &'a Prepared,
-        plan: &'a Plan,
-        solution: Option<Arc<dyn IndirectLight>>,
-    ) -> Result<ScanLine<'a>, RenderError> {
-        let appearance = Appearance::new(prepared, plan)?;
+    fn lit(appearance: Appearance<'a>, plan: &'a Plan, solution: Option<Arc<dyn IndirectLight>>) -> ScanLine<'a> {
+        let prepared = appearance.prepared;
         let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
         let (groups, passing) = groups(&appearance);
@@ -143,7 +132,7 @@ impl<'a> ScanLine<'a> {
             }
         }
         let sky_light = if solution.is_none() { SkyLight::new(&appearance) } else { None };
-        Ok(ScanLine { plan, appearance, casters, triangles, passable, passing, lamps, sky_light, solution })
+        ScanLine { plan, appearance, casters, triangles, passable, passing, lamps, sky_light, solution }
     }
 
     /// The shadow volumes of a lamp.

@@ -34,7 +34,7 @@ fn ground(size: f64) -> Object {
 
 fn cuboid(size: DVec3, at: DVec3) -> Object {
     let transform = DMat4::from_translation(at) * DMat4::from_rotation_y(0.4);
-    object(Shape::Solid(Primitive::Box { size }), transform, diffuse(0.5))
+    object(Shape::from(Primitive::Box { size }), transform, diffuse(0.5))
 }
 
 /// A floor with two boxes, one of which is sunk into it, and into the other.
@@ -50,7 +50,7 @@ fn pane(at: DVec3, turned: f64) -> Object {
     let through = Paint::Plain(Color::Bands(Bands::new(0.8, 0.5, 0.3)));
     let material = Classic { transparency: through, ..diffuse(0.2) };
     let transform = DMat4::from_translation(at) * DMat4::from_rotation_y(turned);
-    object(Shape::Solid(Primitive::Box { size: DVec3::new(1.5, 2.0, 0.1) }), transform, material)
+    object(Shape::from(Primitive::Box { size: DVec3::new(1.5, 2.0, 0.1) }), transform, material)
 }
 
 /// Turns a ground so that it faces a viewer on the z axis.
@@ -152,7 +152,7 @@ fn the_bunny_and_its_shadow_are_those_of_ray_tracing() {
 
 #[test]
 fn a_coarse_sphere_has_no_dark_triangles_where_its_light_ends() {
-    let ball = Shape::Solid(Primitive::Sphere { radius: 1.0 });
+    let ball = Shape::from(Primitive::Sphere { radius: 1.0 });
     let mut ball = object(ball, DMat4::from_translation(DVec3::Y), diffuse(0.7));
     ball.tolerance = Some(0.02);
     agrees("sphere", &scene(vec![ground(20.0), ball], vec![lamp(DVec3::new(6.0, 3.0, 1.0))], usual()), None);
@@ -295,7 +295,7 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
 #[test]
 fn a_highlight_is_the_same_however_many_samples_see_it() {
     let shiny = Classic { specular: Paint::grey(0.4), exponent: 60.0.into(), ..diffuse(0.1) };
-    let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, shiny);
+    let ball = object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, shiny);
     let mut scene = scene(vec![ball], vec![lamp(DVec3::new(2.0, 3.0, 4.0))], camera(DVec3::Z * 6.0, DVec3::ZERO));
     let mut drawn = |samples: u32| {
         scene.settings.image.samples = samples;
@@ -321,7 +321,7 @@ fn a_lamp_is_seen_behind_panes_and_before_a_wall() {
         radiance: Color::grey(7.0),
     };
     let wall = object(
-        Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.1) }),
+        Shape::from(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.1) }),
         DMat4::from_translation(DVec3::NEG_Z * 2.0),
         diffuse(0.5),
     );
@@ -351,7 +351,7 @@ fn a_lamp_is_seen_behind_panes_and_before_a_wall() {
 fn mirrors_metals_and_glass_show_the_ambient_light() {
     let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) };
     let glass = Transparent { absorption: Color::grey(2.0), ..Transparent::clear(Index::Constant(1.5)) };
-    let slab = Shape::Solid(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.5) });
+    let slab = Shape::from(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.5) });
     // Of each face of the glass 4 %, of the rest what a way of half a unit leaves.
     let (reflected, left) = (0.04, 0.96 * (-1.0_f64).exp());
     for (shape, material, ambient, background) in [
@@ -380,8 +380,8 @@ fn glass_that_bends_no_light_is_what_ray_tracing_sees() {
     let size = DVec3::splat(1.5);
     let objects = vec![
         ground(20.0),
-        object(Shape::Solid(Primitive::Box { size }), at, glass(0.0)),
-        object(Shape::Solid(Primitive::Sphere { radius: 0.5 }), at, glass(0.1)),
+        object(Shape::from(Primitive::Box { size }), at, glass(0.0)),
+        object(Shape::from(Primitive::Sphere { radius: 0.5 }), at, glass(0.1)),
         cuboid(DVec3::splat(0.8), DVec3::new(0.3, 0.4, -2.0)),
     ];
     agrees("glass", &scene(objects, vec![sun(), lamp(DVec3::new(-2.0, 4.0, 3.0))], usual()), None);
@@ -472,7 +472,7 @@ fn a_sky_lights_what_nothing_shades_as_ray_tracing_finds_it() {
         ("even in a mirror", None, mirror, 2e-3),
         ("with a map", Some(map), diffuse(0.8).into(), 0.015),
     ] {
-        let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, material);
+        let ball = object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, material);
         let mut scene = scene(vec![ball], vec![sky(map)], camera(DVec3::new(2.0, 1.0, 4.0), DVec3::ZERO));
         scene.ambient = Bands::ZERO;
         let [mean, ..] = compared(&scene, None);

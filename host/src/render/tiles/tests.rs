@@ -20,7 +20,7 @@ fn matt(red: f64, green: f64, blue: f64) -> Material {
 }
 
 fn solid(primitive: Primitive, at: DVec3, material: Material) -> Object {
-    let (shape, transform) = (Shape::Solid(primitive), DMat4::from_translation(at));
+    let (shape, transform) = (Shape::from(primitive), DMat4::from_translation(at));
     Object { name: "solid".into(), shape, transform, material: Some(material), tolerance: Some(0.05) }
 }
 

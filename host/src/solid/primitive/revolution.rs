@@ -9,6 +9,7 @@ use crate::solid::{Body, Face};
 use crate::surface::{Profile, Surface, Turned};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// Most points of a profile.
 const MAX_POINTS: usize = 1 << 14;
@@ -138,12 +139,12 @@ pub fn turned_polygon<C: AsRef<[DVec2]>>(contours: &[C], turn: f64) -> Result<Bo
         return Err(PrimitiveError::ThroughAxis { index, at: corners[index] });
     }
     let base = triangulate(contours, Shape::Delaunay)?;
-    let mut curved: Vec<Box<dyn Surface>> = Vec::new();
+    let mut curved: Vec<Arc<dyn Surface>> = Vec::new();
     for edge in base.border() {
         let [from, to] = edge.map(|corner| corners[corner as usize]);
         let side = Profile::line(from, to);
         if !side.is_on_axis() {
-            curved.push(Box::new(Turned::part(side, [0.0, turn])));
+            curved.push(Arc::new(Turned::part(side, [0.0, turn])));
         }
     }
     let mut faces = Vec::new();

@@ -5,13 +5,14 @@ use super::error::{above, length, length_or_zero};
 use crate::solid::Body;
 use crate::surface::{Profile, Sphere, Surface, Turned};
 use glam::{DAffine3, DVec2, DVec3};
+use std::sync::Arc;
 
 /// The solid that pieces of a closed profile make when they turn about the y axis. Pieces on the axis make nothing.
 ///
 /// Each piece begins where the one before it ends, to the bit; the inside is on the left.
 pub(super) fn turned(pieces: impl IntoIterator<Item = Profile>) -> Body {
     let pieces = pieces.into_iter().filter(|piece| !piece.is_on_axis());
-    Body::new(pieces.map(|piece| Box::new(Turned::whole(piece)) as Box<dyn Surface>).collect(), Vec::new())
+    Body::new(pieces.map(|piece| Arc::new(Turned::whole(piece)) as Arc<dyn Surface>).collect(), Vec::new())
 }
 
 /// A curve between two flat discs; where it meets the axis there is none.
@@ -23,7 +24,7 @@ fn capped(side: Profile) -> Body {
 
 /// A sphere.
 pub fn sphere(radius: f64) -> Result<Body, PrimitiveError> {
-    Ok(Body::new(vec![Box::new(Sphere::new(DVec3::ZERO, length("radius", radius)?))], Vec::new()))
+    Ok(Body::new(vec![Arc::new(Sphere::new(DVec3::ZERO, length("radius", radius)?))], Vec::new()))
 }
 
 /// An ellipsoid with its axes along x, y and z.

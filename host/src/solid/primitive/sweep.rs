@@ -58,11 +58,11 @@ pub fn sweep<C: AsRef<[DVec2]>>(
     count("surfaces", border.len() * (breaks.len() - 1), 1, MAX_SURFACES)?;
     let spine = Arc::new(Spine::new(curve).ok_or(PrimitiveError::NoDirection)?);
     check_bend(&spine, &corners, widening, &breaks)?;
-    let mut curved: Vec<Box<dyn Surface>> = Vec::new();
+    let mut curved: Vec<Arc<dyn Surface>> = Vec::new();
     for edge in border {
         let edge = edge.map(|corner| corners[corner as usize]);
         for part in breaks.windows(2) {
-            curved.push(Box::new(Swept::new(Arc::clone(&spine), widening, edge, [part[0], part[1]])));
+            curved.push(Arc::new(Swept::new(Arc::clone(&spine), widening, edge, [part[0], part[1]])));
         }
     }
     let mut faces = Vec::new();

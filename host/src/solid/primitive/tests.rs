@@ -5,6 +5,8 @@ use crate::curve::Curve;
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::solid::{Body, Expression, Measures, Solid};
+use std::sync::Arc;
+
 use crate::surface::{Surface, Tolerance, Widening, rational_sphere, teapot};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -138,7 +140,7 @@ fn meshes_are_closed_and_converge_to_the_exact_measures_with_the_square_of_the_w
 }
 
 /// Whether points, normals and parameters at the corners are those of the surfaces.
-fn check_corners(name: &str, mesh: &Mesh, surfaces: &[Box<dyn Surface>], size: f64) {
+fn check_corners(name: &str, mesh: &Mesh, surfaces: &[Arc<dyn Surface>], size: f64) {
     for triangle in 0..mesh.triangles.len() {
         let surface = &surfaces[mesh.surfaces[triangle] as usize];
         for corner in 0..3 {
@@ -156,7 +158,7 @@ fn check_corners(name: &str, mesh: &Mesh, surfaces: &[Box<dyn Surface>], size: f
 fn corners_have_the_points_and_normals_of_their_surfaces() {
     for page in pages() {
         let mesh = page.body.tessellate(Tolerance::new(0.01, 30.0)).unwrap();
-        check_corners(page.name, &mesh, &page.body.into_surfaces(), 4.0);
+        check_corners(page.name, &mesh, &page.body.surfaces(), 4.0);
     }
 }
 

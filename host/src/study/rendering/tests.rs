@@ -40,7 +40,7 @@ fn scene(objects: Vec<Object>, lights: Vec<Light>, camera: Camera) -> Scene {
 /// A white ball under parallel light.
 fn ball() -> Scene {
     let light = Light::Directional { direction: DVec3::new(-1.0, -1.0, -1.5), irradiance: Color::grey(3.0) };
-    let ball = object(Shape::Solid(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(1.0));
+    let ball = object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, diffuse(1.0));
     scene(vec![ball], vec![light], camera(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, 30.0))
 }
 
@@ -66,13 +66,13 @@ fn all_knobs() -> Scene {
     let objects = vec![
         object(Shape::Ground { size: 8.0 }, DMat4::IDENTITY, Classic { diffuse: tiles, ..Classic::default() }),
         object(
-            Shape::Solid(Primitive::Box { size: DVec3::new(0.1, 2.0, 4.0) }),
+            Shape::from(Primitive::Box { size: DVec3::new(0.1, 2.0, 4.0) }),
             wall,
             Classic { diffuse: red, ..Classic::default() },
         ),
-        object(Shape::Solid(Primitive::Sphere { radius: 0.6 }), DMat4::from_translation(DVec3::Y * 0.6), mirror(0.8)),
+        object(Shape::from(Primitive::Sphere { radius: 0.6 }), DMat4::from_translation(DVec3::Y * 0.6), mirror(0.8)),
         object(
-            Shape::Solid(Primitive::Sphere { radius: 0.4 }),
+            Shape::from(Primitive::Sphere { radius: 0.4 }),
             DMat4::from_translation(DVec3::new(1.0, 0.4, 0.3)),
             diffuse(0.7),
         ),
@@ -180,7 +180,7 @@ fn a_coarse_tessellation_bends_the_curve_of_the_samples_and_is_named() {
 fn knobs_of_radiosity_are_idle_without_it_and_change_the_picture_with_it() {
     let light = Light::Point { at: DVec3::new(0.5, 1.5, 0.5), intensity: Color::grey(1.0) };
     let eye = camera(DVec3::new(0.0, 2.0, 3.0), DVec3::ZERO, DVec3::Y, 30.0);
-    let cube = Shape::Solid(Primitive::Box { size: DVec3::splat(0.6) });
+    let cube = Shape::from(Primitive::Box { size: DVec3::splat(0.6) });
     let turned = DMat4::from_rotation_y(0.4) * DMat4::from_translation(DVec3::new(0.0, 0.3, 0.0));
     let things =
         [(Shape::Ground { size: 3.0 }, DMat4::IDENTITY), (cube, turned)].map(|(s, m)| object(s, m, diffuse(0.7)));
@@ -243,7 +243,7 @@ fn denoising_lowers_the_error_of_a_picture_with_noise() {
     let ball = DMat4::from_translation(DVec3::Y * 0.7);
     let objects = vec![
         object(Shape::Ground { size: 8.0 }, DMat4::IDENTITY, diffuse(0.6)),
-        object(Shape::Solid(Primitive::Sphere { radius: 0.6 }), ball, diffuse(0.7)),
+        object(Shape::from(Primitive::Sphere { radius: 0.6 }), ball, diffuse(0.7)),
     ];
     let eye = camera(DVec3::new(0.8, 2.0, 4.0), DVec3::new(0.0, 0.5, 0.0), DVec3::Y, 40.0);
     let mut noisy = scene(objects, vec![Light::Area { patch, radiance: Color::grey(4.0) }], eye);

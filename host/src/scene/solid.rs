@@ -1,0 +1,69 @@
+//! A solid of a few measures in a scene, with its exact body.
+
+use crate::solid::{Body, Primitive, PrimitiveError};
+use serde::{Deserialize, Serialize};
+use std::sync::{Arc, OnceLock};
+
+/// A primitive with its body between exact surfaces, which is made when it is first asked for. Copies share it.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(from = "Primitive", into = "Primitive")]
+pub struct Solid {
+    primitive: Primitive,
+    body: Arc<OnceLock<Body>>,
+}
+
+impl Solid {
+    /// Its measures.
+    pub fn primitive(&self) -> &Primitive {
+        &self.primitive
+    }
+
+    /// Its body.
+    ///
+    /// # Errors
+    /// [`PrimitiveError`] if there is no solid of these measures.
+    pub fn body(&self) -> Result<&Body, PrimitiveError> {
+        if let Some(body) = self.body.get() {
+            return Ok(body);
+        }
+        let body = self.primitive.body()?;
+        Ok(self.body.get_or_init(|| body))
+    }
+}
+
+impl From<Primitive> for Solid {
+    fn from(primitive: Primitive) -> Solid {
+        Solid { primitive, body: Arc::default() }
+    }
+}
+
+impl From<Solid> for Primitive {
+    fn from(solid: Solid) -> Primitive {
+        solid.primitive
+    }
+}
+
+impl PartialEq for Solid {
+    fn eq(&self, other: &Solid) -> bool {
+        self.primitive == other.primitive
+    }
+}
+
+impl std::fmt::Debug for Solid {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.primitive.fmt(formatter)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn copies_of_a_solid_share_one_body_and_a_solid_that_is_none_says_so() {
+        let one = Solid::from(Primitive::Sphere { radius: 2.0 });
+        let other = one.clone();
+        assert!(std::ptr::eq(one.body().expect("a sphere"), other.body().expect("a sphere")));
+        assert!(Solid::from(Primitive::Sphere { radius: -1.0 }).body().is_err());
+    }
+}
