@@ -48,7 +48,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("host/mesh", 12),
     ("host/octree", 7),
     ("host/picture/source", 4),
-    ("host/scene/composite", 9),
     ("host/script", 3),
     ("host/script/argument", 4),
     ("host/solid", 17),

@@ -1,8 +1,9 @@
 //! Solids made of other objects.
 
-use super::prepared::largest_stretch;
-use super::shape::Made;
-use super::{Object, Shape, ShapeError};
+use super::ShapeError;
+use super::made::Made;
+use super::object::{Composite, Object, Operation, Shape};
+use super::stretch::largest_stretch;
 use crate::illumination::Material;
 use crate::mesh::normal_matrix;
 use crate::numeric::bounds::Bounds;
@@ -11,50 +12,9 @@ use crate::solid::{ExactSolid, Expression, PrimitiveError, SolidError};
 use crate::surface::Tolerance;
 use glam::{DAffine3, DMat4, DVec3};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
-/// Deepest nesting of composites.
-pub const MAX_NESTING: u32 = 100;
 
 /// Operands that a message names.
 const NAMED: usize = 4;
-
-/// A set operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Operation {
-    /// What is in any of them.
-    Union,
-    /// What is in all of them.
-    Intersection,
-    /// What is in the first and in none of the others.
-    Difference,
-    /// What is in an odd number of them.
-    SymmetricDifference,
-}
-
-impl Operation {
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Operation::Union => "union",
-            Operation::Intersection => "intersection",
-            Operation::Difference => "difference",
-            Operation::SymmetricDifference => "symmetric_difference",
-        }
-    }
-}
-
-/// Objects and what becomes of them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Composite {
-    /// How they are combined.
-    pub operation: Operation,
-    /// The objects; each must bound a solid. A face keeps the material of its operand; see [`Object::material`].
-    pub operands: Vec<Object>,
-    /// How deep composites are nested in it: 1 if no operand is one.
-    pub nesting: u32,
-}
 
 /// An operand that is no composite itself.
 struct Leaf<'a> {

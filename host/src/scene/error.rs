@@ -1,6 +1,12 @@
 //! What can be wrong with a scene.
 
-use super::ShapeError;
+use super::sculpture::SculptureError;
+use crate::database::DatabaseError;
+use crate::mesh::{MeshError, NoBunny};
+use crate::solid::{PrimitiveError, RoundingError, SolidError};
+use crate::subdivision::SubdivisionError;
+use crate::surface::TessellationError;
+use std::path::PathBuf;
 
 /// What is wrong with a scene, and with which part of it.
 #[derive(Debug, thiserror::Error)]
@@ -50,5 +56,55 @@ pub enum SceneError {
         place: String,
         /// What is wrong.
         source: Box<SceneError>,
+    },
+}
+
+/// Why a shape has no triangles.
+#[derive(Debug, thiserror::Error)]
+pub enum ShapeError {
+    /// The mesh cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The Stanford bunny was left out of the program.
+    #[error(transparent)]
+    NoBunny(#[from] NoBunny),
+    /// The octree cannot be read.
+    #[error("{}: {problem}", path.display())]
+    Octree {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, in words.
+        problem: String,
+    },
+    /// The geometry cannot be had from its database.
+    #[error(transparent)]
+    Database(#[from] DatabaseError),
+    /// The surface cannot be approximated to the tolerance.
+    #[error(transparent)]
+    Tessellation(#[from] TessellationError),
+    /// The sculptured surface cannot be made.
+    #[error(transparent)]
+    Sculpture(#[from] SculptureError),
+    /// The polyhedron cannot be divided.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
+    /// There is no such solid.
+    #[error(transparent)]
+    Primitive(#[from] PrimitiveError),
+    /// The surface encloses nothing.
+    #[error("{object} bounds no solid: {source}")]
+    Solid {
+        /// Name of the object.
+        object: String,
+        /// What is wrong with the solid.
+        source: SolidError,
+    },
+    /// Its edges cannot be rounded.
+    #[error("{object} cannot be rounded: {source}")]
+    Rounding {
+        /// Name of the object.
+        object: String,
+        /// What keeps the edges from being rounded.
+        source: RoundingError,
     },
 }

@@ -1,8 +1,9 @@
 //! Curves in which objects meet.
 
-use super::prepared::largest_stretch;
-use super::shape::Made;
-use super::{Object, Scene, SceneError, ShapeError};
+use super::made::Made;
+use super::object::Object;
+use super::stretch::largest_stretch;
+use super::{Scene, SceneError, ShapeError};
 use crate::intersection::{Intersection, Precision, Sheet, intersect};
 use crate::numeric::bounds::Bounds;
 use crate::solid::moved;

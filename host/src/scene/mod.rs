@@ -2,35 +2,43 @@
 //!
 //! Modelling space is right-handed: x right, y up, z towards the viewer. Lengths are in scene units.
 
-mod acceleration;
-mod cage;
-mod composite;
-mod decomposition;
-mod default_light;
-mod error;
-mod exact;
-mod meeting;
-mod motion;
-mod places;
-mod placing;
-mod prepared;
-mod sculpture;
 mod settings;
-mod shape;
-mod shared;
-mod soft_box;
-mod solid;
-mod studio;
-mod triangles;
+mod motion;
+mod decomposition;
 mod view;
+mod cage;
+mod sculpture;
+mod solid;
+mod error;
+mod object;
+mod places;
+mod stretch;
+mod made;
+mod tolerance;
+mod composite;
+mod meeting;
+mod shape;
+mod parameters;
+mod exact;
+mod acceleration;
+mod shared;
+mod prepared;
+mod placing;
+mod piercing;
+mod octrees;
+mod triangles;
+mod soft_box;
+mod default_light;
+mod studio;
 
 pub use acceleration::{Acceleration, Kept, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
-pub use composite::{Composite, MAX_NESTING, Operation};
-pub use error::SceneError;
-pub use exact::OnSurface;
+pub use error::{SceneError, ShapeError};
+pub use made::Made;
 pub use meeting::{Meeting, meetings};
 pub use motion::{Motion, Moved};
+pub use object::{Composite, MAX_NESTING, Object, Operation, Rounded, Shape};
+pub use piercing::OnSurface;
 pub use places::{Places, Position};
 pub use placing::{Sides, footprint};
 pub use prepared::{Contents, Prepared, PreparedObject};
@@ -39,7 +47,6 @@ pub use settings::{
     Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,
     PhotonSettings, RadiositySettings, Settings,
 };
-pub use shape::{Made, Rounded, Shape, ShapeError};
 pub use solid::Solid;
 pub use studio::Studio;
 pub use view::{Camera, Lens, Parallel, Projection, View};
@@ -47,11 +54,9 @@ pub use view::{Camera, Lens, Parallel, Projection, View};
 pub use crate::illumination::optics::Interreflection;
 
 use crate::illumination::light::Patch;
-use crate::illumination::{Bands, Light, Material};
+use crate::illumination::{Bands, Light};
 use crate::picture::display::DisplayTransform;
-use glam::DMat4;
 use serde::{Deserialize, Serialize};
-use settings::check_tolerance;
 
 /// Most objects in a scene.
 pub const MAX_OBJECTS: usize = 100_000;
@@ -89,22 +94,6 @@ pub struct Scene {
     /// Where its objects stand in its script.
     #[serde(skip)]
     pub places: Places,
-}
-
-/// One object: a shape, placed, of a material.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Object {
-    /// What messages and tables call it.
-    pub name: String,
-    /// Its form in its own coordinates.
-    pub shape: Shape,
-    /// Own coordinates to scene coordinates (column vectors: `p' = M p`); affine, not singular.
-    pub transform: DMat4,
-    /// How its surface reflects. Without one, an operand of a composite has that of the whole that it is part of, a
-    /// composite that of its first operand, and others have the default.
-    pub material: Option<Material>,
-    /// Largest distance between surface and triangles in scene units; without one, that of the [`Settings`].
-    pub tolerance: Option<f64>,
 }
 
 impl Scene {
@@ -180,75 +169,6 @@ impl Scene {
             largest = largest.max(object.chord_error(self.settings.geometry.tolerance, self.settings.geometry.angle)?);
         }
         Ok(largest)
-    }
-}
-
-impl Object {
-    /// The materials of its surface, each once, and which of them its triangles have; nothing if that is the same for all.
-    ///
-    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`Made`] tells.
-    pub fn materials(&self, operand_of: &[u32]) -> (Vec<Material>, Vec<u32>) {
-        let Some((composite, whole)) = self.composite() else {
-            return (vec![self.own_material().unwrap_or_default()], Vec::new());
-        };
-        let mut materials: Vec<Material> = Vec::new();
-        let mut number = |material: Material| {
-            materials.iter().position(|known| *known == material).unwrap_or_else(|| {
-                materials.push(material);
-                materials.len() - 1
-            }) as u32
-        };
-        let of_operand: Vec<u32> = composite.materials(whole).into_iter().map(&mut number).collect();
-        if materials.len() < 2 {
-            return (vec![materials.pop().unwrap_or_default()], Vec::new());
-        }
-        (materials, operand_of.iter().map(|operand| of_operand[*operand as usize]).collect())
-    }
-
-    /// The composite whose operands its triangles come from, and the material of the whole.
-    fn composite(&self) -> Option<(&Composite, Option<Material>)> {
-        match &self.shape {
-            Shape::Composite(composite) => Some((composite, self.material.clone())),
-            Shape::Rounded(rounded) => {
-                let (composite, inner) = rounded.object.composite()?;
-                Some((composite, self.material.clone().or(inner)))
-            }
-            _ => None,
-        }
-    }
-
-    fn own_material(&self) -> Option<Material> {
-        match &self.shape {
-            Shape::Composite(composite) => self.material.clone().or_else(|| composite.first_material()),
-            Shape::Rounded(rounded) => self.material.clone().or_else(|| rounded.object.own_material()),
-            _ => self.material.clone(),
-        }
-    }
-
-    /// Checks every number of it.
-    ///
-    /// - `is_shape_known`: whether its shape was checked before.
-    fn check(&self, is_shape_known: bool) -> Result<(), SceneError> {
-        let failed = |problem: String| SceneError::Object { object: self.name.clone(), problem };
-        if !is_shape_known {
-            self.shape.check().map_err(failed)?;
-        }
-        if !self.transform.is_finite() {
-            return Err(failed("its transformation is not finite".into()));
-        }
-        if self.transform.row(3) != glam::DVec4::W {
-            return Err(failed("its transformation is not affine".into()));
-        }
-        let determinant = self.transform.determinant();
-        if determinant == 0.0 || !determinant.is_finite() {
-            return Err(failed("its transformation is singular: it flattens the object".into()));
-        }
-        if let Some(tolerance) = self.tolerance {
-            check_tolerance(tolerance).map_err(failed)?;
-        }
-        self.material
-            .as_ref()
-            .map_or(Ok(()), |material| material.check().map_err(|problem| failed(problem.to_string())))
     }
 }
 

@@ -1,17 +1,18 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
 use super::acceleration::Built;
-use super::exact::Exact;
-use super::placing;
-use super::shape::GROUND;
+use super::exact::{Exact, FLAT_SINE};
+use super::made::Made;
+use super::object::{GROUND, Object};
+use super::parameters::parameters;
 use super::shared::Shared;
-use super::{Camera, GeometrySettings, Made, Motion, Object, Scene, SceneError, Settings, Shape, ShapeError, View};
+use super::stretch::{cofactors, largest_stretch};
+use super::{Camera, GeometrySettings, Motion, Scene, SceneError, Settings, View};
 use crate::illumination::light::Patch;
 use crate::illumination::{Bands, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
-use crate::surface::Tolerance;
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 use rustc_hash::FxHashMap;
 use std::ops::Deref;
@@ -19,11 +20,6 @@ use std::sync::Arc;
 
 /// Most triangles in a scene.
 pub const MAX_TRIANGLES: u64 = 1 << 30;
-/// Tolerance of an object for which none is given, as a fraction of the diagonal of its bounds.
-const RELATIVE_TOLERANCE: f64 = 1.0 / 2000.0;
-/// Normals of a file or surface that are this close to the plane's count as flat (sine of the angle).
-pub(super) const FLAT_SINE: f64 = 1e-6;
-
 /// A scene ready for a renderer, and how it is to be rendered. Copies share all but the settings.
 #[derive(Clone, Debug)]
 pub struct Prepared {
@@ -211,7 +207,7 @@ impl Contents {
         let needs_parameters = surfaces_from.is_some() || object.needs_parameters(operand_of);
         let parameters_from = needs_parameters.then_some(self.parameters.len() as u32);
         if parameters_from.is_some() {
-            self.parameters.extend(placing::parameters(mesh, surfaces, mirrored));
+            self.parameters.extend(parameters(mesh, surfaces, mirrored));
         }
         let (materials, materials_from) = self.add_materials(object, operand_of);
         if motion.is_some() && materials.iter().any(|material| !material.emission.is_black()) {
@@ -315,90 +311,5 @@ impl Contents {
             + size_of_val(&self.parameters[..])
             + size_of_val(&self.material_of[..])
             + self.exact.bytes()
-    }
-}
-
-/// The matrix of cofactors with the sign of its determinant, |det(M)| M^-T: carries outward normals to outward normals,
-/// and needs no division.
-fn cofactors(m: &DMat3) -> DMat3 {
-    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
-    let matrix = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    if m.determinant() < 0.0 { matrix * -1.0 } else { matrix }
-}
-
-/// An upper bound of how much a transformation lengthens: the root of the sum of its squared columns, but never more
-/// than the longest column when they are orthogonal.
-pub(super) fn largest_stretch(m: &DMat4) -> f64 {
-    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.truncate());
-    let longest = x.length().max(y.length()).max(z.length());
-    let skew = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());
-    if skew <= 1e-12 * longest * longest {
-        longest
-    } else {
-        (x.length_squared() + y.length_squared() + z.length_squared()).sqrt()
-    }
-}
-
-impl Object {
-    /// Length of the diagonal of a curved shape of known size, as it is placed.
-    pub(super) fn extent(&self) -> Option<f64> {
-        Some(self.shape.extent()? * largest_stretch(&self.transform))
-    }
-
-    /// The triangles in own coordinates.
-    pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Made, SceneError> {
-        let tolerance = self.own_tolerance(scene_tolerance, angle);
-        self.shape.made(tolerance).map_err(|source| self.failed(source))
-    }
-
-    /// The tolerance in own coordinates; none for flat shapes.
-    fn own_chord(&self, scene_tolerance: Option<f64>) -> Option<f64> {
-        Some(self.chord_of(self.shape.extent()?, scene_tolerance))
-    }
-
-    /// The tolerance in own coordinates of a curved shape.
-    ///
-    /// - `extent`: that of the shape.
-    pub(super) fn chord_of(&self, extent: f64, scene_tolerance: Option<f64>) -> f64 {
-        let given = self.tolerance.or(scene_tolerance);
-        given.map_or(extent * RELATIVE_TOLERANCE, |given| given / largest_stretch(&self.transform))
-    }
-
-    /// In own coordinates; a flat shape fits any.
-    fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
-        Tolerance::new(self.own_chord(scene_tolerance).unwrap_or(f64::MAX), angle)
-    }
-
-    /// Largest distance between the exact surface and the triangles as they are written, scene units; an upper bound for skewed
-    /// objects. Of a composite, its own triangles are measured, and the operands whose surfaces are limits.
-    pub(super) fn chord_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
-        let stretch = largest_stretch(&self.transform);
-        let limits = match self.shape {
-            Shape::Composite(_) => self.limit_error(scene_tolerance, angle)?,
-            _ => 0.0,
-        };
-        let tolerance = self.own_tolerance(scene_tolerance, angle);
-        let error = self.shape.chord_error(tolerance).map_err(|source| self.failed(source))?;
-        Ok((error * stretch).max(limits))
-    }
-
-    /// Largest distance between limit surfaces, also those of operands, and the triangles that are made for them; scene units.
-    fn limit_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
-        match &self.shape {
-            Shape::Rounded(_) | Shape::Subdivision(_) => self.chord_error(scene_tolerance, angle),
-            Shape::Composite(composite) => {
-                let own = self.own_chord(scene_tolerance);
-                let mut largest = 0.0;
-                for operand in &composite.operands {
-                    largest = f64::max(largest, operand.limit_error(own, angle)?);
-                }
-                Ok(largest * largest_stretch(&self.transform))
-            }
-            _ => Ok(0.0),
-        }
-    }
-
-    pub(super) fn failed(&self, source: ShapeError) -> SceneError {
-        SceneError::Shape { object: self.name.clone(), source: Box::new(source) }
     }
 }

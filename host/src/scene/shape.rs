@@ -1,24 +1,21 @@
-//! Shapes in their own coordinates, and their triangles.
+//! Shapes in their own coordinates: whether their measures are sound, their sizes, and their triangles.
 
-use super::Object;
-use super::cage::Cage;
-use super::composite::{Composite, MAX_NESTING};
+use super::made::Made;
 use super::meeting::meet;
-use super::prepared::largest_stretch;
-use super::sculpture::{Sculpture, SculptureError};
-use super::solid::Solid;
-use crate::database::{Content, DatabaseError, Kind, Library};
+use super::object::{MAX_NESTING, Object, Rounded, Shape};
+use super::settings::check_tolerance;
+use super::stretch::largest_stretch;
+use super::{SceneError, ShapeError};
+use crate::database::{Content, Kind, Library};
 use crate::intersection::Precision;
 use crate::memory;
-use crate::mesh::{self, Mesh, MeshError, NoBunny, Polylines, edges::EdgeTable};
+use crate::mesh::{self, Mesh, NoBunny, edges::EdgeTable};
 use crate::octree::{self, Octree};
-use crate::solid::{EdgeChoice, ExactSolid, Primitive, PrimitiveError, RoundingError, SolidError, retain};
-use crate::subdivision::SubdivisionError;
-use crate::surface::{self, Surface, TessellationError, Tolerance, chord_error, ground, tessellate};
+use crate::solid::{EdgeChoice, ExactSolid, PrimitiveError, RoundingError, retain};
+use crate::surface::{self, Surface, Tolerance, chord_error, ground, tessellate};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Steps along the sides of a triangle at which its distance to the exact surface is measured.
@@ -26,155 +23,7 @@ const MEASURED_STEPS: usize = 6;
 /// Diagonal of the box around the teapot: 6.525 long, 3.15 high, 4 wide.
 const TEAPOT_DIAGONAL: f64 = 8.28;
 
-/// Why a shape has no triangles.
-#[derive(Debug, thiserror::Error)]
-pub enum ShapeError {
-    /// The mesh cannot be read.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// The Stanford bunny was left out of the program.
-    #[error(transparent)]
-    NoBunny(#[from] NoBunny),
-    /// The octree cannot be read.
-    #[error("{}: {problem}", path.display())]
-    Octree {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, in words.
-        problem: String,
-    },
-    /// The geometry cannot be had from its database.
-    #[error(transparent)]
-    Database(#[from] DatabaseError),
-    /// The surface cannot be approximated to the tolerance.
-    #[error(transparent)]
-    Tessellation(#[from] TessellationError),
-    /// The sculptured surface cannot be made.
-    #[error(transparent)]
-    Sculpture(#[from] SculptureError),
-    /// The polyhedron cannot be divided.
-    #[error(transparent)]
-    Subdivision(#[from] SubdivisionError),
-    /// There is no such solid.
-    #[error(transparent)]
-    Primitive(#[from] PrimitiveError),
-    /// The surface encloses nothing.
-    #[error("{object} bounds no solid: {source}")]
-    Solid {
-        /// Name of the object.
-        object: String,
-        /// What is wrong with the solid.
-        source: SolidError,
-    },
-    /// Its edges cannot be rounded.
-    #[error("{object} cannot be rounded: {source}")]
-    Rounding {
-        /// Name of the object.
-        object: String,
-        /// What keeps the edges from being rounded.
-        source: RoundingError,
-    },
-}
-
-/// The word for [`Shape::Ground`].
-pub(super) const GROUND: &str = "ground";
-
-/// The form of an object in its own coordinates.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Shape {
-    /// The Utah teapot, standing on y = 0, its spout towards +x.
-    Teapot,
-    /// The Stanford bunny, about 2 high.
-    Bunny,
-    /// A solid of a few measures.
-    Solid(Solid),
-    /// All that is behind a plane; it must be combined with other solids.
-    HalfSpace {
-        /// Towards the empty side, any length above 0.
-        normal: DVec3,
-        /// A point of the plane.
-        at: DVec3,
-    },
-    /// A square in the plane y = 0 around the origin, seen from above.
-    Ground {
-        /// Its side.
-        size: f64,
-    },
-    /// A mesh from an OBJ, STL, PLY or glTF file.
-    Mesh {
-        /// The file.
-        path: PathBuf,
-    },
-    /// Geometry of a database.
-    Stored {
-        /// The file of the database; none if it ships with the program.
-        database: Option<PathBuf>,
-        /// Its name.
-        name: String,
-    },
-    /// Sculptured surfaces, open or closed.
-    Sculpture(Box<Sculpture>),
-    /// The smooth limit of a polyhedron.
-    Subdivision(Box<Cage>),
-    /// A solid made of other objects.
-    Composite(Box<Composite>),
-    /// The curves in which two objects meet; lines without triangles.
-    Curve(Box<[Object; 2]>),
-    /// A solid with rounded edges.
-    Rounded(Box<Rounded>),
-}
-
-/// A solid of flat faces, edges of which are rounded.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rounded {
-    /// The solid.
-    pub object: Object,
-    /// Points; for each the edge that is nearest to it is rounded. Without any, all edges are.
-    pub edges: Vec<DVec3>,
-    /// Radius of a ball that touches the faces where the rounding begins.
-    pub radius: f64,
-}
-
-/// Triangles of a shape, and what they belong to.
-#[derive(Clone, Default)]
-pub struct Made {
-    /// The triangles, in own coordinates.
-    pub mesh: Mesh,
-    /// The exact surfaces that the triangles name; none where only triangles are known.
-    pub surfaces: Vec<Option<Arc<dyn Surface>>>,
-    /// For each triangle of a composite its innermost operand, counted through in the order of the script; empty for
-    /// other shapes.
-    pub operand_of: Vec<u32>,
-    /// Lines, in own coordinates.
-    pub lines: Polylines,
-}
-
-impl From<Primitive> for Shape {
-    fn from(primitive: Primitive) -> Shape {
-        Shape::Solid(primitive.into())
-    }
-}
-
 impl Shape {
-    /// The word for the kind.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Shape::Teapot => "teapot",
-            Shape::Bunny => "bunny",
-            Shape::Solid(solid) => solid.primitive().word(),
-            Shape::HalfSpace { .. } => "half_space",
-            Shape::Ground { .. } => GROUND,
-            Shape::Mesh { .. } => "mesh",
-            Shape::Stored { .. } => "stored",
-            Shape::Sculpture(_) => "surface",
-            Shape::Subdivision(_) => "subdivision",
-            Shape::Composite(composite) => composite.operation.word(),
-            Shape::Curve(_) => "curve",
-            Shape::Rounded(rounded) => rounded.object.shape.word(),
-        }
-    }
-
     /// Checks the measures; the problem in words.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
@@ -323,6 +172,34 @@ fn distance_to_known(mut mesh: Mesh, surfaces: &[Option<Arc<dyn Surface>>]) -> R
     retain(&mut mesh, &is_known);
     mesh.surfaces = mesh.surfaces.iter().filter_map(number).collect();
     Ok(chord_error(&mesh, &known, MEASURED_STEPS)?.maximum)
+}
+
+impl Object {
+    /// Checks every number of it.
+    ///
+    /// - `is_shape_known`: whether its shape was checked before.
+    pub(super) fn check(&self, is_shape_known: bool) -> Result<(), SceneError> {
+        let failed = |problem: String| SceneError::Object { object: self.name.clone(), problem };
+        if !is_shape_known {
+            self.shape.check().map_err(failed)?;
+        }
+        if !self.transform.is_finite() {
+            return Err(failed("its transformation is not finite".into()));
+        }
+        if self.transform.row(3) != glam::DVec4::W {
+            return Err(failed("its transformation is not affine".into()));
+        }
+        let determinant = self.transform.determinant();
+        if determinant == 0.0 || !determinant.is_finite() {
+            return Err(failed("its transformation is singular: it flattens the object".into()));
+        }
+        if let Some(tolerance) = self.tolerance {
+            check_tolerance(tolerance).map_err(failed)?;
+        }
+        self.material
+            .as_ref()
+            .map_or(Ok(()), |material| material.check().map_err(|problem| failed(problem.to_string())))
+    }
 }
 
 impl Rounded {

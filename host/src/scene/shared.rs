@@ -1,6 +1,7 @@
 //! Shapes that several objects have: their triangles are made once.
 
-use super::{Made, Scene, SceneError};
+use super::made::Made;
+use super::{Scene, SceneError};
 use crate::memory;
 use crate::numeric::print_of;
 use rustc_hash::FxHashMap;

@@ -6,7 +6,7 @@ use crate::illumination::Paint;
 use crate::illumination::material::Classic;
 use crate::numeric::bounds::Bounds;
 use crate::solid::Primitive;
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 fn sphere(transform: DMat4) -> Scene {
     let shape = Shape::from(Primitive::Sphere { radius: 1.0 });

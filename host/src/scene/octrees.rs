@@ -1,0 +1,113 @@
+//! Octrees over the objects of a prepared scene, built when they are first asked for.
+
+use super::Motion;
+use super::acceleration::{Acceleration, Kept, SceneOctree};
+use super::prepared::Contents;
+use crate::octree::{Octree, OctreeError, Settings};
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+impl Contents {
+    /// The octrees over the objects that are kept. Those that were built last are given again for the same objects: a
+    /// change of any setting but those of geometry builds none.
+    ///
+    /// # Errors
+    /// [`OctreeError`], for more triangles than an octree takes.
+    pub fn acceleration(&self, kept: Kept) -> Result<Arc<Acceleration>, OctreeError> {
+        if let Some(acceleration) = self.built.get(&kept) {
+            return Ok(acceleration);
+        }
+        let start = Instant::now();
+        let still = self.still(&kept)?;
+        let moving = if kept.motions { self.moving(&kept)? } else { Vec::new() };
+        let acceleration = Arc::new(Acceleration { still, moving, build: start.elapsed() });
+        self.built.keep(kept, &acceleration);
+        Ok(acceleration)
+    }
+
+    /// How often octrees were built.
+    pub fn accelerations(&self) -> u32 {
+        self.built.times()
+    }
+
+    /// The octree over the objects that are kept and stand still; none if they have no triangles.
+    fn still(&self, kept: &Kept) -> Result<Option<SceneOctree>, OctreeError> {
+        let stands = |object: usize| kept.objects[object] && !(kept.motions && self.objects[object].motion.is_some());
+        let (triangles, triangle_of) = match (0..self.objects.len()).all(stands) {
+            true => (self.triangles.clone(), Vec::new()),
+            false => {
+                let stands = |triangle: &u32| stands(self.object_of[*triangle as usize] as usize);
+                let kept: Vec<u32> = (0..self.triangles.len() as u32).filter(stands).collect();
+                (Arc::new(kept.iter().map(|triangle| self.triangles[*triangle as usize]).collect()), kept)
+            }
+        };
+        if triangles.is_empty() {
+            return Ok(None);
+        }
+        let octree = Octree::sharing(self.vertices.clone(), triangles, &Settings::default())?;
+        Ok(Some(SceneOctree { octree, triangle_of }))
+    }
+
+    /// Octrees over the objects that are kept and move, one for each motion.
+    fn moving(&self, kept: &Kept) -> Result<Vec<(Motion, SceneOctree)>, OctreeError> {
+        let mut groups: Vec<(Motion, Vec<u32>)> = Vec::new();
+        for (object, is_kept) in self.objects.iter().zip(&kept.objects) {
+            let Some(motion) = object.motion.filter(|_| *is_kept && object.count > 0) else { continue };
+            let triangles = object.first..object.first + object.count;
+            match groups.iter_mut().find(|(other, _)| *other == motion) {
+                Some((_, of)) => of.extend(triangles),
+                None => groups.push((motion, triangles.collect())),
+            }
+        }
+        let made = |(motion, triangle_of): (Motion, Vec<u32>)| {
+            // Only the vertices that it has: there may be many motions.
+            let mut vertices = Vec::new();
+            let mut numbers = HashMap::new();
+            let mut number = |vertex: u32| {
+                *numbers.entry(vertex).or_insert_with(|| {
+                    vertices.push(self.vertices[vertex as usize]);
+                    vertices.len() as u32 - 1
+                })
+            };
+            let triangles: Vec<[u32; 3]> =
+                triangle_of.iter().map(|&t| self.triangles[t as usize].map(&mut number)).collect();
+            let octree = Octree::sharing(Arc::new(vertices), Arc::new(triangles), &Settings::default())?;
+            Ok((motion, SceneOctree { octree, triangle_of }))
+        };
+        groups.into_iter().map(made).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Object, Prepared, Scene, Shape};
+    use crate::solid::Primitive;
+    use glam::{DMat4, DVec3};
+
+    #[test]
+    fn octrees_are_built_once_for_the_same_objects_whatever_the_settings_become() {
+        let cube = |x: f64| Object {
+            name: "cube".into(),
+            shape: Shape::from(Primitive::Box { size: DVec3::ONE }),
+            transform: DMat4::from_translation(DVec3::X * x),
+            material: None,
+            tolerance: None,
+        };
+        let one = Prepared::new(&Scene { objects: vec![cube(0.0), cube(3.0)], ..Scene::default() }).expect("a scene");
+        let mut other = one.clone();
+        other.settings.image.samples = 64;
+        let kept = |objects: [bool; 2]| Kept { objects: objects.into(), motions: true };
+        let both = one.acceleration(kept([true, true])).expect("few triangles");
+        assert!(Arc::ptr_eq(&both, &other.acceleration(kept([true, true])).expect("few triangles")));
+        let triangles = |acceleration: &Acceleration| -> Vec<u32> {
+            acceleration.still.iter().flat_map(SceneOctree::triangles).collect()
+        };
+        assert_eq!((other.accelerations(), triangles(&both)), (1, (0..24).collect()));
+        let second = one.acceleration(kept([false, true])).expect("few triangles");
+        assert_eq!((other.accelerations(), triangles(&second)), (2, (12..24).collect()));
+        let none = one.acceleration(kept([false, false])).expect("no triangles");
+        assert!(none.still.is_none());
+    }
+}
