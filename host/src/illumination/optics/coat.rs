@@ -1,7 +1,9 @@
 //! A transparent coat on a diffuse ground: plastic, varnish, glaze.
 
-use super::Sighting;
+use super::diffuse::{cosine_density, cosine_sample};
+use super::lobe::{Flags, Lobe};
 use super::shade::Shade;
+use super::sighting::{Onward, Sighting};
 use crate::color::{Channels, Curve};
 use crate::illumination::distribution::{Distribution, Microfacet};
 use crate::illumination::fresnel::Dielectric;
@@ -50,12 +52,8 @@ impl Coat {
         coat
     }
 
-    pub(super) fn is_polished(&self) -> bool {
-        self.facets.is_none()
-    }
-
     /// Fresnel's term.
-    pub(super) fn reflected(&self, cosine: f64) -> f64 {
+    fn reflected(&self, cosine: f64) -> f64 {
         self.surface.reflectance(cosine).mean()
     }
 
@@ -70,23 +68,6 @@ impl Coat {
         self.through[step] * (1.0 - part) + self.through[step + 1] * part
     }
 
-    /// D K / (N·V), 1/sr.
-    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
-        let view = sighting.view;
-        let Some((facets, half)) = self.facets.as_ref().zip((light + view).try_normalize()) else {
-            return Channels::ZERO;
-        };
-        Channels::splat(self.reflected(half.dot(view)) * facets.density(light, view) / view.z)
-    }
-
-    pub(super) fn density(&self, view: DVec3, light: DVec3) -> f64 {
-        self.facets.as_ref().map_or(0.0, |facets| facets.sample_density(view, light))
-    }
-
-    pub(super) fn sample(&self, view: DVec3, point: [f64; 2]) -> Option<DVec3> {
-        self.facets.as_ref()?.sample(view, point)
-    }
-
     /// 2 ∫ T μ dμ, with points that gather where T falls to 0 at the horizon.
     fn mean_through(&self) -> f64 {
         let term = |part: usize| {
@@ -97,6 +78,54 @@ impl Coat {
             })
         };
         (0..STEPS).flat_map(term).sum()
+    }
+}
+
+impl Lobe for Coat {
+    fn flags(&self) -> Flags {
+        match &self.facets {
+            None => Flags::DELTA,
+            Some(facets) => Flags::of_density(facets.sample_density(DVec3::Z, DVec3::Z)),
+        }
+    }
+
+    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        let view = sighting.view;
+        if sighting.is_behind(light) {
+            return Channels::ZERO;
+        }
+        let Some((facets, half)) = self.facets.as_ref().zip((light + view).try_normalize()) else {
+            return Channels::ZERO;
+        };
+        Channels::splat(self.reflected(half.dot(view)) * facets.density(light, view) / view.z)
+    }
+
+    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+        match &self.facets {
+            Some(facets) if !sighting.is_behind(light) => facets.sample_density(sighting.view, light),
+            _ => 0.0,
+        }
+    }
+
+    fn sample(&self, sighting: &Sighting, _: f64, point: [f64; 2]) -> Option<Onward> {
+        match &self.facets {
+            Some(facets) => facets.sample(sighting.view, point).map(Onward::spread),
+            None => self.mirrored(sighting)[0],
+        }
+    }
+
+    fn strength(&self, sighting: &Sighting) -> f64 {
+        // Where Fresnel's term vanishes, so does what is reflected; a rough coat may still show tilted facets.
+        self.reflected(sighting.view.z).max(if self.facets.is_none() { 0.0 } else { 0.02 })
+    }
+
+    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+        let mirrored = || Onward::single(sighting.mirrored(), self.shown(sighting));
+        [self.facets.is_none().then(mirrored), None]
+    }
+
+    fn shown(&self, sighting: &Sighting) -> Channels {
+        Channels::splat(self.reflected(sighting.view.z))
     }
 }
 
@@ -145,28 +174,39 @@ impl Ground {
             Fraction::Painted(shade) => shade.of(sighting).map(|k| series(k, self.mean, self.back)),
         }
     }
+}
 
-    /// D K / (N·V), 1/sr.
-    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+impl Lobe for Ground {
+    fn flags(&self) -> Flags {
+        let is_black = match &self.fraction {
+            Fraction::Known(curve) => curve.max() <= 0.0,
+            Fraction::Painted(shade) => shade.is_black(),
+        };
+        Flags::BROAD | Flags::DIFFUSE | Flags::BLACK.when(is_black)
+    }
+
+    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        if sighting.is_behind(light) {
+            return Channels::ZERO;
+        }
         self.fraction(sighting) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
     }
 
-    /// Whether it reflects nothing, wherever.
-    pub(super) fn is_black(&self) -> bool {
-        match &self.fraction {
-            Fraction::Known(curve) => curve.max() <= 0.0,
-            Fraction::Painted(shade) => shade.is_black(),
-        }
+    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+        cosine_density(sighting, light)
     }
 
-    /// What it reflects of light from all around: π D T̄² of the D without its two T.
-    pub(super) fn mean(&self, sighting: &Sighting) -> Channels {
-        self.fraction(sighting) * (std::f64::consts::PI * self.mean * self.mean)
+    fn sample(&self, _: &Sighting, _: f64, point: [f64; 2]) -> Option<Onward> {
+        cosine_sample(point)
     }
 
-    /// About what it reflects.
-    pub(super) fn strength(&self, sighting: &Sighting) -> f64 {
+    fn strength(&self, sighting: &Sighting) -> f64 {
         self.fraction(sighting).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)
+    }
+
+    /// π D T̄² of the D without its two T.
+    fn diffuse(&self, sighting: &Sighting) -> Channels {
+        self.fraction(sighting) * (std::f64::consts::PI * self.mean * self.mean)
     }
 }
 

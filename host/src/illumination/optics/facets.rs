@@ -1,7 +1,8 @@
 //! A metal of facets: Fresnel's term for each, and for what they reflect to one another.
 
-use super::Sighting;
-use super::lobe::reflectance;
+use super::lobe::{Flags, Lobe};
+use super::polished::reflectance;
+use super::sighting::{Onward, Sighting};
 use crate::color::{Channels, LANES};
 use crate::illumination::distribution::{Compensated, Distribution};
 use crate::illumination::fresnel::Conductor;
@@ -22,7 +23,7 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    pub(super) fn as_distribution(&self) -> &dyn Distribution {
+    fn as_distribution(&self) -> &dyn Distribution {
         match self {
             Shape::Once(distribution) => distribution.as_ref(),
             Shape::All(compensated) => compensated.as_ref(),
@@ -39,7 +40,7 @@ impl Shape {
 /// Cook and Torrance 1982; Kulla and Conty 2017 for the further reflections, summed as a geometric series.
 #[derive(Clone, Debug)]
 pub(super) struct Metallic {
-    pub(super) shape: Shape,
+    shape: Shape,
     conductors: Arc<Vec<[Conductor; LANES]>>,
     /// K of further reflections, for each comb.
     further: Vec<Channels>,
@@ -61,14 +62,18 @@ impl Metallic {
         };
         Metallic { shape, conductors, further }
     }
+}
 
-    /// Fresnel's term of a facet that faces halfway.
-    pub(super) fn reflected(&self, cosine: f64, comb: usize) -> Channels {
-        reflectance(&self.conductors[comb.min(self.conductors.len() - 1)], cosine)
+impl Lobe for Metallic {
+    fn flags(&self) -> Flags {
+        Flags::of_density(self.shape.as_distribution().sample_density(DVec3::Z, DVec3::Z))
     }
 
     /// D K / (N·V), 1/sr, for light above the horizon.
-    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        if sighting.is_behind(light) {
+            return Channels::ZERO;
+        }
         let Sighting { view, comb, .. } = *sighting;
         let comb = comb.min(self.conductors.len() - 1);
         let Some(half) = (light + view).try_normalize() else { return Channels::ZERO };
@@ -80,6 +85,26 @@ impl Metallic {
                 first * (once / view.z) + self.further[comb] * (further / view.z)
             }
         }
+    }
+
+    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+        match sighting.is_behind(light) {
+            true => 0.0,
+            false => self.shape.as_distribution().sample_density(sighting.view, light),
+        }
+    }
+
+    fn sample(&self, sighting: &Sighting, _: f64, point: [f64; 2]) -> Option<Onward> {
+        self.shape.as_distribution().sample(sighting.view, point).map(Onward::spread)
+    }
+
+    fn strength(&self, _: &Sighting) -> f64 {
+        1.0
+    }
+
+    /// Fresnel's term of a facet that faces halfway.
+    fn shown(&self, sighting: &Sighting) -> Channels {
+        reflectance(&self.conductors[sighting.comb.min(self.conductors.len() - 1)], sighting.view.z)
     }
 }
 

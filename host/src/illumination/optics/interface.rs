@@ -3,7 +3,8 @@
 //! Indices may differ from lane to lane. A direction that one lane is refracted to is then not that of the others: where
 //! it is drawn, it is drawn for the lane of the [`Sighting`], and a renderer keeps that lane alone.
 
-use super::{Onward, Sighting};
+use super::lobe::{Flags, Lobe};
+use super::sighting::{Onward, Sighting};
 use crate::color::{Channels, LANES};
 use crate::illumination::distribution::Facets;
 use crate::illumination::fresnel::Dielectric;
@@ -60,9 +61,38 @@ fn thinned(sighting: &Sighting) -> Channels {
     by_lane(sighting, |lane| (side.before.0[lane] / side.behind.0[lane]).powi(2))
 }
 
-impl Smooth {
+impl Lobe for Smooth {
+    fn flags(&self) -> Flags {
+        Flags::DELTA | Flags::CLEAR
+    }
+
+    fn value(&self, _: &Sighting, _: DVec3) -> Channels {
+        Channels::ZERO
+    }
+
+    fn density(&self, _: &Sighting, _: DVec3) -> f64 {
+        0.0
+    }
+
+    /// One of the two, by its part.
+    fn sample(&self, sighting: &Sighting, choice: f64, _: [f64; 2]) -> Option<Onward> {
+        let [reflection, refraction] = self.mirrored(sighting);
+        let (Some(reflection), Some(refraction)) = (reflection, refraction) else { return reflection.or(refraction) };
+        let least = reflection.weight.0.into_iter().fold(1.0, f64::min);
+        let chance = chance_of(reflection.weight.max(), 1.0 - least);
+        Some(if choice < chance {
+            Onward { weight: reflection.weight * chance.recip(), ..reflection }
+        } else {
+            Onward { weight: refraction.weight * (1.0 - chance).recip(), ..refraction }
+        })
+    }
+
+    fn strength(&self, _: &Sighting) -> f64 {
+        1.0
+    }
+
     /// What is reflected and what comes through.
-    pub(super) fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
         let view = sighting.view;
         let fraction = reflected(sighting, view.z);
         let reflection = Onward::single(DVec3::new(-view.x, -view.y, view.z), fraction);
@@ -75,17 +105,12 @@ impl Smooth {
         [Some(reflection).filter(|onward| onward.weight.max() > 0.0), refraction.filter(|o| o.weight.max() > 0.0)]
     }
 
-    /// One of the two, by its part.
-    pub(super) fn sample(&self, sighting: &Sighting, choice: f64) -> Option<Onward> {
-        let [reflection, refraction] = self.mirrored(sighting);
-        let (Some(reflection), Some(refraction)) = (reflection, refraction) else { return reflection.or(refraction) };
-        let least = reflection.weight.0.into_iter().fold(1.0, f64::min);
-        let chance = chance_of(reflection.weight.max(), 1.0 - least);
-        Some(if choice < chance {
-            Onward { weight: reflection.weight * chance.recip(), ..reflection }
-        } else {
-            Onward { weight: refraction.weight * (1.0 - chance).recip(), ..refraction }
-        })
+    fn shown(&self, sighting: &Sighting) -> Channels {
+        reflected(sighting, sighting.view.z)
+    }
+
+    fn cleared(&self, sighting: &Sighting) -> Channels {
+        Channels::ONE - reflected(sighting, sighting.view.z)
     }
 }
 
@@ -94,21 +119,6 @@ impl Rough {
     fn chance(&self, sighting: &Sighting, cosine: f64) -> f64 {
         let fraction = interface(sighting, sighting.lane).map_or(1.0, |surface| surface.reflectance(cosine).mean());
         chance_of(fraction, 1.0 - fraction)
-    }
-
-    /// Draws a facet as the viewer sees it, and reflects or refracts there.
-    pub(super) fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<DVec3> {
-        let view = sighting.view;
-        let facet = self.facets.visible(view, self.roughness, point)?;
-        let cosine = facet.dot(view);
-        if cosine <= 0.0 {
-            return None;
-        }
-        if choice < self.chance(sighting, cosine) {
-            (facet * (2.0 * cosine) - view).try_normalize().filter(|light| light.z > 0.0)
-        } else {
-            interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
-        }
     }
 
     /// The facet that would send light to the viewer, through or not, on the side of the viewer.
@@ -137,9 +147,15 @@ impl Rough {
         let sum = to_light + ratio * to_view;
         to_light.abs() / (sum * sum)
     }
+}
 
-    /// The density of samples, 1/sr.
-    pub(super) fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+impl Lobe for Rough {
+    fn flags(&self) -> Flags {
+        // Of facets that all are seen, a quarter of the density of their normals.
+        Flags::of_density(0.25 * self.facets.area(DVec3::Z, self.roughness))
+    }
+
+    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
@@ -157,7 +173,7 @@ impl Rough {
     ///
     /// # Source
     /// Walter et al. 2007, equations 20 and 21; heights of light and viewer correlated.
-    pub(super) fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return Channels::ZERO;
@@ -188,6 +204,30 @@ impl Rough {
             if value.is_finite() { value } else { 0.0 }
         };
         by_lane(sighting, of_lane)
+    }
+
+    /// Draws a facet as the viewer sees it, and reflects or refracts there.
+    fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward> {
+        let view = sighting.view;
+        let facet = self.facets.visible(view, self.roughness, point)?;
+        let cosine = facet.dot(view);
+        if cosine <= 0.0 {
+            return None;
+        }
+        let light = if choice < self.chance(sighting, cosine) {
+            (facet * (2.0 * cosine) - view).try_normalize().filter(|light| light.z > 0.0)
+        } else {
+            interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
+        };
+        light.map(Onward::spread)
+    }
+
+    fn strength(&self, _: &Sighting) -> f64 {
+        1.0
+    }
+
+    fn shown(&self, sighting: &Sighting) -> Channels {
+        reflected(sighting, sighting.view.z)
     }
 }
 

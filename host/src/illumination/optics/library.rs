@@ -1,13 +1,18 @@
 //! Makes materials ready, and keeps what several of them share.
 
+use super::bsdf::{Interior, Interreflection, Optics, Passing};
 use super::coat::{Coat, Ground};
+use super::diffuse::Diffuse;
 use super::facets::{Metallic, Shape};
 use super::interface::{Rough, Smooth};
-use super::lobe::Lobe;
-use super::principled::{Make, Part, Surface};
+use super::lobes::AnyLobe;
+use super::mirror::Mirror;
+use super::polished::Polished;
+use super::principled::{Make, Part, PrincipledLobe, Surface};
 use super::shade::{Changing, Painted, Quantity, Shade};
+use super::shaped::Shaped as ShapedLobe;
+use super::straight::Straight;
 use super::varied::nodes;
-use super::{Interior, Interreflection, Optics, Passing};
 use crate::color::{LANES, Wavelengths};
 use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Facets, Microfacet, Phong};
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
@@ -45,20 +50,9 @@ impl<'a> Library<'a> {
     /// [`MaterialError`].
     pub fn optics(&mut self, material: &Material, diffuse: Interreflection) -> Result<Optics, MaterialError> {
         material.check()?;
-        let mut optics = Optics {
-            lobes: Vec::new(),
-            throws: false,
-            takes: false,
-            passes: false,
-            spreads: false,
-            ambient: Some(Shade::Plain(self.wavelengths.constant(0.0))),
-            patterns: Vec::new(),
-            relief: material.relief.clone(),
-            emission: (!material.emission.is_black()).then(|| self.wavelengths.light(&material.emission)),
-            interior: None,
-            along: None,
-            passing: None,
-        };
+        let emission = (!material.emission.is_black()).then(|| self.wavelengths.light(&material.emission));
+        let black = Shade::Plain(self.wavelengths.constant(0.0));
+        let mut optics = Optics::new(black, material.relief.clone(), emission);
         match &material.body {
             Body::Classic(classic) => self.classic(classic, diffuse, &mut optics)?,
             Body::Shaped(Shaped { reflectance, form }) => {
@@ -70,10 +64,10 @@ impl<'a> Library<'a> {
                             Shape::Once(distribution) => distribution,
                             Shape::All(compensated) => compensated,
                         };
-                        Ok(Lobe::Shaped(fraction.clone(), distribution))
+                        Ok(AnyLobe::Shaped(ShapedLobe { fraction: fraction.clone(), form: distribution }))
                     })?,
-                    Form::Table(table) => Lobe::Shaped(fraction, Arc::new(table.clone())),
-                    Form::Facets(table) => Lobe::Shaped(fraction, Arc::new(table.clone())),
+                    Form::Table(table) => AnyLobe::Shaped(ShapedLobe { fraction, form: Arc::new(table.clone()) }),
+                    Form::Facets(table) => AnyLobe::Shaped(ShapedLobe { fraction, form: Arc::new(table.clone()) }),
                 };
                 optics.add(lobe, Interreflection::Followed);
             }
@@ -93,19 +87,21 @@ impl<'a> Library<'a> {
     ) -> Result<(), MaterialError> {
         if let Some(shade) = self.needed(&classic.diffuse, optics) {
             optics.ambient = Some(shade.clone());
-            optics.add(Lobe::Diffuse(shade), carried);
+            optics.add(AnyLobe::Diffuse(Diffuse(shade)), carried);
         }
         if let Some(shade) = self.needed(&classic.specular, optics) {
-            let made = |_: &mut Library<'a>, n| Ok(Lobe::Phong(shade.clone(), Phong::new(n)?));
+            let made = |_: &mut Library<'a>, n| {
+                Ok(AnyLobe::Phong(ShapedLobe { fraction: shade.clone(), form: Phong::new(n)? }))
+            };
             let lobe = self.varied(&classic.exponent, 1.0, optics, made)?;
             optics.add(lobe, carried);
         }
         if let Some(shade) = self.needed(&classic.mirror, optics) {
-            optics.add(Lobe::Mirror(shade), Interreflection::Followed);
+            optics.add(AnyLobe::Mirror(Mirror(shade)), Interreflection::Followed);
         }
         if let Some(shade) = self.needed(&classic.transparency, optics) {
             optics.passing = Some(Passing::Shade(shade.clone()));
-            optics.add(Lobe::Straight(shade), Interreflection::Followed);
+            optics.add(AnyLobe::Straight(Straight(shade)), Interreflection::Followed);
         }
         Ok(())
     }
@@ -124,9 +120,9 @@ impl<'a> Library<'a> {
         };
         let conductors = Arc::new((0..self.wavelengths.combs()).map(lanes).collect::<Result<Vec<_>, _>>()?);
         let lobe = match finish {
-            Finish::Polished => Lobe::Polished(conductors),
+            Finish::Polished => AnyLobe::Polished(Polished { conductors }),
             Finish::Rough { name, roughness } => self.rough(roughness, optics, |library, m| {
-                Ok(Lobe::Metallic(Metallic::new(library.shape(name, m)?, conductors.clone())))
+                Ok(AnyLobe::Metallic(Metallic::new(library.shape(name, m)?, conductors.clone())))
             })?,
             Finish::Brushed { roughness: [along, across], along: direction } => {
                 optics.along = Some(*direction);
@@ -134,15 +130,15 @@ impl<'a> Library<'a> {
                 let across_at = across.is_varying().then(|| optics.varying(across));
                 let across_nodes = nodes(across, LEAST_VARYING_ROUGHNESS);
                 self.rough(along, optics, |_, along| {
-                    let brushed = |across: f64| -> Result<Lobe, MaterialError> {
+                    let brushed = |across: f64| -> Result<AnyLobe, MaterialError> {
                         let form = Arc::new(Microfacet::new(Facets::Beckmann, DVec2::new(along, across))?);
-                        Ok(Lobe::Metallic(Metallic::new(Shape::Once(form), conductors.clone())))
+                        Ok(AnyLobe::Metallic(Metallic::new(Shape::Once(form), conductors.clone())))
                     };
                     match (across_at, across) {
                         (None, across) => brushed(across.mean()),
                         (Some(quantity), _) => {
                             let lobes = across_nodes.iter().map(|m| Ok((*m, brushed(*m)?)));
-                            Ok(Lobe::varied(quantity, lobes.collect::<Result<_, MaterialError>>()?))
+                            Ok(AnyLobe::varied(quantity, lobes.collect::<Result<_, MaterialError>>()?))
                         }
                     }
                 })?
@@ -161,8 +157,8 @@ impl<'a> Library<'a> {
             priority: *priority,
         });
         let lobe = self.rough(roughness, optics, |_, m| match m {
-            0.0 => Ok(Lobe::Smooth(Smooth)),
-            m => Ok(Lobe::Rough(Rough { facets: Facets::Ggx, roughness: DVec2::splat(m) })),
+            0.0 => Ok(AnyLobe::Smooth(Smooth)),
+            m => Ok(AnyLobe::Rough(Rough { facets: Facets::Ggx, roughness: DVec2::splat(m) })),
         })?;
         optics.add(lobe, Interreflection::Followed);
         Ok(())
@@ -170,12 +166,12 @@ impl<'a> Library<'a> {
 
     fn coated(&mut self, coated: &Coated, carried: Interreflection, optics: &mut Optics) -> Result<(), MaterialError> {
         let Coated { diffuse, index, roughness } = coated;
-        let coat = self.rough(roughness, optics, |library, m| Ok(Lobe::Coat(library.coat(*index, m)?)))?;
+        let coat = self.rough(roughness, optics, |library, m| Ok(AnyLobe::Coat(library.coat(*index, m)?)))?;
         optics.add(coat, Interreflection::Followed);
         if let Some(shade) = self.needed(diffuse, optics) {
             let combs = self.wavelengths.combs();
             let ground = self.rough(roughness, optics, |library, m| {
-                Ok(Lobe::Ground(Ground::new(library.coat(*index, m)?, *index, &shade, combs)))
+                Ok(AnyLobe::Ground(Ground::new(library.coat(*index, m)?, *index, &shade, combs)))
             })?;
             optics.add(ground, carried);
             optics.ambient = Some(shade);
@@ -223,10 +219,12 @@ impl<'a> Library<'a> {
         let rows = rows.collect::<Result<Vec<_>, MaterialError>>()?;
         let lobe = |part: Part| {
             let of_row = |(r, row): &(f64, Vec<(f64, Arc<Surface>)>)| {
-                let lobes = row.iter().map(|(r, surface)| (*r, Lobe::Principled(part, surface.clone())));
-                (*r, Lobe::varied(across, lobes.collect()))
+                let lobes = row
+                    .iter()
+                    .map(|(r, surface)| (*r, AnyLobe::Principled(PrincipledLobe { part, surface: surface.clone() })));
+                (*r, AnyLobe::varied(across, lobes.collect()))
             };
-            Lobe::varied(along, rows.iter().map(of_row).collect())
+            AnyLobe::varied(along, rows.iter().map(of_row).collect())
         };
         if thin && let Some(surface) = rows.first().and_then(|(_, row)| row.first()).filter(|(_, s)| s.is_pane()) {
             optics.passing = Some(Passing::Pane(surface.1.clone()));
@@ -250,8 +248,8 @@ impl<'a> Library<'a> {
         &mut self,
         roughness: &Number,
         optics: &mut Optics,
-        made: impl FnMut(&mut Library<'a>, f64) -> Result<Lobe, MaterialError>,
-    ) -> Result<Lobe, MaterialError> {
+        made: impl FnMut(&mut Library<'a>, f64) -> Result<AnyLobe, MaterialError>,
+    ) -> Result<AnyLobe, MaterialError> {
         self.varied(roughness, LEAST_VARYING_ROUGHNESS, optics, made)
     }
 
@@ -263,14 +261,14 @@ impl<'a> Library<'a> {
         number: &Number,
         least: f64,
         optics: &mut Optics,
-        mut made: impl FnMut(&mut Library<'a>, f64) -> Result<Lobe, MaterialError>,
-    ) -> Result<Lobe, MaterialError> {
+        mut made: impl FnMut(&mut Library<'a>, f64) -> Result<AnyLobe, MaterialError>,
+    ) -> Result<AnyLobe, MaterialError> {
         if let Number::Constant(value) = number {
             return made(self, *value);
         }
         let lobes = nodes(number, least).into_iter().map(|value| Ok((value, made(self, value)?)));
         let lobes = lobes.collect::<Result<_, MaterialError>>()?;
-        Ok(Lobe::varied(optics.varying(number), lobes))
+        Ok(AnyLobe::varied(optics.varying(number), lobes))
     }
 
     /// A coat of a refractive index and a roughness.

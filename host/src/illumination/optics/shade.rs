@@ -1,6 +1,6 @@
 //! Paints and numbers made ready for rendering: paints are tabulated at the wavelengths that rays carry.
 
-use super::Sighting;
+use super::sighting::Sighting;
 use crate::color::{Channels, Curve, Wavelengths};
 use crate::illumination::texture::{Number, Paint, Pattern, Place};
 

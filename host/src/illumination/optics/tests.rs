@@ -1,11 +1,13 @@
 //! Facts about what surfaces scatter: white furnaces, closed forms, and samples against densities.
 
 use super::*;
+use crate::color::Channels;
 use crate::color::{Color, Wavelengths, shipped};
 use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
 use crate::illumination::texture::{Band, Laying, Motif, Number, Paint, Pattern, Varying};
 use crate::numeric::cubature::unit_square;
 use crate::numeric::sampling::{Stream, sphere};
+use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 fn ready(material: &Material, wavelengths: &Wavelengths) -> Optics {

@@ -1,10 +1,11 @@
 //! A lobe whose roughness, or another number, changes from place to place.
 
-use super::lobe::Lobe;
+use super::lobe::{Flags, Lobe};
 use super::shade::Quantity;
-use super::{Onward, Sighting};
+use super::sighting::{Onward, Sighting};
 use crate::color::Channels;
 use crate::illumination::texture::Number;
+use glam::DVec3;
 
 /// The greatest ratio of one node to the one before it, as far as [`MOST_NODES`] allow.
 const RATIO: f64 = 1.2;
@@ -16,10 +17,10 @@ const MOST_NODES: usize = 24;
 /// A mixture of two lobes keeps their energy, is reciprocal if they are, and is drawn as exactly as they are. Of lobes
 /// whose roughness is in a ratio of 1.2 it differs from that of the roughness between them by at most 2 % of its peak.
 #[derive(Clone, Debug)]
-pub(super) struct Varied {
+pub(super) struct Varied<L> {
     quantity: Quantity,
     /// The values of the number, at even ratios, and the lobe of each.
-    nodes: Vec<(f64, Lobe)>,
+    nodes: Vec<(f64, L)>,
 }
 
 /// The values for which lobes are made, at even ratios over the range of a number.
@@ -34,14 +35,14 @@ pub(super) fn nodes(number: &Number, least: f64) -> Vec<f64> {
     }
 }
 
-impl Varied {
+impl<L: Lobe> Varied<L> {
     /// - `nodes`: values, rising, and the lobe of each; one or more.
-    pub(super) fn new(quantity: Quantity, nodes: Vec<(f64, Lobe)>) -> Varied {
+    pub(super) fn new(quantity: Quantity, nodes: Vec<(f64, L)>) -> Varied<L> {
         Varied { quantity, nodes }
     }
 
     /// The two lobes about the value at a place, and how much there is of each; they are the same at the ends.
-    fn parts(&self, sighting: &Sighting<'_>) -> [(&Lobe, f64); 2] {
+    fn parts(&self, sighting: &Sighting<'_>) -> [(&L, f64); 2] {
         let value = self.quantity.of(sighting);
         let above = self.nodes.partition_point(|(node, _)| *node <= value).min(self.nodes.len() - 1);
         let below = above.saturating_sub(1);
@@ -51,24 +52,53 @@ impl Varied {
     }
 
     /// The lobe that stands for all of them where no place is known: that in the middle.
-    pub(super) fn typical(&self) -> &Lobe {
+    fn typical(&self) -> &L {
         &self.nodes[self.nodes.len() / 2].1
     }
 
     /// The mixture of what lobes tell.
-    pub(super) fn mixed(&self, sighting: &Sighting<'_>, of: impl Fn(&Lobe) -> Channels) -> Channels {
+    fn mixed(&self, sighting: &Sighting<'_>, of: impl Fn(&L) -> Channels) -> Channels {
         let [(a, less), (b, more)] = self.parts(sighting);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
 
     /// The mixture of a number that lobes tell.
-    pub(super) fn mixed_number(&self, sighting: &Sighting<'_>, of: impl Fn(&Lobe) -> f64) -> f64 {
+    fn mixed_number(&self, sighting: &Sighting<'_>, of: impl Fn(&L) -> f64) -> f64 {
         let [(a, less), (b, more)] = self.parts(sighting);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
+}
+
+impl<L: Lobe> Lobe for Varied<L> {
+    fn flags(&self) -> Flags {
+        self.typical().flags()
+    }
+
+    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        self.mixed(sighting, |lobe| lobe.value(sighting, light))
+    }
+
+    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+        self.mixed_number(sighting, |lobe| lobe.density(sighting, light))
+    }
+
+    /// Draws a direction from one of the two lobes.
+    fn sample(&self, sighting: &Sighting<'_>, choice: f64, point: [f64; 2]) -> Option<Onward> {
+        let [(a, less), (b, more)] = self.parts(sighting);
+        let rest = |below: f64, part: f64| ((choice - below) / part).clamp(0.0, 1.0_f64.next_down());
+        if choice < less {
+            a.sample(sighting, rest(0.0, less), point)
+        } else {
+            b.sample(sighting, rest(less, more), point)
+        }
+    }
+
+    fn strength(&self, sighting: &Sighting) -> f64 {
+        self.mixed_number(sighting, |lobe| lobe.strength(sighting))
+    }
 
     /// The single directions of lobes that are polished alike, and differ in what lies on them.
-    pub(super) fn mirrored(&self, sighting: &Sighting<'_>) -> [Option<Onward>; 2] {
+    fn mirrored(&self, sighting: &Sighting<'_>) -> [Option<Onward>; 2] {
         let [(a, less), (b, more)] = self.parts(sighting);
         let [one, other] = [a, b].map(|lobe| lobe.mirrored(sighting));
         let mixed = |(a, b): (Option<Onward>, Option<Onward>)| match (a, b) {
@@ -81,14 +111,15 @@ impl Varied {
         [mixed((a, b)), mixed((c, d))]
     }
 
-    /// Draws a direction from one of the two lobes.
-    pub(super) fn sample(&self, sighting: &Sighting<'_>, choice: f64, point: [f64; 2]) -> Option<Onward> {
-        let [(a, less), (b, more)] = self.parts(sighting);
-        let rest = |below: f64, part: f64| ((choice - below) / part).clamp(0.0, 1.0_f64.next_down());
-        if choice < less {
-            a.sample(sighting, rest(0.0, less), point)
-        } else {
-            b.sample(sighting, rest(less, more), point)
-        }
+    fn diffuse(&self, sighting: &Sighting) -> Channels {
+        self.mixed(sighting, |lobe| lobe.diffuse(sighting))
+    }
+
+    fn shown(&self, sighting: &Sighting) -> Channels {
+        self.mixed(sighting, |lobe| lobe.shown(sighting))
+    }
+
+    fn cleared(&self, sighting: &Sighting) -> Channels {
+        self.mixed(sighting, |lobe| lobe.cleared(sighting))
     }
 }

@@ -1,7 +1,8 @@
 //! What of all light is missing when facets have reflected and refracted once, and on which side it comes back.
 
+use super::super::sighting::Sighting;
 use super::albedo::{Seen, Shares};
-use super::{At, Sighting, Surface};
+use super::surface::{At, Surface};
 
 /// The part of all light that surfaces miss when facets have reflected and refracted once.
 #[derive(Clone, Copy)]

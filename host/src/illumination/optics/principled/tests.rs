@@ -1,10 +1,14 @@
 //! Facts about the principled material: furnaces over all of its numbers, samples against densities, light to and fro.
 
-use super::*;
+use super::super::shade::{Quantity, Shade};
+use super::super::sighting::Sighting;
+use super::surface::*;
+use crate::color::Channels;
 use crate::color::Wavelengths;
 use crate::illumination::optics::Side;
 use crate::numeric::cubature::unit_square;
 use crate::numeric::sampling::{Stream, sphere};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 

@@ -1,0 +1,67 @@
+//! A part of a principled material as a lobe.
+
+use super::super::lobe::{Flags, Lobe, NARROW};
+use super::super::sighting::{Onward, Sighting};
+use super::surface::{Part, Surface};
+use crate::color::Channels;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// One of the parts of a surface, which share its tables.
+#[derive(Clone, Debug)]
+pub(in crate::illumination::optics) struct PrincipledLobe {
+    pub(in crate::illumination::optics) part: Part,
+    pub(in crate::illumination::optics) surface: Arc<Surface>,
+}
+
+impl PrincipledLobe {
+    fn is_clear(&self) -> bool {
+        self.part == Part::Facets && self.surface.is_mirror(self.part) && self.surface.transmits()
+    }
+}
+
+impl Lobe for PrincipledLobe {
+    fn flags(&self) -> Flags {
+        let PrincipledLobe { part, surface } = self;
+        Flags::BROAD.when(surface.is_broad(*part, NARROW))
+            | Flags::DIFFUSE.when(*part == Part::Spread && !surface.transmits())
+            | Flags::DELTA.when(surface.is_mirror(*part))
+            | Flags::CLEAR.when(self.is_clear())
+            | Flags::PANE.when(*part == Part::Facets && surface.is_pane())
+    }
+
+    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+        self.surface.value(self.part, sighting, light)
+    }
+
+    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+        self.surface.density(self.part, sighting, light)
+    }
+
+    fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward> {
+        match self.surface.is_mirror(self.part) {
+            true => self.surface.mirrored_sample(self.part, sighting, choice),
+            false => self.surface.sample(self.part, sighting, choice, point).map(Onward::spread),
+        }
+    }
+
+    fn strength(&self, sighting: &Sighting) -> f64 {
+        self.surface.strength(self.part, sighting)
+    }
+
+    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+        self.surface.mirrored(self.part, sighting)
+    }
+
+    fn diffuse(&self, sighting: &Sighting) -> Channels {
+        self.surface.diffuse(self.part, sighting)
+    }
+
+    fn shown(&self, sighting: &Sighting) -> Channels {
+        self.surface.shown(self.part, sighting)
+    }
+
+    fn cleared(&self, sighting: &Sighting) -> Channels {
+        if self.is_clear() { self.surface.straight(sighting) } else { Channels::ZERO }
+    }
+}

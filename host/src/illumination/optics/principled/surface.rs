@@ -1,0 +1,520 @@
+//! The surface of a principled material: its parts, what each sends to a viewer, and how directions of light are drawn.
+
+use super::super::interface::{beta, interface, reflected};
+use super::super::shade::{Quantity, Shade};
+use super::super::sighting::{Onward, Sighting};
+use super::albedo::{Albedo, CoatAlbedo, Interface, Seen, pane};
+use super::sheen::Sheen;
+use crate::color::Channels;
+use crate::illumination::distribution::{Distribution, Facets, Microfacet};
+use crate::illumination::fresnel::Dielectric;
+use crate::illumination::material::MaterialError;
+use crate::numeric::sampling::cosine_hemisphere;
+use glam::{DVec2, DVec3};
+use std::f64::consts::FRAC_1_PI;
+
+/// Neither of two ways is left to a smaller chance, if there is anything in it.
+const LEAST_CHANCE: f64 = 0.05;
+
+/// A principled material of one roughness under a coat of one roughness, ready.
+#[derive(Debug)]
+pub(in crate::illumination::optics) struct Surface {
+    pub(super) base: Shade,
+    pub(super) sheen: Shade,
+    pub(super) sheen_roughness: Quantity,
+    pub(super) metallic: Quantity,
+    pub(super) specular: Quantity,
+    pub(super) transmission: Quantity,
+    pub(super) coat: Quantity,
+    /// From outside into the body.
+    surface: Dielectric,
+    pub(super) index: f64,
+    /// Whether the body is a thin wall, which bends nothing.
+    pub(super) thin: bool,
+    /// None where it is polished.
+    facets: Option<(Microfacet, DVec2)>,
+    coat_surface: Dielectric,
+    coat_facets: Option<Microfacet>,
+    pub(super) albedo: Albedo,
+}
+
+/// A part of what it scatters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::illumination::optics) enum Part {
+    /// The rim of the cloth.
+    Sheen,
+    /// What the coat reflects.
+    Coat,
+    /// What facets reflect and refract once.
+    Facets,
+    /// What is spread alike: the color of the ground, and what is missing of the others.
+    Spread,
+}
+
+/// The numbers of it at a place.
+pub(super) struct At {
+    pub(super) seen: Seen,
+    pub(super) metallic: f64,
+    pub(super) specular: f64,
+    pub(super) transmission: f64,
+    pub(super) coat: f64,
+    pub(super) base: Channels,
+    /// The part of what is not transparent that is a cloth; 0 from inside.
+    pub(super) cloth: Channels,
+    pub(super) rim: Sheen,
+}
+
+/// What a facet sends on.
+pub(super) struct Fresnel {
+    /// Reflected by what is metal and by what is opaque.
+    ground: Channels,
+    /// Reflected by what is transparent.
+    clear: Channels,
+    /// Let through.
+    through: Channels,
+}
+
+/// What a principled surface is made of, beside what may change from place to place.
+pub(in crate::illumination::optics) struct Make {
+    /// Of the body and of the coat.
+    pub(in crate::illumination::optics) index: f64,
+    pub(in crate::illumination::optics) coat_index: f64,
+    /// m; none where it is polished.
+    pub(in crate::illumination::optics) roughness: Option<f64>,
+    pub(in crate::illumination::optics) coat_roughness: Option<f64>,
+    pub(in crate::illumination::optics) thin: bool,
+    /// Whether there may be a coat, and whether light may go through.
+    pub(in crate::illumination::optics) has_coat: bool,
+    pub(in crate::illumination::optics) transmits: bool,
+}
+
+impl At {
+    /// The part of it that is transparent.
+    pub(super) fn clear(&self) -> f64 {
+        (1.0 - self.metallic) * self.transmission
+    }
+
+    /// The part of it that is opaque and no metal.
+    pub(super) fn opaque(&self) -> f64 {
+        (1.0 - self.metallic) * (1.0 - self.transmission)
+    }
+
+    /// What a metal has left, after all further reflections, of light that one reflection did not send on.
+    ///
+    /// - `all`: the mean part that one reflection sends on.
+    fn further(&self, all: f64) -> Channels {
+        self.base.map(|base| {
+            let mean = base + (1.0 - base) / 21.0;
+            mean * mean * all / (1.0 - mean * (1.0 - all))
+        })
+    }
+}
+
+impl Surface {
+    /// # Errors
+    /// [`MaterialError`] for an index or a roughness that is none.
+    pub(in crate::illumination::optics) fn new(
+        make: &Make,
+        [base, sheen]: [Shade; 2],
+        [metallic, specular, transmission, coat, sheen_roughness]: [Quantity; 5],
+    ) -> Result<Surface, MaterialError> {
+        let surface = Dielectric::new(1.0, make.index)?;
+        let coat_surface = Dielectric::new(1.0, make.coat_index)?;
+        let facets = |m: Option<f64>| m.map(|m| Microfacet::new(Facets::Ggx, DVec2::splat(m))).transpose();
+        let below =
+            make.has_coat.then(|| CoatAlbedo::new(Interface { roughness: make.coat_roughness, surface: coat_surface }));
+        let transmits = make.transmits && !make.thin;
+        let albedo = Albedo::new(Interface { roughness: make.roughness, surface }, below, transmits);
+        Ok(Surface {
+            base,
+            sheen,
+            sheen_roughness,
+            metallic,
+            specular,
+            transmission,
+            coat,
+            surface,
+            index: make.index,
+            thin: make.thin,
+            facets: facets(make.roughness)?.zip(make.roughness.map(DVec2::splat)),
+            coat_surface,
+            coat_facets: facets(make.coat_roughness)?,
+            albedo,
+        })
+    }
+
+    pub(super) fn at(&self, sighting: &Sighting) -> At {
+        let is_inside = sighting.side.inside && !self.thin;
+        let part = |quantity: Quantity| quantity.of(sighting).clamp(0.0, 1.0);
+        At {
+            seen: if is_inside { Seen::Inside } else { Seen::Outside },
+            metallic: part(self.metallic),
+            specular: part(self.specular),
+            transmission: part(self.transmission),
+            coat: part(self.coat),
+            base: self.base.of(sighting),
+            cloth: if is_inside { Channels::ZERO } else { self.sheen.of(sighting) },
+            rim: Sheen::new(part(self.sheen_roughness)),
+        }
+    }
+
+    /// Whether a part knows single directions only.
+    pub(super) fn is_mirror(&self, part: Part) -> bool {
+        match part {
+            Part::Coat => self.coat_facets.is_none(),
+            Part::Facets => self.facets.is_none(),
+            Part::Sheen | Part::Spread => false,
+        }
+    }
+
+    /// Whether a part spreads light about everywhere.
+    ///
+    /// - `narrow`: the density from straight above from which on it is a beam, 1/sr.
+    pub(super) fn is_broad(&self, part: Part, narrow: f64) -> bool {
+        let density = |facets: &Option<Microfacet>| {
+            facets.as_ref().map_or(f64::INFINITY, |facets| facets.sample_density(DVec3::Z, DVec3::Z))
+        };
+        match part {
+            Part::Coat => density(&self.coat_facets) < narrow,
+            Part::Facets => density(&self.facets.map(|(facets, _)| facets)) < narrow,
+            Part::Sheen | Part::Spread => true,
+        }
+    }
+
+    /// Whether light may go through.
+    pub(super) fn transmits(&self) -> bool {
+        !matches!(self.transmission, Quantity::Constant(0.0))
+    }
+
+    /// Whether light may go straight through.
+    pub(in crate::illumination::optics) fn is_pane(&self) -> bool {
+        self.thin && self.facets.is_none() && self.transmits()
+    }
+
+    /// What a facet sends on at a cosine.
+    pub(super) fn fresnel(&self, at: &At, sighting: &Sighting, cosine: f64) -> Fresnel {
+        let grazing = (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
+        let own = self.surface.reflectance(cosine).mean();
+        let dielectric = at.opaque() * at.specular * own;
+        let ground = at.base.map(|base| at.metallic * (base + (1.0 - base) * grazing) + dielectric);
+        let part = at.clear();
+        if part == 0.0 {
+            return Fresnel { ground, clear: Channels::ZERO, through: Channels::ZERO };
+        }
+        let (clear, tint) = match self.thin {
+            true => (Channels::splat(pane(own)), at.base),
+            // Light comes through twice, on its way in and out.
+            false => (reflected(sighting, cosine), at.base.map(f64::sqrt)),
+        };
+        Fresnel { ground, clear: clear * part, through: clear.map(|clear| part * (1.0 - clear)) * tint }
+    }
+
+    /// The chance that a facet is taken to reflect.
+    pub(super) fn chance(&self, fresnel: &Fresnel) -> f64 {
+        let (reflects, through) = ((fresnel.ground + fresnel.clear).max(), fresnel.through.max());
+        match (reflects > 0.0, through > 0.0) {
+            (_, false) => 1.0,
+            (false, true) => 0.0,
+            _ => (reflects / (reflects + through)).clamp(LEAST_CHANCE, 1.0 - LEAST_CHANCE),
+        }
+    }
+
+    /// What the coat leaves of what facets send.
+    ///
+    /// - `cosine`: of the viewer or the light, whichever is outside and nearer to the surface.
+    fn under(&self, at: &At, cosine: f64) -> f64 {
+        if at.coat > 0.0 { 1.0 - at.coat * self.albedo.coat(cosine) } else { 1.0 }
+    }
+
+    /// Where a facet would have to look to send light to the viewer, through or not.
+    pub(super) fn facet(&self, sighting: &Sighting, light: DVec3) -> Option<DVec3> {
+        let view = sighting.view;
+        let facet = if light.z > 0.0 {
+            light + view
+        } else if self.thin {
+            DVec3::new(light.x, light.y, -light.z) + view
+        } else {
+            let lane = sighting.lane;
+            let facet = -(view * sighting.side.before.0[lane] + light * sighting.side.behind.0[lane]);
+            if facet.z < 0.0 { -facet } else { facet }
+        };
+        let facet = facet.try_normalize()?;
+        let sees = facet.dot(view) > 0.0 && (light.z > 0.0 || self.thin || facet.dot(light) < 0.0);
+        (sees && facet.z > 0.0).then_some(facet)
+    }
+
+    /// How much of the directions around a facet goes to one solid angle of light.
+    fn jacobian(&self, sighting: &Sighting, light: DVec3, facet: DVec3) -> f64 {
+        let to_view = facet.dot(sighting.view);
+        if light.z > 0.0 || self.thin {
+            return 0.25 / to_view;
+        }
+        let lane = sighting.lane;
+        let ratio = sighting.side.before.0[lane] / sighting.side.behind.0[lane];
+        let to_light = facet.dot(light);
+        let sum = to_light + ratio * to_view;
+        to_light.abs() / (sum * sum)
+    }
+
+    /// Radiance towards the viewer for a unit of flux density, 1/sr.
+    pub(super) fn value(&self, part: Part, sighting: &Sighting, light: DVec3) -> Channels {
+        let view = sighting.view;
+        if view.z <= 0.0 || light.z == 0.0 {
+            return Channels::ZERO;
+        }
+        let at = self.at(sighting);
+        let value = match part {
+            Part::Facets => self.once(&at, sighting, light),
+            Part::Spread if light.z < 0.0 => self.spread_through(&at, sighting, light),
+            Part::Spread => self.spread(&at, sighting, light),
+            _ if light.z < 0.0 || at.seen == Seen::Inside => Channels::ZERO,
+            Part::Sheen => at.cloth * ((1.0 - at.clear()) * at.rim.value(view.z, light.z)),
+            Part::Coat => match self.coat_facets.as_ref().zip((light + view).try_normalize()) {
+                Some((facets, half)) => {
+                    let fresnel = self.coat_surface.reflectance(half.dot(view)).mean();
+                    self.beside_cloth(&at) * (at.coat * fresnel * facets.density(light, view) / view.z)
+                }
+                None => Channels::ZERO,
+            },
+        };
+        if value.is_finite() { value } else { Channels::ZERO }
+    }
+
+    /// What is no cloth.
+    fn beside_cloth(&self, at: &At) -> Channels {
+        Channels::ONE - at.cloth * (1.0 - at.clear())
+    }
+
+    /// What facets send to the viewer by one reflection or refraction.
+    fn once(&self, at: &At, sighting: &Sighting, light: DVec3) -> Channels {
+        let view = sighting.view;
+        let Some(((facets, m), facet)) = self.facets.as_ref().zip(self.facet(sighting, light)) else {
+            return Channels::ZERO;
+        };
+        let Fresnel { ground, clear, through } = self.fresnel(at, sighting, facet.dot(view));
+        let above = DVec3::new(light.x, light.y, light.z.abs());
+        if light.z > 0.0 || self.thin {
+            let is_inside = at.seen == Seen::Inside;
+            let under = if is_inside { 1.0 } else { self.under(at, view.z.min(above.z)) };
+            let sent = if light.z > 0.0 { ground * (Channels::ONE - at.cloth) + clear } else { through };
+            return sent * (under * facets.density(above, view) / view.z);
+        }
+        let [l, v] = [above, view].map(|towards| Facets::Ggx.projected(towards, *m) / towards.z);
+        // Above and below, one hides what the other does not.
+        let masking = beta(v, l) / (view.z * above.z);
+        let under = self.under(at, if at.seen == Seen::Outside { view.z } else { above.z });
+        let density = Facets::Ggx.area(facet, *m) * facet.dot(view) * self.jacobian(sighting, light, facet);
+        through * (density * masking * thinned(sighting) * under)
+    }
+
+    /// What is spread alike on the side of the viewer: colors, and what is missing.
+    fn spread(&self, at: &At, sighting: &Sighting, light: DVec3) -> Channels {
+        let [from, to] = [sighting.view.z, light.z].map(|cosine| self.missing(at, at.seen, cosine));
+        let mean = self.mean_missing(at, at.seen);
+        let mut value = at.base * (at.opaque() * over(from.opaque * to.opaque, mean.opaque));
+        if at.metallic > 0.0 {
+            let further = at.further(self.albedo.mean(Seen::Outside).all);
+            value += further * (at.metallic * over(from.metal * to.metal, mean.metal));
+        }
+        let ground = at.rim.ground(sighting.view.z, light.z);
+        value = value * (Channels::ONE - at.cloth) + at.cloth * at.base * ((1.0 - at.clear()) * ground);
+        if at.clear() > 0.0 && self.is_alone(sighting, at.seen) {
+            let [stays, _] = self.division(at, mean.clear);
+            value += Channels::splat(at.clear() * stays * over(from.clear * to.clear, mean.clear));
+        }
+        value
+    }
+
+    /// What is missing and comes from the other side, spread alike.
+    fn spread_through(&self, at: &At, sighting: &Sighting, light: DVec3) -> Channels {
+        if at.clear() == 0.0 || !self.is_alone(sighting, at.seen) {
+            return Channels::ZERO;
+        }
+        let beyond = self.beyond(at);
+        let [_, goes] = self.division(at, self.mean_missing(at, at.seen).clear);
+        let from = self.missing(at, at.seen, sighting.view.z).clear;
+        let to = self.missing(at, beyond, -light.z).clear;
+        let part = at.clear() * goes * over(from * to, self.mean_missing(at, beyond).clear);
+        if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * thinned(sighting)) }
+    }
+
+    /// The density of samples, 1/sr.
+    pub(super) fn density(&self, part: Part, sighting: &Sighting, light: DVec3) -> f64 {
+        let view = sighting.view;
+        if view.z <= 0.0 || light.z == 0.0 {
+            return 0.0;
+        }
+        let density = match part {
+            Part::Facets => {
+                let Some(((_, m), facet)) = self.facets.as_ref().zip(self.facet(sighting, light)) else { return 0.0 };
+                let at = self.at(sighting);
+                let chance = self.chance(&self.fresnel(&at, sighting, facet.dot(view)));
+                let chance = if light.z > 0.0 { chance } else { 1.0 - chance };
+                let seen = facet.dot(view) * Facets::Ggx.area(facet, *m) / Facets::Ggx.projected(view, *m);
+                chance * seen * self.jacobian(sighting, light, facet)
+            }
+            Part::Spread => {
+                let [above, below] = self.spread_shares(&self.at(sighting), sighting);
+                let share = if light.z > 0.0 { above } else { below };
+                if share > 0.0 { share / (above + below) * light.z.abs() * FRAC_1_PI } else { 0.0 }
+            }
+            _ if light.z < 0.0 => 0.0,
+            Part::Sheen => self.at(sighting).rim.density(light.z),
+            Part::Coat => self.coat_facets.as_ref().map_or(0.0, |facets| facets.sample_density(view, light)),
+        };
+        if density.is_finite() { density } else { 0.0 }
+    }
+
+    /// Draws a direction of light.
+    pub(super) fn sample(&self, part: Part, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<DVec3> {
+        let view = sighting.view;
+        match part {
+            Part::Facets => {
+                let (_, m) = self.facets.as_ref()?;
+                let facet = Facets::Ggx.visible(view, *m, point)?;
+                let cosine = facet.dot(view);
+                if cosine <= 0.0 {
+                    return None;
+                }
+                let at = self.at(sighting);
+                let mirrored = (facet * (2.0 * cosine) - view).try_normalize().filter(|light| light.z > 0.0);
+                if choice < self.chance(&self.fresnel(&at, sighting, cosine)) {
+                    mirrored
+                } else if self.thin {
+                    mirrored.map(|light| DVec3::new(light.x, light.y, -light.z))
+                } else {
+                    interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
+                }
+            }
+            Part::Spread => {
+                let [above, below] = self.spread_shares(&self.at(sighting), sighting);
+                let light = cosine_hemisphere(point, DVec3::Z);
+                let is_above = choice * (above + below) < above;
+                Some(if is_above { light } else { -light }).filter(|light| light.z != 0.0)
+            }
+            Part::Sheen => Some(self.at(sighting).rim.sample(point)).filter(|light| light.z > 0.0),
+            Part::Coat => self.coat_facets.as_ref()?.sample(view, point),
+        }
+    }
+
+    /// How much is spread alike to the viewer from above, and from below.
+    pub(super) fn spread_shares(&self, at: &At, sighting: &Sighting) -> [f64; 2] {
+        let missing = self.missing(at, at.seen, sighting.view.z);
+        let further = if at.metallic > 0.0 { at.further(self.albedo.mean(Seen::Outside).all).max() } else { 0.0 };
+        let color = at.base.max();
+        let cloth = at.cloth.max() * (1.0 - at.clear()) * (1.0 - at.rim.albedo(sighting.view.z));
+        let above = at.opaque() * color * missing.opaque + at.metallic * further * missing.metal + cloth * color;
+        if at.clear() == 0.0 || !self.is_alone(sighting, at.seen) {
+            return [above, 0.0];
+        }
+        let [stays, goes] = self.division(at, self.mean_missing(at, at.seen).clear);
+        [above + at.clear() * stays * missing.clear, at.clear() * goes * missing.clear * color.sqrt()]
+    }
+
+    /// Single directions of a part: what is reflected, and what comes through.
+    pub(super) fn mirrored(&self, part: Part, sighting: &Sighting) -> [Option<Onward>; 2] {
+        if !self.is_mirror(part) {
+            return [None, None];
+        }
+        let view = sighting.view;
+        let at = self.at(sighting);
+        let light = DVec3::new(-view.x, -view.y, view.z);
+        if part == Part::Coat {
+            let part = if at.seen == Seen::Inside { 0.0 } else { at.coat };
+            let fresnel = self.coat_surface.reflectance(view.z).mean();
+            return [Some(Onward::single(light, self.beside_cloth(&at) * (part * fresnel))), None];
+        }
+        let Fresnel { ground, clear, through } = self.fresnel(&at, sighting, view.z);
+        let under = if at.seen == Seen::Inside { 1.0 } else { self.under(&at, view.z) };
+        let reflects = (ground * (Channels::ONE - at.cloth) + clear) * under;
+        let reflection = Some(Onward::single(light, reflects)).filter(|onward| onward.weight.max() > 0.0);
+        if self.thin {
+            let straight = Onward { is_straight: true, ..Onward::single(-view, through * under) };
+            return [reflection, Some(straight).filter(|onward| onward.weight.max() > 0.0)];
+        }
+        let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
+        let refraction = refracted.filter(|light| light.z < 0.0).map(|light| {
+            let outside = if at.seen == Seen::Outside { view.z } else { -light.z };
+            Onward::single(light, through * (self.under(&at, outside) * thinned(sighting)))
+        });
+        [reflection, refraction.filter(|onward| onward.weight.max() > 0.0)]
+    }
+
+    /// What comes through a polished surface, as if it were not bent.
+    pub(in crate::illumination::optics) fn straight(&self, sighting: &Sighting) -> Channels {
+        let at = self.at(sighting);
+        self.fresnel(&at, sighting, sighting.view.z).through * self.under(&at, sighting.view.z)
+    }
+
+    /// One of the single directions, by its part.
+    pub(super) fn mirrored_sample(&self, part: Part, sighting: &Sighting, choice: f64) -> Option<Onward> {
+        let [reflection, through] = self.mirrored(part, sighting);
+        let (Some(reflection), Some(through)) = (reflection, through) else { return reflection.or(through) };
+        let chance = reflection.weight.max() / (reflection.weight.max() + through.weight.max());
+        let chance = chance.clamp(LEAST_CHANCE, 1.0 - LEAST_CHANCE);
+        let (onward, chance) = if choice < chance { (reflection, chance) } else { (through, 1.0 - chance) };
+        Some(Onward { weight: onward.weight * chance.recip(), ..onward })
+    }
+
+    /// About what a part sends to the viewer of all the light; more than 0 where it sends anything.
+    pub(super) fn strength(&self, part: Part, sighting: &Sighting) -> f64 {
+        let at = self.at(sighting);
+        let cosine = sighting.view.z.clamp(0.0, 1.0);
+        let is_inside = at.seen == Seen::Inside;
+        match part {
+            Part::Sheen => at.cloth.max() * (1.0 - at.clear()) * at.rim.albedo(cosine),
+            Part::Coat if is_inside => 0.0,
+            Part::Coat => at.coat * self.albedo.coat(cosine),
+            Part::Spread => self.spread_shares(&at, sighting).into_iter().sum(),
+            Part::Facets => {
+                let outside = self.albedo.at(Seen::Outside, cosine);
+                let base = at.base.max();
+                let grazing = (1.0 - cosine).powi(5);
+                let metal = at.metallic * (base + (1.0 - base) * grazing) * outside.all;
+                let opaque = at.opaque() * at.specular * outside.reflected;
+                let under = if is_inside { 1.0 } else { self.under(&at, cosine) };
+                // What is reflected and let through is nearly all; from inside, beside other media, too.
+                (metal + opaque + at.clear()) * under
+            }
+        }
+    }
+
+    /// About what a part shows of what is around.
+    pub(super) fn shown(&self, part: Part, sighting: &Sighting) -> Channels {
+        let at = self.at(sighting);
+        let cosine = sighting.view.z.clamp(0.0, 1.0);
+        match part {
+            Part::Coat if at.seen == Seen::Outside => self.beside_cloth(&at) * (at.coat * self.albedo.coat(cosine)),
+            Part::Facets => {
+                let Fresnel { ground, clear, .. } = self.fresnel(&at, sighting, cosine);
+                (ground * (Channels::ONE - at.cloth) + clear) * self.under(&at, cosine)
+            }
+            _ => Channels::ZERO,
+        }
+    }
+
+    /// The part of light from all around that is reflected alike to everywhere.
+    pub(super) fn diffuse(&self, part: Part, sighting: &Sighting) -> Channels {
+        if part != Part::Spread {
+            return Channels::ZERO;
+        }
+        let at = self.at(sighting);
+        let mean = self.mean_missing(&at, at.seen);
+        let mut diffuse = at.base * (at.opaque() * mean.opaque);
+        if at.metallic > 0.0 {
+            diffuse += at.further(self.albedo.mean(Seen::Outside).all) * (at.metallic * mean.metal);
+        }
+        let ground = (1.0 - at.clear()) * (1.0 - at.rim.mean());
+        diffuse * (Channels::ONE - at.cloth) + at.cloth * at.base * ground
+    }
+}
+
+/// A value over π and a mean; 0 where there is nothing.
+fn over(value: f64, mean: f64) -> f64 {
+    if mean > 1e-9 { value * FRAC_1_PI / mean } else { 0.0 }
+}
+
+/// By how much radiance falls as it leaves what is behind.
+fn thinned(sighting: &Sighting) -> f64 {
+    (sighting.side.before.0[sighting.lane] / sighting.side.behind.0[sighting.lane]).powi(2)
+}
