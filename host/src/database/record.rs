@@ -150,11 +150,11 @@ impl Content {
             Content::Texture(picture) if picture.is_finite() => Ok(()),
             Content::Texture(_) => Err("a pixel is not finite".into()),
             Content::Material(material) => material.check().map_err(|error| error.to_string()),
-            Content::Light(light) => match **light {
-                Light::Sky { map: Some(SkyMap { ref file, .. }), .. } => {
+            Content::Light(light) => match light.sky_map() {
+                Some(SkyMap { file, .. }) => {
                     Err(format!("the picture {file} of a sky is kept as a texture, not in a light"))
                 }
-                _ => light.check().map_err(|error| error.to_string()),
+                None => light.check().map_err(|error| error.to_string()),
             },
             Content::Spectrum(curves) => curves.check(),
             Content::CaughtLight(caught) => caught.check(),

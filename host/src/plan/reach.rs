@@ -2,7 +2,7 @@
 
 use super::decision::Decision;
 use super::stage::Facts;
-use crate::illumination::Light;
+use crate::illumination::light::Origin;
 use crate::numeric::bounds::Bounds;
 use crate::scene::{Prepared, View};
 use glam::DVec3;
@@ -41,17 +41,11 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
 
 /// Whether a box may stand between any bright light and a point of `seen`; errs towards yes.
 fn throws_shadow(prepared: &Prepared, facts: &Facts<'_>, object: &Bounds, seen: &Bounds) -> bool {
-    prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i)).any(|(_, light)| match *light {
-        Light::Point { at, .. } | Light::Spot { at, .. } | Light::Luminaire { at, .. } => {
-            is_between(Bounds { min: at, max: at }, object, seen)
-        }
-        Light::Area { patch, .. } => {
-            let [min, max] = patch.bounds();
-            is_between(Bounds { min, max }, object, seen)
-        }
-        Light::Sky { .. } => true,
-        Light::Directional { direction, .. } => {
-            let Some(along) = direction.try_normalize() else { return false };
+    prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i)).any(|(_, light)| match light.origin() {
+        Origin::Within(bounds) => is_between(bounds, object, seen),
+        Origin::Everywhere => true,
+        Origin::Towards(towards) => {
+            let along = -towards;
             let (u, v) = along.any_orthonormal_pair();
             let overlaps = |axis: DVec3| {
                 let ((a, b), (c, d)) = (range(object, axis), range(seen, axis));

@@ -1,9 +1,9 @@
 //! The stages of rendering, one row each: name and the rule that decides whether a scene needs it.
 
 use super::decision::Decision;
-use crate::illumination::Light;
 use crate::illumination::Material;
 use crate::illumination::distribution::TableError;
+use crate::illumination::light::Origin;
 use crate::illumination::material::{Body, Classic, Coated, Form, Shaped};
 use crate::illumination::optics::Interreflection;
 use crate::scene::{Caustics, Prepared, PreparedObject};
@@ -226,7 +226,7 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
         return Decision::new(false, "the scene asks for all rays to lights");
     }
     let bright = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
-    let skies = bright.filter(|(_, light)| matches!(light, Light::Sky { .. })).count();
+    let skies = bright.filter(|(_, light)| light.origin() == Origin::Everywhere).count();
     if skies == facts.lights() {
         return Decision::new(false, "a sky is in all directions");
     }
@@ -241,7 +241,7 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
 fn caught_light(facts: &Facts<'_>) -> Decision {
     let (throwers, takers) = (facts.count(Material::may_throw), facts.count(|m| has_diffuse(m) || !m.may_throw()));
     let lamps = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
-    let even = lamps.filter(|(_, light)| matches!(light, Light::Sky { map: None, .. })).count();
+    let even = lamps.filter(|(_, light)| light.is_even_sky()).count();
     let lamps = facts.lights() - even;
     if facts.prepared.settings.light.caustics != Caustics::PhotonMapped {
         Decision::new(false, "the scene does not ask for two-way ray tracing")

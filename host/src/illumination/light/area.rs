@@ -1,79 +1,92 @@
-//! Rectangles as a point sees them.
+//! A surface that emits the same radiance in all directions of its front, and is seen.
 
+use super::Patch;
+use super::beam::{Beam, Glow, LightPoint, Origin, Sides, Start};
+use super::emitter::Emitter;
+use crate::color::{Channels, Curve};
+use crate::numeric::bounds::Bounds;
+use crate::numeric::ray::Ray;
+use crate::numeric::sampling::{disk, sphere};
 use glam::DVec3;
-use std::f64::consts::TAU;
+use std::f64::consts::PI;
 
-/// A rectangle as a point at the origin sees it, of which directions are drawn evenly.
-///
-/// # Source
-/// Ureña, Fajardo and King 2013, "An area-preserving parametrization for spherical rectangles".
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SphericalRectangle {
-    axes: [DVec3; 3],
-    /// Unit of length of what follows: no square of it is lost.
-    scale: f64,
-    /// Least and greatest coordinate along the first axis, and along the second.
-    x: [f64; 2],
-    y: [f64; 2],
-    /// Coordinate along the third; below 0.
-    z: f64,
-    /// Third coordinates of the normals of the planes through two opposite sides.
-    b: [f64; 2],
-    k: f64,
-    solid_angle: f64,
+/// A surface that emits.
+#[derive(Clone, Debug)]
+pub(super) struct Area {
+    pub(super) patch: Patch,
+    /// Radiance, W/(m² sr).
+    pub(super) strength: Curve,
 }
 
-impl SphericalRectangle {
-    /// - `corner`: from the point to a corner. `across`, `up`: the sides there, square to each other.
-    ///
-    /// None where the rectangle is seen from its edge.
-    pub(super) fn new(corner: DVec3, across: DVec3, up: DVec3) -> Option<SphericalRectangle> {
-        let (first, second) = (across.try_normalize()?, up.try_normalize()?);
-        let third = first.cross(second);
-        let height = corner.dot(third);
-        let (third, z) = if height > 0.0 { (-third, -height) } else { (third, height) };
-        if z == 0.0 {
-            return None;
+impl Emitter for Area {
+    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+        let drawn = self.patch.draw(point, uniform)?;
+        let irradiance = self.strength.of(comb) * drawn.density.recip();
+        Some(Beam { towards: drawn.towards, distance: drawn.distance, irradiance, density: Some(drawn.density) })
+    }
+
+    /// A sphere's points lie on a smaller one, so that they are spread as its disc is, as seen from anywhere.
+    fn points(&self, count: u32) -> Vec<LightPoint> {
+        LightPoint::spread(count, |uniform| {
+            let (at, normal) = self.patch.point(uniform, count == 1);
+            (at, self.patch.seen_area(), normal, Sides::Front)
+        })
+    }
+
+    #[inline]
+    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+        from.beam(self.strength.of(comb), point)
+    }
+
+    fn origin(&self) -> Origin {
+        Origin::Within(Bounds::of(self.patch.bounds()))
+    }
+
+    fn start(&self, uniform: [f64; 2], _: usize) -> Option<Start> {
+        let (at, normal) = start_on(&self.patch, uniform)?;
+        Some(Start::Place { at, normal: Some(normal), area: self.patch.area() })
+    }
+
+    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
+        let strength = self.strength.of(comb);
+        normal.map_or(strength, |normal| strength * (self.patch.area() * normal.dot(direction).max(0.0)))
+    }
+
+    fn power(&self, _: f64, comb: usize) -> Channels {
+        self.strength.of(comb) * (PI * self.patch.area())
+    }
+
+    fn is_sharp(&self) -> bool {
+        false
+    }
+
+    fn is_surface(&self) -> bool {
+        true
+    }
+
+    fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<Glow> {
+        let (t, front) = self.patch.met(ray, t_min, t_max)?;
+        let length = ray.direction.length();
+        let radiance = if front { self.strength.of(comb) } else { Channels::ZERO };
+        Some(Glow { t, radiance, density: self.patch.density(ray.origin, ray.direction / length, t * length) })
+    }
+}
+
+/// A point of a patch, drawn evenly by area, and the normal on the side that emits.
+fn start_on(patch: &Patch, uniform: [f64; 2]) -> Option<(DVec3, DVec3)> {
+    match *patch {
+        Patch::Rectangle { corner, across, up } => {
+            Some((corner + across * uniform[0] + up * uniform[1], across.cross(up).try_normalize()?))
         }
-        let (left, low) = (corner.dot(first), corner.dot(second));
-        let [x, y] = [[left, left + across.length()], [low, low + up.length()]];
-        let scale = x.into_iter().chain(y).fold(-z, |most, at| most.max(at.abs()));
-        let ([x, y], z) = ([x, y].map(|at| at.map(|at| at / scale)), z / scale);
-        // Of the normals of the planes through the point and a side two coordinates are not 0, of neighbours the last only.
-        let normal = |at: f64| at / (z * z + at * at).sqrt();
-        let normals = [normal(-y[0]), normal(x[1]), normal(y[1]), normal(-x[0])];
-        let angle = |i: usize| (-normals[i] * normals[(i + 1) % 4]).clamp(-1.0, 1.0).acos();
-        let k = TAU - angle(2) - angle(3);
-        let solid_angle = angle(0) + angle(1) - k;
-        let b = [normals[0], normals[2]];
-        let possible = scale.is_finite() && z != 0.0;
-        possible.then_some(SphericalRectangle { axes: [first, second, third], scale, x, y, z, b, k, solid_angle })
+        Patch::Disc { center, normal, radius } => {
+            let normal = normal.try_normalize()?;
+            let (x, y) = normal.any_orthonormal_pair();
+            let [a, b] = disk(uniform);
+            Some((center + (x * a + y * b) * radius, normal))
+        }
+        Patch::Sphere { center, radius } => {
+            let normal = sphere(uniform);
+            Some((center + normal * radius, normal))
+        }
     }
-
-    /// Its solid angle, sr.
-    pub(super) fn solid_angle(&self) -> f64 {
-        self.solid_angle
-    }
-
-    /// A point of the rectangle, from the lit point.
-    pub(super) fn draw(&self, [u, v]: [f64; 2]) -> DVec3 {
-        let angle = u * self.solid_angle + self.k;
-        let (sin, cos) = angle.sin_cos();
-        let slope = (cos * self.b[0] - self.b[1]) / sin;
-        let cosine = (slope.signum() / length(slope, self.b[0])).clamp(-1.0, 1.0);
-        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        let x = if sine > 0.0 { -(cosine * self.z) / sine } else { self.x[0] }.clamp(self.x[0], self.x[1]);
-        let distance = length(x, self.z);
-        let [low, high] = self.y.map(|y| y / length(distance, y));
-        let height = low + v * (high - low);
-        let square = height * height;
-        let y = if square < 1.0 { height * distance / (1.0 - square).sqrt() } else { self.y[1] };
-        let y = y.clamp(self.y[0], self.y[1]);
-        (self.axes[0] * x + self.axes[1] * y + self.axes[2] * self.z) * self.scale
-    }
-}
-
-/// Of a vector of two coordinates that are neither huge nor tiny.
-fn length(x: f64, y: f64) -> f64 {
-    (x * x + y * y).sqrt()
 }

@@ -1,24 +1,37 @@
 //! Sources of light: what a scene says of them, and what of their light arrives at a point.
 
-mod area;
-mod emission;
+mod beam;
+mod emitter;
 mod goniometry;
 mod panorama;
+mod spherical_rectangle;
 mod patch;
 mod portal;
 mod sky;
+mod point;
+mod directional;
+mod spot;
+mod luminaire;
+mod area;
+mod mesh;
+mod surrounding;
 mod source;
+#[cfg(test)]
+mod contract_tests;
+#[cfg(test)]
+mod emission_tests;
 #[cfg(test)]
 mod tests;
 
-pub use emission::Start;
+pub use beam::{Beam, Glow, LightPoint, Origin, Start};
 pub use goniometry::{Goniometry, GoniometryError};
 pub use panorama::Panorama;
 pub use patch::Patch;
 pub use sky::Sky;
-pub use source::{Beam, Glow, LightPoint, Source};
+pub use source::Source;
 
 use crate::color::Color;
+use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -179,6 +192,42 @@ impl Light {
             Light::Area { patch, .. } => patch.words(),
             Light::Sky { .. } => "a sky",
         }
+    }
+
+    /// Where its light comes from.
+    pub fn origin(&self) -> Origin {
+        match self {
+            Light::Point { at, .. } | Light::Spot { at, .. } | Light::Luminaire { at, .. } => Origin::point(*at),
+            Light::Directional { direction, .. } => Origin::Towards(-direction.normalize_or(DVec3::NEG_Y)),
+            Light::Area { patch, .. } => Origin::Within(Bounds::of(patch.bounds())),
+            Light::Sky { .. } => Origin::Everywhere,
+        }
+    }
+
+    /// The surface that emits and its radiance, if it has one of its own.
+    pub fn surface(&self) -> Option<(&Patch, &Color)> {
+        match self {
+            Light::Area { patch, radiance } => Some((patch, radiance)),
+            _ => None,
+        }
+    }
+
+    /// Whether it sends shadows of soft edges: it is a surface, or a sky.
+    pub fn has_size(&self) -> bool {
+        matches!(self, Light::Area { .. } | Light::Sky { .. })
+    }
+
+    /// What a sky looks like that is not the same all around.
+    pub fn sky_map(&self) -> Option<&SkyMap> {
+        match self {
+            Light::Sky { map, .. } => map.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Whether it is a sky of one radiance.
+    pub fn is_even_sky(&self) -> bool {
+        matches!(self, Light::Sky { map: None, .. })
     }
 
     /// Whether its color cannot be told in three bands.

@@ -1,7 +1,7 @@
 //! Surfaces that emit: rectangles, discs and spheres.
 
 use super::LightError;
-use super::area::SphericalRectangle;
+use super::spherical_rectangle::SphericalRectangle;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::disk;
 use glam::DVec3;

@@ -185,7 +185,7 @@ fn outline(piece: &Piece, points: &Points, grid: Grid) -> Vec<Corner> {
 fn lamps(prepared: &Prepared, plan: &Plan, appearance: &Appearance<'_>) -> Vec<Tile> {
     let wavelengths = &appearance.wavelengths;
     let lamp = |(number, light): (usize, &Light)| {
-        let Light::Area { patch, radiance } = light else { return Vec::new() };
+        let Some((patch, radiance)) = light.surface() else { return Vec::new() };
         if !plan.keeps_light(number) {
             return Vec::new();
         }

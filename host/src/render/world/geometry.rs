@@ -6,7 +6,7 @@ use super::eye::Sight;
 use super::found::{Found, Met};
 use super::light_buffer::{LightBuffer, Way};
 use crate::color::Channels;
-use crate::illumination::light::Source;
+use crate::illumination::light::{Origin, Source};
 use crate::illumination::optics::{Interior, Painting};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
@@ -278,7 +278,10 @@ impl<'a> World<'a> {
         let is_clear =
             |still: &SceneOctree| still.octree.is_clear(from, to, |triangle| counts(still.triangle(triangle)));
         let lamps = self.appearance.sources.iter().filter(|(_, source)| source.is_surface());
-        let mut lamps = lamps.filter_map(|(_, source)| source.place()?.ok());
+        let mut lamps = lamps.filter_map(|(_, source)| match source.origin() {
+            Origin::Within(bounds) => Some(bounds),
+            Origin::Towards(_) | Origin::Everywhere => None,
+        });
         !self.moves()
             && !lamps.any(|lamp| Octree::may_stand_between(from, to, lamp))
             && self.still().is_none_or(is_clear)

@@ -10,7 +10,7 @@
 //! Haines and Greenberg 1986, the light buffer: a shadow-testing accelerator, with voxels in the place of directions, so that
 //! lights may have a size.
 
-use crate::illumination::light::Source;
+use crate::illumination::light::{Origin, Source};
 use crate::numeric::bounds::Bounds;
 use crate::octree::{Between, Octree, Shaft};
 use glam::DVec3;
@@ -83,10 +83,12 @@ impl LightBuffer {
         let along = size.to_array().map(|size| ((size / side).ceil() as usize).clamp(1, VOXELS).div_ceil(BRICK));
         let mut entries = 0;
         let place = |(_, source): &(usize, Source)| {
-            let at = source.place()?;
-            if at.is_ok_and(|bounds| bounds.size().max_element() > 2.0 * side) {
-                return None;
-            }
+            let at = match source.origin() {
+                Origin::Within(bounds) if bounds.size().max_element() > 2.0 * side => return None,
+                Origin::Within(bounds) => Ok(bounds),
+                Origin::Towards(towards) => Err(towards),
+                Origin::Everywhere => return None,
+            };
             entries += 1;
             Some(Place { at, entry: entries - 1 })
         };

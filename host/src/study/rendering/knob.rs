@@ -365,7 +365,6 @@ fn curved(base: &Base) -> Option<&'static str> {
 
 /// Whether some light is no point and not parallel.
 fn has_spread_light(base: &Base) -> bool {
-    let is_spread = |light: &Light| matches!(light, Light::Area { .. } | Light::Sky { .. });
     let emits = base.prepared.objects.iter().flat_map(|object| &object.materials);
-    base.prepared.lights.iter().any(is_spread) || emits.into_iter().any(|material| !material.emission.is_black())
+    base.prepared.lights.iter().any(Light::has_size) || emits.into_iter().any(|material| !material.emission.is_black())
 }

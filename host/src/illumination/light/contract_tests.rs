@@ -1,0 +1,154 @@
+//! What every light keeps: what is sampled is what is seen, what leaves it is its power, it is where it says.
+
+use super::{Goniometry, Light, Origin, Patch, SkyDisc, SkyMap, Source, Start};
+use crate::color::{Color, Wavelengths};
+use crate::numeric::cubature::unit_square;
+use crate::numeric::ray::Ray;
+use crate::numeric::sampling::{Stream, cosine_hemisphere, sphere};
+use crate::numeric::sequence::Sequence;
+use glam::DVec3;
+use std::collections::BTreeSet;
+use std::f64::consts::{PI, TAU};
+
+/// Corners of an emitting triangle.
+const TRIANGLE: [DVec3; 3] = [DVec3::new(-1.0, 2.0, -0.5), DVec3::new(1.5, 2.5, 0.0), DVec3::new(0.0, 2.0, 1.5)];
+/// Where light arrives, on a surface that faces up.
+const POINT: DVec3 = DVec3::new(0.2, 0.1, -0.3);
+
+/// Lights of every kind, all above the point.
+fn sources() -> Vec<Source> {
+    let one = || Color::grey(1.0);
+    let (at, down) = (DVec3::new(0.5, 3.0, 0.4), DVec3::NEG_Y);
+    let vertical: Vec<f64> = (0..=180).map(f64::from).collect();
+    let candelas = vertical.iter().map(|v| 683.0 * (1.0 + v.to_radians().cos())).collect();
+    let goniometry = Goniometry::new(vertical, vec![0.0], candelas).expect("a table");
+    let area = |patch| Light::Area { patch, radiance: one() };
+    let towards = DVec3::new(0.3, 0.8, -0.2).normalize();
+    let disc = SkyMap { disc: Some(SkyDisc { towards, radius: 0.3 }), ..SkyMap::default() };
+    let lights = [
+        Light::Point { at, intensity: one() },
+        Light::Directional { direction: DVec3::new(0.4, -1.0, 0.1), irradiance: one() },
+        Light::Spot { at, direction: down, intensity: one(), inner: 20.0, outer: 60.0 },
+        Light::Luminaire { at, down, front: DVec3::X, goniometry, color: one() },
+        area(Patch::Rectangle { corner: at, across: DVec3::new(1.5, 0.2, 0.0), up: DVec3::new(-0.2, 1.5, 2.0) }),
+        area(Patch::Disc { center: at, normal: DVec3::new(0.2, -1.0, 0.1), radius: 0.8 }),
+        area(Patch::Sphere { center: at, radius: 0.7 }),
+        Light::Sky { map: None, radiance: one(), turned: 0.0 },
+        Light::Sky { map: Some(disc), radiance: one(), turned: 30.0 },
+    ];
+    let wavelengths = Wavelengths::bands();
+    let made = |light: &Light| {
+        light.check().unwrap_or_else(|error| panic!("{error}"));
+        Source::new(light, &wavelengths)
+    };
+    let mesh = Source::of_triangles(vec![TRIANGLE], wavelengths.light(&one()));
+    lights.iter().map(made).chain(mesh).collect()
+}
+
+#[test]
+fn there_is_a_light_of_every_kind() {
+    let kinds: BTreeSet<&str> = sources().iter().map(Source::kind).collect();
+    assert_eq!(kinds, Source::KINDS.iter().copied().collect());
+}
+
+/// Irradiance of a surface that faces up, by the beams of a light.
+fn sampled(source: &Source) -> f64 {
+    let term = |uniform| {
+        let beam = source.beam(POINT, Some(DVec3::Y), uniform, 0);
+        beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y.max(0.0))
+    };
+    unit_square(term, 1e-6, 100_000).value
+}
+
+/// The radiance that comes from a direction, and the density with which beams are drawn there.
+fn seen(source: &Source, towards: DVec3) -> (f64, f64) {
+    let ray = Ray { origin: POINT, direction: towards };
+    let glow = source.glow(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky(&ray, Some(DVec3::Y), 0));
+    if let Some(glow) = glow {
+        return (glow.radiance.0[0], glow.density);
+    }
+    // A triangle is met by whoever knows it.
+    let [a, b, c] = TRIANGLE;
+    let normal = (b - a).cross(c - a).normalize();
+    let distance = (a - POINT).dot(normal) / towards.dot(normal);
+    let met = POINT + towards * distance;
+    let is_in = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(met - *p).dot(normal) > 0.0);
+    match source.density_on_triangle(distance, towards.dot(normal)) {
+        density if density > 0.0 && distance > 0.0 && is_in => (1.0, density),
+        _ => (0.0, 0.0),
+    }
+}
+
+#[test]
+fn sampled_irradiance_is_that_of_all_that_is_seen() {
+    let sequence = Sequence::new(3, 1);
+    let count = 1 << 18;
+    for source in sources().iter().filter(|source| !source.is_sharp()) {
+        let (mut irradiance, mut density) = (0.0, 0.0);
+        for index in 0..count {
+            let (radiance, _) = seen(source, cosine_hemisphere(sequence.point(index, 0), DVec3::Y));
+            irradiance += radiance * PI / f64::from(count);
+            // The density of all directions: over the one with which they are drawn here, the sphere's is flat.
+            density += seen(source, sphere(sequence.point(index, 1))).1 * 2.0 * TAU / f64::from(count);
+        }
+        let found = sampled(source);
+        assert!((found / irradiance - 1.0).abs() < 5e-3, "{}: {found} {irradiance}", source.kind());
+        assert!((density - 1.0).abs() < 2e-2, "{}: the density of its beams integrates to {density}", source.kind());
+    }
+}
+
+#[test]
+fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
+    let mut stream = Stream::new(1, 2);
+    for source in sources() {
+        for _ in 0..200 {
+            let uniform = stream.point();
+            let Some(beam) = source.beam(POINT, Some(DVec3::Y), uniform, 0) else { continue };
+            assert_eq!(beam.density.is_none(), source.is_sharp(), "{}", source.kind());
+            if let Some(density) = beam.density {
+                let (radiance, told) = seen(&source, beam.towards);
+                let error = (told / density - 1.0).abs().max((beam.irradiance.0[0] * density / radiance - 1.0).abs());
+                assert!(error < 1e-6, "{}: {density} {told} {radiance}", source.kind());
+            }
+            let is_there = match source.origin() {
+                Origin::Within(bounds) => {
+                    let end = POINT + beam.towards * beam.distance;
+                    (end - end.clamp(bounds.min, bounds.max)).length() < 1e-9
+                }
+                Origin::Towards(towards) => beam.towards == towards && beam.distance.is_infinite(),
+                Origin::Everywhere => beam.distance.is_infinite() && source.is_beyond(),
+            };
+            assert!(is_there, "{}", source.kind());
+        }
+    }
+}
+
+#[test]
+fn points_that_stand_for_a_light_light_as_it_does() {
+    // A disc in the sky stands in its middle, and other skies have no points.
+    for source in sources().iter().filter(|source| !source.is_beyond()) {
+        let points = source.points(4096);
+        let term = |point| source.beam_from(point, POINT, 0).map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y);
+        let (found, expected) = (points.iter().map(term).sum::<f64>(), sampled(source));
+        assert!((found / expected - 1.0).abs() < 5e-3, "{}: {found} {expected}", source.kind());
+        assert!(points.len() == 1 || !source.is_sharp(), "{}", source.kind());
+    }
+}
+
+#[test]
+fn what_leaves_a_light_is_its_power() {
+    let sequence = Sequence::new(1, 1);
+    let (count, radius) = (1 << 14, 2.0);
+    for source in sources() {
+        let of = |index: u32| match source.start(sequence.point(index, 0), 0) {
+            Some(Start::Place { normal, .. }) => {
+                source.intensity(normal, sphere(sequence.point(index, 1)), 0).0[0] * 2.0 * TAU
+            }
+            Some(Start::Parallel { irradiance, .. }) => irradiance.0[0] * PI * radius * radius,
+            None => 0.0,
+        };
+        let found = (0..count).map(of).sum::<f64>() / f64::from(count);
+        let power = source.power(radius, 0).0[0];
+        assert!((found / power - 1.0).abs() < 1e-2, "{}: {found} {power}", source.kind());
+    }
+}

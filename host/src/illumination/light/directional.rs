@@ -1,0 +1,44 @@
+//! Parallel light from infinitely far away.
+
+use super::beam::{Beam, LightPoint, Origin, Start};
+use super::emitter::Emitter;
+use crate::color::{Channels, Curve};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Parallel light.
+#[derive(Clone, Debug)]
+pub(super) struct Directional {
+    /// Towards the light, unit length.
+    pub(super) towards: DVec3,
+    /// Irradiance of a surface that faces it, W/m².
+    pub(super) strength: Curve,
+}
+
+impl Emitter for Directional {
+    fn beam(&self, _: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<Beam> {
+        let irradiance = self.strength.of(comb);
+        Some(Beam { towards: self.towards, distance: f64::INFINITY, irradiance, density: None })
+    }
+
+    fn points(&self, _: u32) -> Vec<LightPoint> {
+        vec![LightPoint::towards(self.towards)]
+    }
+
+    fn origin(&self) -> Origin {
+        Origin::Towards(self.towards)
+    }
+
+    fn start(&self, _: [f64; 2], comb: usize) -> Option<Start> {
+        Some(Start::Parallel { direction: -self.towards, irradiance: self.strength.of(comb) })
+    }
+
+    fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {
+        self.strength.of(comb)
+    }
+
+    fn power(&self, radius: f64, comb: usize) -> Channels {
+        let disc = PI * radius * radius;
+        self.strength.of(comb) * disc
+    }
+}

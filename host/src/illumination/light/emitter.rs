@@ -1,0 +1,78 @@
+//! What every light tells: what arrives at a point, what leaves it, where it is.
+
+use super::beam::{Beam, Glow, LightPoint, Origin, Start};
+use crate::color::Channels;
+use crate::numeric::ray::Ray;
+use glam::DVec3;
+
+/// A light of one kind, ready for rendering. [`Source`](super::Source) says what each function gives.
+pub(super) trait Emitter {
+    /// Light that arrives at a point if nothing stands between.
+    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam>;
+
+    /// A few points that stand for it.
+    fn points(&self, count: u32) -> Vec<LightPoint>;
+
+    /// Light that arrives from one of its points.
+    fn beam_from(&self, _: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+        // What has no size is its only point, and the middle of a disc in the sky stands for it.
+        self.beam(point, None, [0.0; 2], comb)
+    }
+
+    /// Where its light comes from.
+    fn origin(&self) -> Origin;
+
+    /// Where light leaves it.
+    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<Start>;
+
+    /// Flux in each solid angle that leaves such a place.
+    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels;
+
+    /// All flux that it sends out.
+    fn power(&self, radius: f64, comb: usize) -> Channels;
+
+    /// Whether its light comes from one direction only at every point.
+    fn is_sharp(&self) -> bool {
+        true
+    }
+
+    /// Whether it is a surface of its own, which rays meet.
+    fn is_surface(&self) -> bool {
+        false
+    }
+
+    /// Whether its light is worth being followed.
+    fn is_caught(&self) -> bool {
+        true
+    }
+
+    /// Whether it is seen where rays meet nothing.
+    fn is_beyond(&self) -> bool {
+        false
+    }
+
+    /// Whether it surrounds everything.
+    fn is_sky(&self) -> bool {
+        false
+    }
+
+    /// What a ray sees of a surface of its own.
+    fn glow(&self, _: &Ray, _: f64, _: f64, _: usize) -> Option<Glow> {
+        None
+    }
+
+    /// What is seen of a sky.
+    fn sky(&self, _: &Ray, _: Option<DVec3>, _: usize) -> Option<Glow> {
+        None
+    }
+
+    /// The density with which a direction is drawn in which its triangles are met.
+    fn density_on_triangle(&self, _: f64, _: f64) -> f64 {
+        0.0
+    }
+
+    /// The cone out of which nothing is sent.
+    fn cone(&self) -> Option<(DVec3, DVec3, f64)> {
+        None
+    }
+}

@@ -1,0 +1,102 @@
+//! Triangles of an object that emits the same radiance on both sides.
+
+use super::beam::{Beam, LightPoint, Origin, Sides, Start};
+use super::emitter::Emitter;
+use crate::color::{Channels, Curve};
+use crate::numeric::bounds::Bounds;
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Triangles that emit on both sides, drawn evenly by area.
+#[derive(Clone, Debug)]
+pub(super) struct Triangles {
+    /// Radiance, W/(m² sr).
+    strength: Curve,
+    corners: Vec<[DVec3; 3]>,
+    /// The part of the area up to each.
+    below: Vec<f64>,
+    area: f64,
+}
+
+impl Triangles {
+    /// None without area.
+    pub(super) fn new(corners: Vec<[DVec3; 3]>, strength: Curve) -> Option<Triangles> {
+        let mut area = 0.0;
+        let mut below: Vec<f64> = Vec::with_capacity(corners.len());
+        for [a, b, c] in &corners {
+            area += 0.5 * (*b - *a).cross(*c - *a).length();
+            below.push(area);
+        }
+        if !(area > 0.0 && area.is_finite()) {
+            return None;
+        }
+        below.iter_mut().for_each(|part| *part /= area);
+        Some(Triangles { strength, corners, below, area })
+    }
+
+    /// A point, drawn evenly by area, and the normal there.
+    fn point(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
+        let index = self.below.partition_point(|part| *part <= x).min(self.below.len() - 1);
+        let from = if index == 0 { 0.0 } else { self.below[index - 1] };
+        let x = ((x - from) / (self.below[index] - from)).clamp(0.0, 1.0);
+        let [a, b, c] = self.corners[index];
+        let root = x.sqrt();
+        let at = a * (1.0 - root) + b * (root * (1.0 - y)) + c * (root * y);
+        (at, (b - a).cross(c - a).normalize_or_zero())
+    }
+
+    fn draw(&self, point: DVec3, uniform: [f64; 2]) -> Option<(DVec3, f64, f64)> {
+        let (at, normal) = self.point(uniform);
+        let offset = at - point;
+        let distance = offset.length();
+        let towards = offset / distance;
+        let density = distance * distance / (normal.dot(towards).abs() * self.area);
+        (distance > 0.0 && density.is_finite() && density > 0.0).then_some((towards, distance, density))
+    }
+}
+
+impl Emitter for Triangles {
+    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+        let (towards, distance, density) = self.draw(point, uniform)?;
+        let irradiance = self.strength.of(comb) * density.recip();
+        Some(Beam { towards, distance, irradiance, density: Some(density) })
+    }
+
+    fn points(&self, count: u32) -> Vec<LightPoint> {
+        LightPoint::spread(count, |uniform| {
+            let (at, normal) = self.point(uniform);
+            (at, self.area, Some(normal), Sides::Both)
+        })
+    }
+
+    #[inline]
+    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+        from.beam(self.strength.of(comb), point)
+    }
+
+    fn origin(&self) -> Origin {
+        Origin::Within(Bounds::of(self.corners.iter().flatten().copied()))
+    }
+
+    fn start(&self, uniform: [f64; 2], _: usize) -> Option<Start> {
+        let (at, normal) = self.point(uniform);
+        Some(Start::Place { at, normal: Some(normal), area: self.area })
+    }
+
+    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
+        let strength = self.strength.of(comb);
+        normal.map_or(strength, |normal| strength * (self.area * normal.dot(direction).abs()))
+    }
+
+    fn power(&self, _: f64, comb: usize) -> Channels {
+        self.strength.of(comb) * (TAU * self.area)
+    }
+
+    fn is_sharp(&self) -> bool {
+        false
+    }
+
+    fn density_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
+        if cosine == 0.0 { 0.0 } else { distance * distance / (cosine.abs() * self.area) }
+    }
+}

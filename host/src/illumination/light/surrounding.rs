@@ -1,0 +1,73 @@
+//! A sky as a light.
+
+use super::Sky;
+use super::beam::{Beam, Glow, LightPoint, Origin, Start};
+use super::emitter::Emitter;
+use crate::color::{Channels, Curve};
+use crate::numeric::ray::Ray;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// A sky, or a disc in it.
+#[derive(Clone, Debug)]
+pub(super) struct Surrounding {
+    pub(super) sky: Box<Sky>,
+    /// What its map is multiplied with, as light.
+    pub(super) strength: Curve,
+}
+
+impl Emitter for Surrounding {
+    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+        let (towards, density) = self.sky.draw(point, normal, uniform)?;
+        let irradiance = self.sky.radiance(towards, comb) * density.recip();
+        Some(Beam { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
+    }
+
+    fn points(&self, _: u32) -> Vec<LightPoint> {
+        self.sky.disc().map(LightPoint::towards).into_iter().collect()
+    }
+
+    fn origin(&self) -> Origin {
+        Origin::Everywhere
+    }
+
+    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<Start> {
+        let (towards, density) = self.sky.start(uniform)?;
+        let irradiance = self.sky.radiance(towards, comb) * density.recip();
+        Some(Start::Parallel { direction: -towards, irradiance })
+    }
+
+    fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {
+        self.strength.of(comb)
+    }
+
+    fn power(&self, radius: f64, comb: usize) -> Channels {
+        let disc = PI * radius * radius;
+        self.sky.total(comb) * disc
+    }
+
+    fn is_sharp(&self) -> bool {
+        false
+    }
+
+    fn is_caught(&self) -> bool {
+        !self.sky.is_even()
+    }
+
+    fn is_beyond(&self) -> bool {
+        true
+    }
+
+    fn is_sky(&self) -> bool {
+        self.sky.disc().is_none()
+    }
+
+    fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<Glow> {
+        let Ray { origin, direction: towards } = *ray;
+        if self.sky.is_beside(towards) {
+            return None;
+        }
+        let (radiance, density) = (self.sky.radiance(towards, comb), self.sky.density(origin, towards, normal));
+        Some(Glow { t: f64::INFINITY, radiance, density })
+    }
+}
