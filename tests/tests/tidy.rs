@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::{Path, PathBuf};
 use tests::house::{CRATES, Crate, Uses, code, members, read, root, sources};
 
 /// Most lines of a source file.
@@ -211,6 +212,47 @@ fn no_files_use_each_other_in_circles() {
         faults.push(format!("{room}: there is no circle any more; take it off the list"));
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Families of kinds that grow: the crate, the enumeration, the words of its kinds, and the room that may tell them apart.
+const FAMILIES: &[(&str, &str, &[&str], &str)] = &[
+    ("host", "Technique", &["RayTracing", "TwoWay", "ScanLine", "Radiosity"], "render/renderers"),
+    ("host", "AnyLobe", &["Diffuse", "Phong", "Mirror", "Rough", "Principled"], "illumination/optics"),
+    ("host", "Light", &["Point", "Directional", "Spot", "Luminaire", "Area", "Sky"], "illumination/light"),
+];
+
+/// Lines of a `match` that tell kinds of a family apart.
+fn arms<'a>(code: &'a str, family: &str, kinds: &[&str]) -> Vec<&'a str> {
+    let kinds: Vec<String> = kinds.iter().map(|kind| format!("{family}::{kind}")).collect();
+    let is_arm = |line: &&str| {
+        let pattern = line.split_once("=>").map_or(line.trim(), |(pattern, _)| pattern);
+        (line.contains("=>") || pattern.starts_with('|')) && kinds.iter().any(|kind| pattern.contains(kind))
+    };
+    code.lines().map(str::trim).filter(is_arm).collect()
+}
+
+#[test]
+fn kinds_of_a_family_are_told_apart_in_their_room_only() {
+    let seen = arms("match light {\n    Light::Point { at, .. }\n    | Light::Sky { .. } => at,", "Light", &["Sky"]);
+    assert_eq!(seen, ["| Light::Sky { .. } => at,"]);
+    let mut faults = Vec::new();
+    for (name, family, kinds, room) in FAMILIES {
+        let folder = CRATES.iter().find(|row| row.name == *name).expect("a crate").folder;
+        let src = root().join(folder).join("src");
+        let elsewhere = |path: &&PathBuf| !path.starts_with(src.join(room)) && **path != src.join(format!("{room}.rs"));
+        for path in sources(&src).iter().filter(elsewhere).filter(|path| !is_test(path)) {
+            let text = code(&read(path));
+            let text = &text[..text.find("mod tests {").unwrap_or(text.len())];
+            let place = path.display();
+            faults.extend(arms(text, family, kinds).into_iter().map(|arm| format!("{place}: {arm}")));
+        }
+    }
+    assert!(faults.is_empty(), "ask a row or a method of the kind instead:\n{}", faults.join("\n"));
+}
+
+/// Whether a file holds tests only.
+fn is_test(path: &Path) -> bool {
+    path.file_stem().is_some_and(|stem| stem.to_string_lossy().ends_with("tests"))
 }
 
 #[test]

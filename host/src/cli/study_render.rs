@@ -3,8 +3,8 @@
 use super::source::stem;
 use super::study::memo;
 use super::{Definitions, Failure, SCRIPT_HELP, load_lit, progress};
-use crate::render::Technique;
 use crate::render::Watch;
+use crate::render::{RENDERERS, Technique};
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, renderers, studied, usual};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -54,7 +54,7 @@ struct Arguments {
 /// The sub-command.
 pub(super) fn command() -> Command {
     let line = |knob: &RenderKnob| {
-        let by: Vec<&str> = knob.techniques.iter().map(|technique| technique.row().word).collect();
+        let by: Vec<&str> = RENDERERS.iter().filter(|row| (knob.renderers)(row)).map(|row| row.word).collect();
         format!("\n  {:<16} {} ({})", knob.name, knob.sets, by.join(", "))
     };
     let knobs: String = RENDER_KNOBS.iter().map(line).collect();

@@ -42,6 +42,8 @@ pub struct RendererRow {
     pub adds_samples: bool,
     /// Whether it follows light from lamps, which can be kept.
     pub follows_light: bool,
+    /// Whether photons are its way to caustics, in every scene.
+    pub sends_photons: bool,
     /// Whether it finds the light that diffuse surfaces send each other in every scene, which takes long and can be gone on
     /// with.
     pub solves: bool,
@@ -62,6 +64,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         help: "All light: mirrors, glass, rough surfaces, soft shadows",
         adds_samples: true,
         follows_light: true,
+        sends_photons: false,
         solves: false,
         is_studied: true,
         require: |_| (),
@@ -74,6 +77,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         help: "All light, with that of lamps followed through mirrors and glass first: caustics",
         adds_samples: true,
         follows_light: true,
+        sends_photons: true,
         solves: false,
         is_studied: true,
         require: |settings| settings.light.caustics = Caustics::PhotonMapped,
@@ -86,6 +90,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         help: "Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show lights and ambient light only, and glass bends nothing",
         adds_samples: false,
         follows_light: false,
+        sends_photons: false,
         solves: false,
         is_studied: true,
         require: |_| (),
@@ -101,6 +106,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         help: "Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are not seen",
         adds_samples: false,
         follows_light: false,
+        sends_photons: false,
         solves: true,
         is_studied: false,
         // Surfaces out of view send light, too.

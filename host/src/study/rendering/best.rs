@@ -7,16 +7,14 @@ use crate::render::Technique;
 
 /// The knobs that a renderer has.
 pub(super) fn knobs_of(technique: Technique) -> impl Iterator<Item = &'static RenderKnob> {
-    RENDER_KNOBS.iter().filter(move |knob| knob.techniques.contains(&technique))
+    RENDER_KNOBS.iter().filter(move |knob| (knob.renderers)(technique.row()))
 }
 
 impl Base {
     /// Why a knob changes nothing, or nothing that it does not change by another renderer, where that is so.
     pub(super) fn idle(&self, technique: Technique, knob: &RenderKnob) -> Option<&'static str> {
-        let not_followed = match technique {
-            Technique::TwoWay => self.lacks(Stage::CaughtLight, "no light is followed from lamps: this is ray tracing"),
-            _ => None,
-        };
+        let why = "no light is followed from lamps: this is ray tracing";
+        let not_followed = technique.row().sends_photons.then(|| self.lacks(Stage::CaughtLight, why)).flatten();
         not_followed.or_else(|| (knob.idle)(self))
     }
 

@@ -5,8 +5,8 @@ use crate::illumination::Light;
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
 use crate::plan::Stage;
-use crate::render::Technique;
 use crate::render::two_way::widest_disc;
+use crate::render::{RendererRow, Technique};
 use crate::scene::{Caustics, MAX_PHOTONS};
 
 /// The coarsest tolerance, as a part of the diagonal of the largest curved object, and how much finer the next one is.
@@ -32,11 +32,11 @@ const RADIUS_STEP: f64 = 2.0;
 /// The least resolution of voxels with points that is tried.
 const COARSEST_VOXELS: i32 = 6;
 
-const ALL: &[Technique] = &[Technique::RayTracing, Technique::TwoWay, Technique::ScanLine];
-const RAYS: &[Technique] = &[Technique::RayTracing, Technique::TwoWay];
+const ALL: fn(&RendererRow) -> bool = |renderer| renderer.is_studied;
+const RAYS: fn(&RendererRow) -> bool = |renderer| renderer.is_studied && renderer.adds_samples;
 /// Rays from the eye alone.
-const EYE: &[Technique] = &[Technique::RayTracing];
-const LAMPS: &[Technique] = &[Technique::TwoWay];
+const EYE: fn(&RendererRow) -> bool = |renderer| RAYS(renderer) && !renderer.sends_photons;
+const LAMPS: fn(&RendererRow) -> bool = |renderer| renderer.is_studied && renderer.sends_photons;
 
 /// A quality setting of a renderer.
 pub struct RenderKnob {
@@ -44,8 +44,8 @@ pub struct RenderKnob {
     pub name: &'static str,
     /// What it sets, with its unit.
     pub sets: &'static str,
-    /// The renderers that have it.
-    pub techniques: &'static [Technique],
+    /// Whether a renderer has it.
+    pub renderers: fn(&RendererRow) -> bool,
     /// Whether it says which light counts, and not how well that is found: a reference is then only as good as the scene
     /// asks for, unless this knob is what is studied.
     pub is_model: bool,
@@ -75,7 +75,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "samples",
         sets: "samples in each pixel",
-        techniques: ALL,
+        renderers: ALL,
         is_model: false,
         remodels: false,
         idle: |_| None,
@@ -87,7 +87,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "error",
         sets: "relative error of the luminance at which a pixel has samples enough, of half as many as the reference has at the most",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: false,
         idle: |_| None,
@@ -99,7 +99,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "denoise",
         sets: "whether pictures are denoised (1) or not (0); the reference never is",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: false,
         idle: |base| {
@@ -114,7 +114,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "depth",
         sets: "how often a ray may be reflected or refracted",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: false,
         idle: |base| base.lacks(Stage::Reflection, "nothing in the scene reflects, refracts or carries light on"),
@@ -129,7 +129,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "light_samples",
         sets: "points of each light that has a size, for each element",
-        techniques: ALL,
+        renderers: ALL,
         is_model: false,
         remodels: false,
         idle: |base| (!has_spread_light(base)).then_some("no light of the scene has a size"),
@@ -148,7 +148,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "texture_filter",
         sets: "over how much of what a sample stands for the mean of a texture is taken; 0 is a point",
-        techniques: ALL,
+        renderers: ALL,
         is_model: false,
         remodels: false,
         idle: |base| base.lacks(Stage::Textures, "no material changes from place to place"),
@@ -161,7 +161,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "tolerance",
         sets: "distance between exact surface and triangles, scene units; 0 stands for a part of each object's size",
-        techniques: ALL,
+        renderers: ALL,
         is_model: false,
         remodels: true,
         idle: curved,
@@ -173,7 +173,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "angle",
         sets: "largest turn of the normal from vertex to vertex of an exact surface, degrees",
-        techniques: ALL,
+        renderers: ALL,
         is_model: false,
         remodels: true,
         idle: curved,
@@ -185,7 +185,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "exact_surfaces",
         sets: "whether rays are led on from triangles to the exact surfaces behind them (1) or not (0)",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: true,
         idle: curved,
@@ -197,7 +197,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "spectral",
         sets: "whether rays carry eight wavelengths (1) or three bands (0)",
-        techniques: ALL,
+        renderers: ALL,
         is_model: true,
         remodels: false,
         idle: |base| base.lacks(Stage::Spectra, "no material and no light has a spectrum"),
@@ -209,7 +209,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "interreflection",
         sets: "whether diffuse light is carried on from surface to surface (1) or not (0)",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: true,
         remodels: false,
         idle: |base| (base.settings().light.reflection_depth == 0).then_some("the depth of the scene is 0"),
@@ -224,7 +224,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "caustics",
         sets: "whether light counts that a mirror or glass throws from a lamp (1) or not (0)",
-        techniques: EYE,
+        renderers: EYE,
         is_model: true,
         remodels: false,
         idle: |base| base.lacks(Stage::Reflection, "nothing in the scene reflects, refracts or carries light on"),
@@ -238,7 +238,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "photons",
         sets: "ways of light that are followed from lamps for eight samples of each pixel",
-        techniques: LAMPS,
+        renderers: LAMPS,
         is_model: false,
         remodels: false,
         idle: |_| None,
@@ -250,7 +250,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "radius",
         sets: "radius of the largest disc over which caught light is spread, scene units; where there is much, discs are smaller",
-        techniques: LAMPS,
+        renderers: LAMPS,
         is_model: false,
         remodels: false,
         idle: |_| None,
@@ -262,7 +262,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "voxels",
         sets: "2 to this power voxels are along the scene, a point in each stands for its surface, and rays meet these; 0 for none: rays meet surfaces",
-        techniques: LAMPS,
+        renderers: LAMPS,
         is_model: false,
         remodels: false,
         idle: |_| None,
@@ -280,7 +280,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "radiosity_error",
         sets: "error of the light that one pair of patches brings in radiosity, as a part of the mean irradiance",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: false,
         idle: no_radiosity,
@@ -292,7 +292,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "radiosity_finest",
         sets: "length below which patches are not divided in radiosity, as a part of the diagonal of the scene",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: false,
         idle: no_radiosity,
@@ -304,7 +304,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "radiosity_directions",
         sets: "directions in which each patch of radiosity looks around, by which form factors are balanced",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: false,
         idle: no_radiosity,
@@ -316,7 +316,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "radiosity_tolerance",
         sets: "error of the solver of radiosity, as a part of the greatest irradiance",
-        techniques: RAYS,
+        renderers: RAYS,
         is_model: false,
         remodels: false,
         idle: no_radiosity,

@@ -94,10 +94,11 @@ impl Base {
         let mut settings = self.scene.settings;
         // In words, so that setups that are the same are equal.
         settings.light.spectral = Some(settings.light.spectral.unwrap_or(self.plan.needs(Stage::Spectra)));
-        match (technique, &mut settings.light.caustics) {
-            (Technique::TwoWay, caustics) => *caustics = Caustics::PhotonMapped,
-            (_, caustics @ Caustics::PhotonMapped) => *caustics = Caustics::LeftOut,
-            _ => {}
+        if settings.light.caustics == Caustics::PhotonMapped {
+            settings.light.caustics = Caustics::LeftOut;
+        }
+        if technique.row().sends_photons {
+            (technique.row().require)(&mut settings);
         }
         settings.photons.radius = Some(settings.photons.radius.unwrap_or_else(|| widest_disc(&self.prepared)));
         Setup { technique, settings, target: None, denoise: false, own_tolerances: true }
@@ -182,7 +183,7 @@ impl Base {
             order
         };
         let quiet = watch.quiet();
-        let is_followed = setup.technique == Technique::TwoWay;
+        let is_followed = setup.technique.row().sends_photons;
         let mut shots = Vec::new();
         while !is_enough(&shots) {
             if is_followed {
