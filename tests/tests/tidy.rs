@@ -47,7 +47,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("host/illumination/atmosphere", 4),
     ("host/mesh", 12),
     ("host/octree", 7),
-    ("host/picture/source", 4),
     ("host/script", 3),
     ("host/script/argument", 4),
     ("host/solid", 17),

@@ -1,6 +1,6 @@
 //! OpenEXR files, block by block.
 
-use super::{Buffered, Texel};
+use super::texel::{Buffered, Texel};
 use exr::block::reader::{ChunksReader, Reader};
 use exr::block::{self, UncompressedBlock};
 use exr::meta::attribute::{ChannelDescription, SampleType};

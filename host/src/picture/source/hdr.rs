@@ -3,7 +3,7 @@
 //! # Source
 //! Ward 1991, *Real pixels*; the file format as the Radiance distribution describes it.
 
-use super::{Buffered, Texel};
+use super::texel::{Buffered, Texel};
 use crate::color::srgb;
 use glam::DVec3;
 use std::io::{BufRead, Read};

@@ -1,12 +1,14 @@
 //! Files of pictures, pixel by pixel: whoever reads one decides what it keeps, and knows the size before.
 
+mod texel;
 mod exr;
 mod hdr;
 mod png;
 
+pub(crate) use texel::{Precision, Texel};
+
 use super::{Picture, PictureError};
 use image::ImageFormat;
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
@@ -22,34 +24,6 @@ enum Format {
     Png(Box<png::Png>),
     Exr(Box<exr::Exr>),
     Hdr(Box<hdr::Hdr>),
-}
-
-/// How a file tells its pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Precision {
-    /// Eight bits a band, encoded as sRGB.
-    Eight,
-    /// Sixteen bits a band, encoded as sRGB; `grey` where all bands are the same.
-    Sixteen {
-        /// Whether all bands are the same.
-        grey: bool,
-    },
-    /// Floating-point numbers of linear light; `grey` where all bands are the same.
-    Float {
-        /// Whether all bands are the same.
-        grey: bool,
-    },
-}
-
-/// A pixel of a file.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Texel {
-    /// Red, green, blue, each encoded as sRGB, and coverage.
-    Eight([u8; 4]),
-    /// Red, green, blue, each encoded as sRGB, and coverage.
-    Sixteen([u16; 4]),
-    /// Red, green, blue of linear light, premultiplied by the coverage; coverage; depth.
-    Float([f32; 5]),
 }
 
 impl<'a> Source<'a> {
@@ -122,6 +96,3 @@ pub(super) fn format_of(path: &Path) -> Result<ImageFormat, PictureError> {
         _ => Err(PictureError::Format { path: path.into(), endings: ".png, .exr or .hdr" }),
     }
 }
-
-/// What is read of a file.
-type Buffered = BufReader<File>;

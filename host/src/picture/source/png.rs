@@ -1,6 +1,6 @@
 //! PNG files, row by row.
 
-use super::{Buffered, Precision, Texel};
+use super::texel::{Buffered, Precision, Texel};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 
 /// Most bytes that the decoder may take for what is no pixel, and for rows.
