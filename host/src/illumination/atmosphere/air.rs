@@ -1,10 +1,12 @@
 //! What air, haze and ozone do to light, and how strong the sun is above them.
 
-use super::Spectral;
 use std::f64::consts::PI;
 
 /// Wavelengths at which the sky is known.
 pub const NODES: usize = 11;
+
+/// Radiance or irradiance at each node of the wavelength, per nanometre.
+pub type Spectral = [f64; NODES];
 
 /// The wavelength of a node, nm: 360 to 760.
 pub fn node(index: usize) -> f64 {

@@ -1,7 +1,6 @@
 //! Light that air scatters towards the eye: once along the line of sight, and any number of times from all around.
 
-use super::Spectral;
-use super::air::{Air, NODES, density, extinction, phases};
+use super::air::{Air, NODES, Spectral, density, extinction, phases};
 use super::columns::{Columns, GROUND, TOP, to_ground, to_top};
 use super::solar::SUN_RADIUS;
 use glam::DVec3;

@@ -7,6 +7,8 @@ use super::*;
 use crate::color::observer::{self, LUMENS_PER_WATT};
 use crate::color::{Beyond, Spectrum};
 use crate::numeric::sampling::{Stream, sphere};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
 
 fn sky(elevation: f64, turbidity: f64, albedo: f64) -> ClearSky {
     ClearSky::new(&Atmosphere { turbidity, albedo, altitude: 50.0, elevation: elevation.to_radians() })
