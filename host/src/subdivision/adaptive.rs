@@ -11,10 +11,10 @@ use std::rc::Rc;
 
 use glam::{DVec2, DVec3};
 
+use super::creases::Creases;
 use super::error::SubdivisionError;
 use super::limit::{Limit, Limits, Rim, distinct};
 use super::polyhedron::{NONE, Polyhedron};
-use super::sharp::Creases;
 use crate::mesh::Mesh;
 
 /// The most patches, for tolerances that rounding never meets.

@@ -7,9 +7,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::creases::{Creases, Joined};
 use super::polyhedron::{NONE, Polyhedron};
 use super::rings::{Rings, by_face};
-use super::sharp::{Creases, Joined};
 use super::weights::{Held, held, step, waves};
 use crate::mesh::Mesh;
 

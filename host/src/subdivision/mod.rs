@@ -17,15 +17,16 @@
 //! # Source
 //! Doo and Sabin 1978; semi-sharp creases by steps after DeRose, Kass and Truong 1998; the rules at creases are ours.
 
-mod adaptive;
 mod error;
-mod limit;
 mod polyhedron;
 mod rings;
-mod sharp;
-mod smooth;
-mod strips;
 mod weights;
+mod smooth;
+mod creases;
+mod limit;
+mod strips;
+mod sharp;
+mod adaptive;
 
 pub use error::SubdivisionError;
 pub use polyhedron::Polyhedron;

@@ -4,10 +4,10 @@
 //! point in the middle of each of its sides that is stretched so, and pieces around its own middle. What is flat stays so:
 //! the limit surface is the same, as long as the creases last.
 
+use super::creases::Creases;
 use super::error::SubdivisionError;
 use super::limit::{Rim, Target};
 use super::polyhedron::{NONE, Polyhedron};
-use super::sharp::Creases;
 
 /// How a face is divided.
 struct Cut {
