@@ -52,7 +52,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("host/solid/boolean/operand", 2),
     ("host/solid/rounded", 4),
     ("host/study", 8),
-    ("host/workstation/facets", 4),
     ("tests/corpus/classes", 4),
 ];
 

@@ -5,7 +5,7 @@
 //! comes from where it stands, seen from the middle of the scene, with the irradiance there; a mirror counts as body
 //! colour; linear values go through the exponent of a display. All ours.
 
-use super::network::name;
+use super::names::name;
 use crate::{
     color::Wavelengths,
     illumination::{Bands, Light, Material, light::Source, material::Appearance},

@@ -3,17 +3,19 @@
 mod error;
 mod initial_view;
 mod patience;
-pub mod emulator;
+mod names;
 pub mod facets;
 pub mod network;
 pub mod raster;
-pub mod session;
-pub mod structure;
 pub mod tiles;
+pub mod structure;
+pub mod session;
+pub mod emulator;
 
 pub use emulator::Emulator;
 pub use error::WorkstationError;
 pub use initial_view::InitialView;
+pub use names::ROOT;
 pub use patience::Patience;
 pub use session::Session;
 pub use structure::{Drawing, Lines, Shown};

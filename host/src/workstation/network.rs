@@ -1,9 +1,9 @@
 //! The function networks that PERIS sets up on the workstation: dials, keys and the way back of the view.
 
-use super::structure::ROOT;
+use super::names::{ROOT, name};
 use glam::DVec3;
 use protocol::{
-    Name, Value,
+    Value,
     command::{Arc, Command, Destination, Input, Object},
 };
 
@@ -59,11 +59,6 @@ pub const DIAL_LABELS: [&str; 8] = ["ROT X", "ROT Y", "ROT Z", "SCALE", "TRAN X"
 #[derive(Debug, Default)]
 struct Build {
     commands: Vec<Command>,
-}
-
-/// A name that is known to be legal, such as those in this folder.
-pub(super) fn name(text: &str) -> Name {
-    Name::new(text).unwrap_or_else(|e| unreachable!("{text}: {e}"))
 }
 
 impl Build {

@@ -6,7 +6,7 @@
 use super::{
     InitialView, WorkstationError,
     facets::{self, mirrored},
-    network::name,
+    names::{ROOT, name},
     tiles,
 };
 use crate::{
@@ -23,8 +23,6 @@ use protocol::{
     command::{Axis, Boundaries, Command, NamePattern, Object as Node, Operate, Scopes, VectorClass, VectorList},
 };
 
-/// The name of the structure.
-pub const ROOT: &str = "PERIS";
 /// The front boundary is no nearer than this part of the back one, when the camera does not say where it is.
 const NEAREST_PART: f64 = 1e-3;
 /// How many times farther than the scene nothing is cut, when the camera cuts in front only.
