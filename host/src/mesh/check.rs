@@ -1,7 +1,7 @@
 //! Whether a mesh can be trusted: finite, in range, closed, consistently oriented.
 
 use super::edges::EdgeTable;
-use super::file::MAX_COUNT;
+use super::triangles::MAX_COUNT;
 use super::{Fault, Mesh, Place, Problem};
 
 /// What the edges say of a mesh. Vertices at the same position (same bits) count as one.

@@ -1,12 +1,9 @@
 //! The outline of a smooth surface, smooth itself: where the normals, not the triangles, turn away from the eye.
 
 use super::Mesh;
-use super::edges::{EdgeTable, EdgeUse, Eye};
+use super::edges::{EdgeTable, Eye, Selection};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
-
-/// Normals at an edge that differ by less are those of one smooth surface (sine of the angle).
-const SMOOTH: f64 = 2e-3;
 
 /// Lines through triangles, whose ends are points of their own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,17 +14,10 @@ pub(super) struct Contour {
     pub(super) lines: Vec<([u32; 2], u32)>,
 }
 
-/// Whether the normals at both ends of an edge are the same on both sides: it has then no part in an outline.
-pub(super) fn is_smooth(mesh: &Mesh, a: &EdgeUse, b: &EdgeUse) -> bool {
-    let ends = |place: &EdgeUse| {
-        let normals = mesh.corner_normals.get(place.triangle as usize)?;
-        let [from, to] = [usize::from(place.side), (usize::from(place.side) + 1) % 3].map(|corner| normals[corner]);
-        Some(if place.forward { [from, to] } else { [to, from] })
-    };
-    let side = if a.forward == b.forward { -1.0 } else { 1.0 };
-    match (ends(a), ends(b)) {
-        (Some(one), Some(two)) => one.iter().zip(two).all(|(p, q)| *p != DVec3::ZERO && p.distance(q * side) < SMOOTH),
-        _ => false,
+impl EdgeTable {
+    /// Outlines within smooth parts.
+    pub(super) fn contour(&self, mesh: &Mesh, selection: &Selection) -> Contour {
+        selection.outline.map_or_else(Contour::default, |eye| contour(self, mesh, eye))
     }
 }
 
@@ -37,7 +27,7 @@ pub(super) fn is_smooth(mesh: &Mesh, a: &EdgeUse, b: &EdgeUse) -> bool {
 ///
 /// # Source
 /// Hertzmann and Zorin 2000, illustrating smooth surfaces.
-pub(super) fn contour(table: &EdgeTable, mesh: &Mesh, eye: Eye) -> Contour {
+fn contour(table: &EdgeTable, mesh: &Mesh, eye: Eye) -> Contour {
     let mut contour = Contour::default();
     let mut known: FxHashMap<[u32; 2], u32> = FxHashMap::default();
     for (triangle, normals) in mesh.corner_normals.iter().enumerate() {
@@ -80,8 +70,8 @@ pub(super) fn contour(table: &EdgeTable, mesh: &Mesh, eye: Eye) -> Contour {
 
 #[cfg(test)]
 mod tests {
+    use super::super::polylines;
     use super::super::samples;
-    use super::super::{Selection, polylines};
     use super::*;
 
     #[test]

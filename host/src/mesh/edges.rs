@@ -4,11 +4,12 @@ use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
 use super::Mesh;
-use super::contour::{Contour, contour, is_smooth};
 use super::measure::{angle_between, unit_normal};
 
 /// Normals of one plane differ by less.
 const FLAT: f64 = 1e-9;
+/// Normals at an edge that differ by less are those of one smooth surface (sine of the angle).
+const SMOOTH: f64 = 2e-3;
 
 /// All edges of a mesh and the triangles at each. Vertices at the same position count as one.
 #[derive(Clone, Debug)]
@@ -149,11 +150,6 @@ impl EdgeTable {
         self.edges.iter().filter(move |edge| self.is_wanted(mesh, selection, facing.as_deref(), edge))
     }
 
-    /// Outlines within smooth parts.
-    pub(super) fn contour(&self, mesh: &Mesh, selection: &Selection) -> Contour {
-        selection.outline.map_or_else(Contour::default, |eye| contour(self, mesh, eye))
-    }
-
     pub(super) fn is_collapsed(&self, mesh: &Mesh, triangle: usize) -> bool {
         let [a, b, c] = mesh.triangles[triangle].map(|vertex| self.same[vertex as usize]);
         a == b || b == c || c == a
@@ -210,14 +206,6 @@ impl EdgeTable {
     }
 }
 
-/// The selected lines of `mesh` as vectors, each once.
-pub fn wire(mesh: &Mesh, selection: &Selection) -> Vec<[DVec3; 2]> {
-    let table = EdgeTable::of(mesh);
-    let edges = table.select(mesh, selection).map(|edge| edge.ends.map(|vertex| mesh.vertices[vertex as usize]));
-    let Contour { points, lines } = table.contour(mesh, selection);
-    edges.chain(lines.iter().map(|(ends, _)| ends.map(|point| points[point as usize]))).collect()
-}
-
 /// For each triangle whether `eye` sees its outside; edge-on counts as not. Exact for an eye at a point.
 fn facing(mesh: &Mesh, eye: Eye) -> Vec<bool> {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
@@ -229,6 +217,20 @@ fn facing(mesh: &Mesh, eye: Eye) -> Vec<bool> {
         }
     };
     (0..mesh.triangles.len()).map(faces).collect()
+}
+
+/// Whether the normals at both ends of an edge are the same on both sides: it has then no part in an outline.
+fn is_smooth(mesh: &Mesh, a: &EdgeUse, b: &EdgeUse) -> bool {
+    let ends = |place: &EdgeUse| {
+        let normals = mesh.corner_normals.get(place.triangle as usize)?;
+        let [from, to] = [usize::from(place.side), (usize::from(place.side) + 1) % 3].map(|corner| normals[corner]);
+        Some(if place.forward { [from, to] } else { [to, from] })
+    };
+    let side = if a.forward == b.forward { -1.0 } else { 1.0 };
+    match (ends(a), ends(b)) {
+        (Some(one), Some(two)) => one.iter().zip(two).all(|(p, q)| *p != DVec3::ZERO && p.distance(q * side) < SMOOTH),
+        _ => false,
+    }
 }
 
 /// The angle between the normals that the mesh has at both sides of an edge, in the mean over its ends, degrees; `None`
@@ -255,6 +257,7 @@ mod tests {
 
     use super::super::measure::bits;
     use super::super::samples::{self, tetrahedron};
+    use super::super::wire;
     use super::*;
 
     /// The unit cube with vertices of its own for each triangle, as many files have it.

@@ -11,8 +11,6 @@ use super::{Fault, Grouped, Mesh, MeshError, Place, Problem, compact, gltf, obj,
 
 /// The longest file that is read, bytes.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
-/// The most vertices or triangles of a mesh; indices leave room for marks.
-pub(super) const MAX_COUNT: usize = (u32::MAX / 4) as usize;
 
 /// A mesh file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,15 +165,4 @@ pub fn print_grouped(grouped: &Grouped, format: Format) -> Result<Vec<u8>, Fault
         Format::Glb => gltf::print_binary(grouped),
         Format::Compact => compact::print(mesh),
     }
-}
-
-/// Divides a polygon into a fan of triangles around its first corner.
-pub(super) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> + '_ {
-    corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
-}
-
-/// The triangles of a strip, turned alike; those with two equal corners, which only join strips, are left out.
-pub(super) fn strip(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
-    let triangle = |(k, t): (usize, &[u32])| [t[0], t[1 + k % 2], t[2 - k % 2]];
-    corners.windows(3).enumerate().map(triangle).filter(|[a, b, c]| a != b && b != c && c != a)
 }

@@ -13,7 +13,7 @@ use std::fmt::Write;
 use glam::{DVec2, DVec3};
 
 use super::error::shortened;
-use super::file::fan;
+use super::fan::fan;
 use super::groups::{Grouped, Groups, has_groups, name_of};
 use super::measure::bits;
 use super::{Fault, Mesh, Place, Problem};

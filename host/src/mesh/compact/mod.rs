@@ -20,7 +20,7 @@ use glam::{DVec3, I64Vec3};
 use self::bits::{BitReader, BitWriter, Rice};
 use self::front::{Front, Step};
 use super::edges::EdgeTable;
-use super::file::MAX_COUNT;
+use super::triangles::MAX_COUNT;
 use super::{Fault, Mesh, Place, Problem};
 
 /// The first bytes of a file.

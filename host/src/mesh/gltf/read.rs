@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde_json::Value;
 
-use super::super::file::strip;
+use super::super::fan::strip;
 use super::super::groups::{Grouped, Groups, Look};
 use super::super::{Fault, Mesh, Place, Problem};
 use super::accessor::Buffers;

@@ -2,10 +2,30 @@
 
 use super::super::error::shortened;
 use super::super::{Fault, Place, Problem};
-use super::{Encoding, Scalar};
 
 /// The most elements, and the most properties of an element, that a header may declare.
 const MAX_DECLARED: usize = 1000;
+
+/// The encoding of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Text,
+    LittleEndian,
+    BigEndian,
+}
+
+/// A number type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
 
 /// What a header says.
 pub(super) struct Header {

@@ -14,32 +14,12 @@ mod table;
 
 use glam::{DVec2, DVec3};
 
-use self::header::{Element, Header, Property};
+use self::header::{Element, Encoding, Header, Property, Scalar};
 use self::table::{Binary, Table, Text};
-use super::file::{MAX_COUNT, fan, strip};
+use super::fan::{fan, strip};
 use super::groups::{Grouped, has_groups, name_of};
+use super::triangles::MAX_COUNT;
 use super::{Fault, Mesh, Place, Problem};
-
-/// The encoding of the tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Encoding {
-    Text,
-    LittleEndian,
-    BigEndian,
-}
-
-/// A number type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
 
 /// Understands a PLY file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Grouped, Fault> {

@@ -2,8 +2,7 @@
 
 use super::super::error::shortened;
 use super::super::{Fault, Place, Problem};
-use super::Scalar;
-use super::header::Property;
+use super::header::{Property, Scalar};
 
 /// A stream of numbers. Every type of the format fits into `f64` without loss.
 pub(super) trait Table {
