@@ -44,7 +44,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("ps340/traversal/gather", 4),
     ("ps340/traversal/update", 2),
     ("host/cli", 27),
-    ("host/octree", 7),
     ("host/script", 3),
     ("host/script/argument", 4),
     ("host/solid", 17),

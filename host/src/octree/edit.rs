@@ -9,8 +9,11 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::build::{Division, Leaves, Nodes, Reference, eighths, within};
+use super::code::LocationalCode;
+use super::error::{MAX_TRIANGLES, OctreeError, check};
 use super::index::Index;
-use super::{LocationalCode, MAX_TRIANGLES, Object, Octree, OctreeError, Walk, check};
+use super::settings::Walk;
+use super::tree::{Object, Octree};
 
 impl Octree {
     /// Puts an object in, as the last one.

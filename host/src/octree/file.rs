@@ -13,8 +13,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::build::{Division, Leaves, Nodes, Reference, eighths};
+use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
-use super::{LocationalCode, MAX_DEPTH, Object, Octree, OctreeError, Settings, Walk, check};
+use super::error::{OctreeError, check};
+use super::settings::{Settings, Walk};
+use super::tree::{Object, Octree};
 
 /// The first bytes of every file.
 const NAME: &[u8; 8] = b"PERISOCT";

@@ -5,11 +5,12 @@
 //! where voxels are small beside what matters. Voxels that hold more than one surface, or one that bends, keep their
 //! triangles. Where a surface ends within a voxel, its point stands for it up to the voxel's sides.
 
-use super::build::{Leaves, Nodes, Reference, eighths, place};
+use super::build::{Division, Leaves, Nodes, PARALLEL_TRIANGLES, Reference, eighths, place};
 use super::clip::clipped;
 use super::frame::Line;
+use super::index::Index;
 use super::walk::Search;
-use super::{Division, Hit, Index, LocationalCode, Octree, PARALLEL_TRIANGLES, Ray};
+use super::{Hit, LocationalCode, Octree, Ray};
 use crate::numeric::sampling::{Stream, triangle};
 use crate::numeric::triangle::weights;
 use glam::DVec3;

@@ -1,7 +1,8 @@
 //! Octrees as bytes.
 
 use super::*;
-use crate::octree::{FileError, Leaves};
+use crate::octree::FileError;
+use crate::octree::build::Leaves;
 
 fn octree() -> Octree {
     let mut octree = torus(8).octree();
