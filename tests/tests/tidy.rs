@@ -48,7 +48,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("host/script/argument", 4),
     ("host/solid", 17),
     ("host/solid/boolean/operand", 2),
-    ("host/solid/rounded", 4),
     ("host/study", 8),
     ("tests/corpus/classes", 4),
 ];

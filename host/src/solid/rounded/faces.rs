@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::RoundingError;
+use super::error::RoundingError;
 use crate::mesh::Mesh;
 use crate::solid::boolean::UnionFind;
 
@@ -145,4 +145,11 @@ fn loops(next: &HashMap<u32, u32>) -> Vec<Vec<u32>> {
         }
     }
     loops
+}
+
+/// The distance of a point from a line between two others.
+pub fn to_segment([from, to]: [DVec3; 2], at: DVec3) -> f64 {
+    let along = to - from;
+    let part = ((at - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+    at.distance(from + along * part)
 }

@@ -20,89 +20,26 @@
 //! Quadratic B-splines as limits of corner cutting: Chaikin 1974, Riesenfeld 1975; faces of any number of sides: Doo and
 //! Sabin 1978. The strips are ours.
 
+mod error;
 mod faces;
 mod net;
 mod surfaces;
 
-use faces::Faces;
+pub use error::RoundingError;
+
+use faces::{Faces, to_segment};
 use glam::DVec3;
 use net::Net;
 use std::collections::HashMap;
 
-use super::{ExactSolid, SolidError};
+use super::ExactSolid;
 use crate::mesh::Mesh;
-use crate::polygon::PolygonError;
-use crate::subdivision::{Polyhedron, SubdivisionError};
+use crate::subdivision::Polyhedron;
 
 /// The most that an edge may turn, degrees: at 180 a face would lie on the other.
 const SHARPEST: f64 = 179.0;
 /// Vertices are one if they are no farther apart than about this part of the size.
 const FOLD: f64 = 1.0 / (1_u64 << 44) as f64;
-
-/// Why edges cannot be rounded.
-#[derive(Debug, thiserror::Error)]
-pub enum RoundingError {
-    /// A radius that is no length.
-    #[error("radius {radius} is not a length above 0")]
-    Radius {
-        /// The radius.
-        radius: f64,
-    },
-    /// There is nothing to round.
-    #[error("the solid has no edges")]
-    NoEdges,
-    /// A face is curved.
-    #[error("the edge from {from} to {to} is not between two flat faces")]
-    Curved {
-        /// Where the edge begins.
-        from: DVec3,
-        /// Where it ends.
-        to: DVec3,
-    },
-    /// A face is too narrow.
-    #[error(
-        "radius {radius} is too large beside the edge from {from} to {to}: four times the setback must fit on a face"
-    )]
-    TooWide {
-        /// Where the edge begins.
-        from: DVec3,
-        /// Where it ends.
-        to: DVec3,
-        /// The radius.
-        radius: f64,
-    },
-    /// Only one of two edges is rounded where a face has a hollow corner.
-    #[error("at {at} a face has a hollow or a straight corner; round both of its edges there, or none")]
-    Hollow {
-        /// The corner.
-        at: DVec3,
-    },
-    /// Faces touch in a vertex.
-    #[error("a face touches itself at {at}")]
-    Touching {
-        /// Where.
-        at: DVec3,
-    },
-    /// An edge turns back.
-    #[error("the edge from {from} to {to} turns by {degrees} degrees; the limit is 179")]
-    Sharp {
-        /// Where the edge begins.
-        from: DVec3,
-        /// Where it ends.
-        to: DVec3,
-        /// How far it turns.
-        degrees: f64,
-    },
-    /// What is left of a face is no polygon.
-    #[error("a face has no place for the rounding: {0}")]
-    Polygon(#[from] PolygonError),
-    /// The polyhedron cannot be subdivided.
-    #[error(transparent)]
-    Subdivision(#[from] SubdivisionError),
-    /// The result is no solid.
-    #[error("the rounded surface bounds no solid: {0}")]
-    Solid(#[from] SolidError),
-}
 
 /// The edges of a solid that are to be rounded.
 #[derive(Clone, Debug, PartialEq)]
@@ -224,13 +161,6 @@ fn without_folds(mut mesh: Mesh) -> Mesh {
     let mut kept = is_kept.iter().copied();
     mesh.corner_normals.retain(|_| kept.next().unwrap_or(true));
     mesh
-}
-
-/// The distance of a point from a line between two others.
-fn to_segment([from, to]: [DVec3; 2], at: DVec3) -> f64 {
-    let along = to - from;
-    let part = ((at - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-    at.distance(from + along * part)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::RoundingError;
+use super::error::RoundingError;
 use super::faces::{Face, Faces, Side};
 use crate::polygon::{Shape, triangulate_in_space};
 use crate::subdivision::Polyhedron;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::faces::{Edge, Faces};
+use super::faces::{Edge, Faces, to_segment};
 use crate::mesh::Mesh;
 use crate::numeric::triangle::weights;
 use crate::solid::ExactSolid;
@@ -65,7 +65,7 @@ pub fn assign(mesh: &mut Mesh, solid: &ExactSolid, faces: &Faces, rounded: &[usi
         }
         let corners = mesh.corners(triangle);
         let middle = corners.iter().sum::<DVec3>() / 3.0;
-        let distance = |k: &usize| super::to_segment(roundings[*k].ends, middle);
+        let distance = |k: &usize| to_segment(roundings[*k].ends, middle);
         let Some(near) = (0..roundings.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))) else { continue };
         let normals = mesh.corner_normals[triangle];
         mesh.surfaces[triangle] = first + near as u32;
