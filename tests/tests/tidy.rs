@@ -47,7 +47,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("host/script", 3),
     ("host/script/argument", 4),
     ("host/solid", 17),
-    ("host/solid/boolean/operand", 2),
     ("host/study", 8),
     ("tests/corpus/classes", 4),
 ];

@@ -1,7 +1,8 @@
 //! The faces of all operands that may touch others, and what they have in common.
 
 use super::contact::{Common, Contact, Face, Key};
-use super::operand::{NONE, Operands};
+use super::operand::Operands;
+use super::quads::NONE;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -1,15 +1,12 @@
 //! The solids of an operation, with their vertices and triangles counted through.
 
 use super::contact::Face;
-use super::quads::ring;
+use super::quads::{NONE, ring};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::octree::Sorted;
 use glam::DVec3;
 use rayon::prelude::*;
-
-/// No triangle.
-pub const NONE: u32 = u32::MAX;
 
 /// An operand.
 #[derive(Clone, Copy)]

@@ -4,10 +4,12 @@
 //! drawn where they were only divided.
 
 use super::contact::Face;
-use super::operand::NONE;
 use super::sides::Sides;
 use crate::mesh::Mesh;
 use rayon::prelude::*;
+
+/// No triangle.
+pub const NONE: u32 = u32::MAX;
 
 /// For each triangle the other half of a convex quadrilateral in one plane and of one surface, or [`NONE`]; empty if there
 /// are no such halves.
