@@ -46,7 +46,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("host/cli", 27),
     ("host/script", 3),
     ("host/script/argument", 4),
-    ("host/solid", 17),
     ("host/study", 8),
     ("tests/corpus/classes", 4),
 ];

@@ -1,6 +1,7 @@
 //! Bodies of a closed surface, and those of them that face inwards beside others.
 
-use super::boolean::{UnionFind, passes};
+use super::boolean::passes;
+use super::union_find::UnionFind;
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::exact::{Exact, cross, dot};

@@ -3,15 +3,15 @@
 //! A carrier is an edge of the input, or the line in which two faces cross. Whatever lies on it is kept once, in order,
 //! for all faces that share it; so no two faces ever disagree about their border.
 
-use super::Expression;
 use super::burial::Burial;
 use super::contact::{Common, Contact, Edge, Face, Feature, Key, crossing};
+use super::expression::Expression;
 use super::faces::{Faces, contacts, touching};
 use super::operand::Operands;
 use super::relevance::relevant;
 use super::standing::Standing;
-use super::union_find::UnionFind;
 use crate::numeric::implicit::{Definition, Point, coincide, compare, turn};
+use crate::solid::union_find::UnionFind;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -21,7 +21,7 @@ use super::rounding::Made;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::side;
 use crate::octree::Sorted;
-use crate::solid::import::retain;
+use crate::solid::cleaning::retain;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -394,7 +394,8 @@ impl New {
 #[cfg(test)]
 mod tests {
     use super::super::operand::{Operand, Operands};
-    use super::super::{Expression, Outcome, Work, mates, work};
+    use super::super::work::{Work, work};
+    use super::super::{Expression, Outcome, mates};
     use super::*;
     use crate::mesh::Mesh;
     use crate::solid::Solid;

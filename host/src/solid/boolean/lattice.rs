@@ -9,16 +9,9 @@
 //!   it, and a solid of which corners were rounded is made simple again: it stays closed and oriented, and what is thinner
 //!   than the lattice is gone.
 
-use super::operand::Operand;
-use super::overlaps::overlapping;
-use super::result::{Outcome, Tables};
-use super::simple::{Resolution, resolve};
-use super::{Expression, evaluate_on_lattice, mates};
 use crate::mesh::Mesh;
-use crate::octree::Sorted;
 use crate::solid::SolidError;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Binary digits of the largest coordinate.
 const DIGITS: i32 = 256;
@@ -97,48 +90,36 @@ impl Lattice {
     pub fn bring_back(&self, mesh: &mut Mesh) {
         mesh.vertices.iter_mut().for_each(|vertex| *vertex = self.place(*vertex));
     }
+}
 
-    /// The surface of a solid on the lattice, with the triangles of the solid that its triangles are part of.
-    fn laid(&self, mesh: &Mesh) -> Result<(Mesh, Vec<u32>), SolidError> {
-        let mut laid = Outcome { mesh: mesh.clone(), ..Outcome::default() };
-        laid.sources = (0..mesh.triangles.len() as u32).map(|triangle| [0, triangle]).collect();
-        if self.lay(&mut laid.mesh) {
-            laid.clean();
-            let Resolution { mut outcome, is_same, .. } = resolve(&laid.mesh, &overlapping(&laid.mesh))?;
-            if !is_same {
-                outcome.sources.iter_mut().for_each(|source| *source = laid.sources[source[1] as usize]);
-                laid = outcome;
+impl SolidError {
+    /// An error of the mesh that was put on a lattice, in the coordinates that the mesh had before.
+    pub(in crate::solid) fn brought_back(mut self, lattice: &Lattice) -> SolidError {
+        match &mut self {
+            SolidError::Mesh(_) | SolidError::Tangled { .. } | SolidError::BoundsNothing => {}
+            SolidError::NotClosed { edges, .. } => {
+                edges.iter_mut().flatten().for_each(|end| *end = lattice.place(*end));
             }
+            SolidError::Open { loops } => {
+                for open in loops {
+                    open.near = lattice.place(open.near);
+                    open.length = lattice.length(open.length);
+                }
+            }
+            SolidError::InsideOut { volume, near, .. } => {
+                *volume = lattice.volume(*volume);
+                *near = lattice.place(*near);
+            }
+            SolidError::Crossing { near, .. } | SolidError::Unsettled { near, .. } => *near = lattice.place(*near),
         }
-        Ok((laid.mesh, laid.sources.into_iter().map(|[_, triangle]| triangle).collect()))
-    }
-
-    /// Evaluates an expression over solids that are put on the lattice.
-    ///
-    /// # Errors
-    /// [`SolidError::Unsettled`].
-    pub fn evaluate(&self, solids: &[Operand<'_>], expression: &Expression) -> Result<Outcome, SolidError> {
-        let back = |error: SolidError| error.brought_back(self);
-        let laid = solids.par_iter().map(|solid| self.laid(solid.mesh).map_err(back));
-        let laid: Vec<(Mesh, Vec<u32>)> = laid.collect::<Result<_, _>>()?;
-        let filed = laid.par_iter().map(|(mesh, _)| (Sorted::new(&mesh.vertices, &mesh.triangles), mates(mesh)));
-        let filed: Vec<(Sorted, Vec<u32>)> = filed.collect();
-        let operands =
-            laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, mates, overlaps: &[] });
-        let mut outcome = evaluate_on_lattice(operands.collect(), expression).map_err(back)?;
-        let source = |[operand, triangle]: [u32; 2]| [operand, laid[operand as usize].1[triangle as usize]];
-        outcome.sources.iter_mut().for_each(|of| *of = source(*of));
-        let meshes: Vec<&Mesh> = solids.iter().map(|solid| solid.mesh).collect();
-        Tables::of(&meshes).name_surfaces(&mut outcome, &meshes);
-        self.bring_back(&mut outcome.mesh);
-        Ok(outcome)
+        self
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solid::{Primitive, Solid, SolidError};
+    use crate::solid::{Expression, Primitive, Solid, SolidError};
     use crate::surface::{Tolerance, box_faces, tessellate};
     use glam::DVec2;
 

@@ -9,8 +9,8 @@ use super::facets::{Facet, Region};
 use super::operand::Operands;
 use super::parts::{Fate, Parts};
 use super::sides::{Sides, of_triangles};
-use super::union_find::UnionFind;
 use crate::numeric::implicit::side;
+use crate::solid::union_find::UnionFind;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 

@@ -7,9 +7,9 @@
 use super::burial::Burial;
 use super::operand::Operands;
 use super::standing::Standing;
-use super::union_find::UnionFind;
 use super::winding::winding;
 use crate::numeric::implicit::{Definition, Point};
+use crate::solid::union_find::UnionFind;
 use rayon::prelude::*;
 
 /// For each triangle, counted over all operands, whether it may matter.

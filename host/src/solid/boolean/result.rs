@@ -1,6 +1,5 @@
 //! The mesh of a result.
 
-use super::super::import::cleaned;
 use super::arrangement::{Arrangement, Counts};
 use super::facets::Facet;
 use super::merge::pieces;
@@ -9,6 +8,7 @@ use super::parts::{Fate, Parts};
 use super::rounding::{self, Kept, Made};
 use crate::mesh::Mesh;
 use crate::numeric::triangle;
+use crate::solid::cleaning::cleaned;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 

@@ -3,20 +3,21 @@
 //! A surface is simple if it winds once or not at all around every point off it. What any closed surface bounds are
 //! the points that it winds around more than not at all.
 
+use super::expression::Expression;
 use super::nudging::nudge;
 use super::operand::{Operand, Operands};
 use super::overlaps::{Overlaps, overlapping};
 use super::result::Outcome;
 use super::sides::Sides;
 use super::snapping::{Scope, snapped};
-use super::union_find::UnionFind;
-use super::{Expression, Work, work};
+use super::work::{Work, work};
 use crate::mesh::{Mesh, bits};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle;
 use crate::octree::Sorted;
 use crate::solid::SolidError;
-use crate::solid::import::is_closed;
+use crate::solid::cleaning::is_closed;
+use crate::solid::union_find::UnionFind;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 

@@ -1,6 +1,6 @@
 //! What is known of a point: whether it is in the operands of an expression, and on which of them the set still depends.
 
-use super::Expression;
+use super::expression::Expression;
 
 /// How the values of children make that of their parent.
 #[derive(Clone, Copy, Debug, PartialEq)]

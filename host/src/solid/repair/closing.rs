@@ -1,7 +1,8 @@
 //! Closes a surface by patches for its boundary loops that meet nothing else.
 
-use super::super::boolean::{Tile, UnionFind, overlap};
+use super::super::boolean::{Tile, overlap};
 use super::super::error::OpenLoop;
+use super::super::union_find::UnionFind;
 use super::patches::{Beside, LoopPlane, Method, Patch};
 use crate::mesh::edges::EdgeTable;
 use crate::mesh::{BoundaryLoop, Mesh};

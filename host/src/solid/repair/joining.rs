@@ -1,6 +1,6 @@
 //! Vertices at boundaries that are one but for roundings to single precision.
 
-use super::super::boolean::UnionFind;
+use super::super::union_find::UnionFind;
 use crate::mesh::Mesh;
 
 /// Part of the largest coordinate within which vertices at boundaries are taken for one: two units in the last place of

@@ -13,7 +13,8 @@ mod patches;
 mod surplus;
 
 use super::bodies::Bodies;
-use super::import::{check_edges, imported_on_lattice, on_lattice, without_collapsed};
+use super::cleaning::{check_edges, without_collapsed};
+use super::import::{imported_on_lattice, on_lattice};
 use super::{Solid, SolidError};
 use crate::mesh::{BoundaryLoop, Mesh};
 use crate::octree::Sorted;

@@ -1,7 +1,7 @@
 //! Triangles of which there are too many for a surface to be closed.
 
-use super::super::boolean::UnionFind;
-use super::super::import::retain;
+use super::super::cleaning::retain;
+use super::super::union_find::UnionFind;
 use crate::mesh::Mesh;
 use crate::mesh::edges::{EdgeTable, EdgeUse};
 use std::collections::BTreeMap;

@@ -135,7 +135,7 @@ fn walls_within_a_body_and_fins_are_left_out() {
             !is_wall || walls <= 2
         })
         .collect();
-    super::super::import::retain(&mut walled, &keep);
+    super::super::cleaning::retain(&mut walled, &keep);
     let (volume, repair) = repaired(&walled.welded());
     assert_eq!((volume, repair), (2.0, Repair { fins: 2, ..Repair::default() }));
     let mut finned = cube(0.0, 1.0);

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::error::RoundingError;
 use crate::mesh::Mesh;
-use crate::solid::boolean::UnionFind;
+use crate::solid::union_find::UnionFind;
 
 /// The sine of the angle below which triangles lie in one plane: what is left of a plane after rounding.
 const FLAT: f64 = 1e-9;

@@ -9,7 +9,7 @@ use super::faces::{Edge, Faces, to_segment};
 use crate::mesh::Mesh;
 use crate::numeric::triangle::weights;
 use crate::solid::ExactSolid;
-use crate::solid::boolean::UnionFind;
+use crate::solid::union_find::UnionFind;
 use crate::surface::Surface;
 
 /// Normals of one plane differ by less.
