@@ -39,7 +39,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("ps340/rendering", 5),
     ("ps340/shell", 2),
     ("ps340/structure/inputs", 5),
-    ("ps340/structure/node", 2),
     ("ps340/traversal/font", 2),
     ("ps340/traversal/gather", 4),
     ("ps340/traversal/update", 2),

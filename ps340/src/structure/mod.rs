@@ -10,8 +10,8 @@ mod word;
 
 pub use copy::{CopyFault, copy};
 pub use fault::NodeFault;
-pub use node::{Labels, Member, Node, Polygons, Vectors};
-pub use operation::{CONDITIONAL_BITS, Degenerate, MAX_LEVEL, Operation, Rendered};
+pub use node::{Labels, Member, Node, Operation, Polygons, Rendered, Vectors};
+pub use operation::{CONDITIONAL_BITS, Degenerate, MAX_LEVEL};
 pub use physical::{PhysicalFault, VECTOR_WORDS};
 
 use crate::{

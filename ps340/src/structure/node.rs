@@ -1,11 +1,13 @@
-//! The kinds of node: data, operate, instance.
+//! The kinds of node: data, operate, instance; and what operate nodes do to the state.
 
-use super::Operation;
 use crate::port::ObjectId;
-use glam::DVec2;
+use glam::{DMat2, DMat3, DMat4, DVec2, DVec3};
 use protocol::{
-    Value,
-    command::{Attributes, Characters, FontCharacter, Illumination, Label, Pattern, Polygon, VectorList},
+    Name, Value,
+    command::{
+        Attributes, CharacterOrientation, Characters, Comparison, FontCharacter, Illumination, Label, Pattern, Polygon,
+        Rate, VectorList,
+    },
 };
 use std::collections::BTreeMap;
 
@@ -49,6 +51,162 @@ pub enum Node {
     RawBlock(Vec<u8>),
     /// VARIABLE: the value, once something was stored.
     Variable(Option<Value>),
+}
+
+/// What an operate node does to the state. Matrices are in the glam form of [`protocol::Value`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Operation {
+    /// MATRIX_2X2: multiplies the character matrix.
+    Character(DMat2),
+    /// ROTATE, SCALE, MATRIX_3X3.
+    Linear(DMat3),
+    /// TRANSLATE.
+    Translate(DVec3),
+    /// LOOK, MATRIX_4X3.
+    Affine(DMat4),
+    /// WINDOW, FIELD_OF_VIEW, MATRIX_4X4.
+    Projective(DMat4),
+    /// VIEWPORT, relative to the enclosing one.
+    Viewport {
+        /// Left and right.
+        horizontal: [f64; 2],
+        /// Bottom and top.
+        vertical: [f64; 2],
+        /// Intensity at the back and at the front.
+        intensity: Option<[f64; 2]>,
+    },
+    /// SET COLOR.
+    Color {
+        /// Degrees; 0 is blue.
+        hue: f64,
+        /// 0 white, 1 pure.
+        saturation: f64,
+    },
+    /// SET INTENSITY.
+    Intensity {
+        /// OFF leaves the viewport's range in force.
+        on: bool,
+        /// At the back and at the front.
+        range: [f64; 2],
+    },
+    /// SET DEPTH_CLIPPING.
+    DepthClipping(bool),
+    /// XFORM MATRIX.
+    XformMatrix,
+    /// XFORM VECTOR.
+    XformVector,
+    /// CANCEL XFORM.
+    CancelXform,
+    /// WRITEBACK.
+    WriteBack,
+    /// LOAD VIEWPORT: replaces the enclosing one.
+    LoadViewport {
+        /// Left and right on the screen.
+        horizontal: [f64; 2],
+        /// Bottom and top.
+        vertical: [f64; 2],
+        /// Intensity at the back and at the front.
+        intensity: Option<[f64; 2]>,
+    },
+    /// TEXT SIZE: replaces the character matrix.
+    TextSize(f64),
+    /// CHARACTER FONT; none for STANDARD FONT.
+    Font(Option<ObjectId>),
+    /// SET COLOR BLENDING: saturation of blended lists.
+    ColorBlending(f64),
+    /// SET CONTRAST, 0..=1.
+    Contrast(f64),
+    /// SET CSM.
+    Csm(bool),
+    /// SET DISPLAYS.
+    Displays {
+        /// Bit n for screen n, 0..=3.
+        scopes: u8,
+        /// ON or OFF.
+        on: bool,
+    },
+    /// SET CHARACTERS.
+    Orientation(CharacterOrientation),
+    /// SET PICKING.
+    Picking(bool),
+    /// SET PICKING IDENTIFIER.
+    PickIdentifier(Name),
+    /// SET PICKING LOCATION.
+    PickLocation {
+        /// Centre of the pick box, -1..=1.
+        center: DVec2,
+        /// Half its size.
+        size: DVec2,
+    },
+    /// SET LEVEL_OF_DETAIL.
+    LevelOfDetail(u16),
+    /// INCREMENT and DECREMENT LEVEL_OF_DETAIL.
+    ChangeLevelOfDetail(i32),
+    /// SET CONDITIONAL_BIT.
+    ConditionalBit {
+        /// 0..=14.
+        bit: u8,
+        /// ON or OFF.
+        on: bool,
+    },
+    /// SET RATE; the frame of the display when it was set.
+    Rate {
+        /// The phases.
+        rate: Rate,
+        /// The frame from which they are counted.
+        since: u64,
+    },
+    /// SET RATE EXTERNAL: the phase, as functions set it.
+    ExternalRate(bool),
+    /// SET BLINKING.
+    Blinking(bool),
+    /// SET BLINK RATE, frames of a phase.
+    BlinkRate(u32),
+    /// SET PLOTTER.
+    Plotter(bool),
+    /// SET PRIORITY.
+    Priority(i32),
+    /// SET LINE_TEXTURE.
+    LineTexture {
+        /// Whether it goes on around corners.
+        around_corners: bool,
+        /// Which texture.
+        texture: u32,
+    },
+    /// IF CONDITIONAL_BIT.
+    IfBit {
+        /// 0..=14.
+        bit: u8,
+        /// The state that lets through.
+        on: bool,
+    },
+    /// IF LEVEL_OF_DETAIL.
+    IfLevel {
+        /// How the level compares with `level`.
+        comparison: Comparison,
+        /// 0..=32767.
+        level: u16,
+    },
+    /// IF PHASE.
+    IfPhase(bool),
+    /// SURFACE_RENDERING and SOLID_RENDERING.
+    Rendering {
+        /// Whether the polygons below are the boundary of a solid.
+        solid: bool,
+        /// The last rendering in vectors.
+        rendered: Option<Box<Rendered>>,
+    },
+    /// SECTIONING_PLANE.
+    SectioningPlane,
+}
+
+/// A rendering in vectors, which stands for the original below its node while it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// The vectors, with SET COLOR where they are not in the colour that the node has.
+    pub members: Vec<Member>,
+    /// Whether it is shown.
+    pub shown: bool,
 }
 
 /// Vectors as they were given, and as they are drawn.
