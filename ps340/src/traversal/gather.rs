@@ -1,74 +1,18 @@
 //! The polygons, lights and sectioning plane that a rendering node renders, gathered by a walk of its own.
 //!
-//! # Model
-//! Light and planes need coordinates in which angles are true: *eye coordinates*. They are those just below the
-//! innermost perspective (FIELD_OF_VIEW, EYE, a 4x4 matrix with such a last column), or without one, just below the
-//! outermost WINDOW or 4x4 matrix; everything below these is modelling.
-//!
 //! # Decided here
 //! - What is below the node is rendered: polygons, lit by the ILLUMINATION nodes there. A node that the picture meets
 //!   several times is rendered where it is met first.
 //! - The first polygon that is met below a SECTIONING_PLANE is the plane, and no part of the object if that node is
 //!   below the rendering node; otherwise one that is met elsewhere in the picture does.
 
-use super::State;
+use super::{Sight, State};
 use crate::{
     port::ObjectId,
     structure::{Node, Polygons},
 };
 use glam::{DMat4, DVec3};
 use protocol::command::Illumination;
-
-/// The parts of the accumulated matrix while polygons are gathered: `ctm = view eye`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
-    /// From eye coordinates to clip space.
-    pub view: DMat4,
-    /// From the coordinates of the data to eye coordinates.
-    pub eye: DMat4,
-    /// From the coordinates of the data to those of the rendering node; none outside of it.
-    pub local: Option<DMat4>,
-    /// Whether a projection was met.
-    framed: bool,
-    /// Below a SECTIONING_PLANE, and whether that is below the rendering node.
-    plane: Option<bool>,
-}
-
-impl Default for Sight {
-    fn default() -> Sight {
-        Sight { view: DMat4::IDENTITY, eye: DMat4::IDENTITY, local: None, framed: false, plane: None }
-    }
-}
-
-impl Sight {
-    /// The parts below a matrix that does not project.
-    pub(super) fn place(&mut self, m: &DMat4) {
-        self.eye *= *m;
-        self.local.iter_mut().for_each(|local| *local *= *m);
-    }
-
-    /// The parts below a window, a field of view or another 4x4 matrix.
-    pub(super) fn project(&mut self, m: &DMat4) {
-        let affine = m.row(3) == glam::DVec4::W;
-        if affine && self.framed {
-            return self.place(m);
-        }
-        self.view = self.view * self.eye * *m;
-        self.eye = DMat4::IDENTITY;
-        self.framed = true;
-        self.local.iter_mut().for_each(|local| *local *= *m);
-    }
-
-    /// Notes that the rendering node is entered.
-    pub(super) fn enter(&mut self) {
-        self.local = Some(DMat4::IDENTITY);
-    }
-
-    /// Notes that a SECTIONING_PLANE is entered.
-    pub(super) fn cut(&mut self) {
-        self.plane = Some(self.local.is_some());
-    }
-}
 
 /// A polygon node where it is displayed.
 #[derive(Clone, Debug)]

@@ -7,27 +7,30 @@
 //! The traversal and the viewing mathematics are the usual left-handed ones with row vectors.
 //! Not modelled: limits of the matrix stack, the fixed-point arithmetic of the pipeline.
 
+mod limits;
+pub mod stroke;
 mod clip;
-mod gather;
-pub mod font;
 mod phase;
+pub mod font;
+mod identifiers;
+mod sight;
 mod state;
+mod gather;
 mod outline;
 mod pick;
-pub mod stroke;
 mod update;
 mod walk;
 pub mod write_back;
 
 pub use clip::{Clipper, ScreenMap};
-pub use gather::{Block, Gathered, Plane, Sight, newell};
+pub use gather::{Block, Gathered, Plane, newell};
+pub use limits::{MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS};
 pub use pick::{PickHit, PickRequest, PickedKind};
+pub use sight::Sight;
 pub use state::State;
 pub use stroke::Stroke;
 pub use update::{Requests, Transformed, Trouble, Update};
-pub use walk::{
-    MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, alone, draw_in_parts, gather, update, update_into,
-};
+pub use walk::{alone, draw_in_parts, gather, update, update_into};
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! What the walk carries down the structure: matrices and attributes.
 
-use super::{gather::Sight, pick::Identifiers};
+use super::{Sight, identifiers::Identifiers};
 use crate::{hue, port::ObjectId, structure::Operation};
 use glam::{DMat2, DMat4, DVec2};
 use protocol::command::CharacterOrientation;

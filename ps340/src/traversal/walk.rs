@@ -1,11 +1,13 @@
 //! The walk over the display structure.
 
 use super::{
-    Clipper, PickHit, PickedKind, Requests, State, Stroke, Trouble, Update,
-    gather::{Gathered, Gatherer, Sight},
+    Clipper, MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickedKind, Requests, Sight, State,
+    Stroke, Trouble, Update,
+    gather::{Gathered, Gatherer},
+    identifiers::{IdentifierChains, Identifiers},
     outline::{self, Piece},
     phase,
-    pick::{IdentifierChains, Identifiers, PickBox},
+    pick::PickBox,
 };
 use crate::{
     port::ObjectId,
@@ -21,17 +23,6 @@ use std::{
     collections::BTreeSet,
     ops::{ControlFlow, Range},
 };
-
-/// How deep nodes may nest. The real stack held tens of levels.
-pub const MAX_DEPTH: usize = 10_000;
-/// How many nodes one update visits, so that instances of instances of instances end.
-pub const MAX_VISITS: u64 = 20_000_000;
-/// How many vectors one update draws or counts.
-pub const MAX_VECTORS: u64 = 200_000_000;
-/// How many vectors are drawn where their strokes are kept; these take 36 bytes each.
-pub const MAX_KEPT: u64 = 20_000_000;
-/// How many vectors XFORM VECTOR gathers.
-pub const MAX_GATHERED: usize = 1 << 20;
 
 /// Vectors of one list that one thread takes at a time: so few that they stay in its cache.
 const PIECE: usize = 1 << 11;

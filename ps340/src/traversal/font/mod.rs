@@ -1,62 +1,8 @@
 //! Fonts: how the characters of a text are drawn, in the unit cell.
 
+mod glyph;
 mod standard;
+mod chosen;
 
-use protocol::command::FontCharacter;
-use std::collections::BTreeMap;
-
-/// A point of a character, x right and y up in cells, and whether the pen draws on its way there.
-pub type Point = ([f32; 2], bool);
-
-/// A font: the standard one, or one of the user.
-#[derive(Clone, Copy, Debug)]
-pub enum Font<'a> {
-    /// Every printable character of ASCII.
-    Standard,
-    /// BEGIN_FONT ... END_FONT: the characters that are defined, by code.
-    User(&'a BTreeMap<u8, FontCharacter>),
-}
-
-impl<'a> Font<'a> {
-    /// The points of a character; none if the font does not have it.
-    pub fn glyph(self, code: u8) -> &'a [Point] {
-        match self {
-            Font::Standard => standard::glyph(code),
-            Font::User(characters) => characters.get(&code).map_or(&[], |character| character.points.as_slice()),
-        }
-    }
-}
-
-/// The strokes of a glyph: start and end of each, in cells. A stroke of no length is a dot; a point that is
-/// only moved to draws nothing.
-pub fn strokes(glyph: &[Point]) -> impl Iterator<Item = [[f32; 2]; 2]> + '_ {
-    glyph.windows(2).filter(|pair| pair[1].1).map(|pair| [pair[0].0, pair[1].0])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_user_font_draws_its_lines_and_nothing_for_moves_and_missing_characters() {
-        // The first point counts as a move whatever it says.
-        let points =
-            vec![([0.0, 0.0], true), ([1.0, 0.0], true), ([0.0, 1.0], false), ([0.5, 0.5], false), ([0.5, 0.5], true)];
-        let characters = BTreeMap::from([(7, FontCharacter { code: 7, estimate: None, points })]);
-        let font = Font::User(&characters);
-        let found: Vec<_> = strokes(font.glyph(7)).collect();
-        assert_eq!(found, [[[0.0, 0.0], [1.0, 0.0]], [[0.5, 0.5], [0.5, 0.5]]]);
-        assert_eq!(strokes(font.glyph(b'A')).count(), 0);
-        assert_eq!(strokes(font.glyph(200)).count(), 0);
-    }
-
-    #[test]
-    fn no_two_characters_of_the_standard_font_are_alike() {
-        for code in 33..=126_u8 {
-            for other in 33..code {
-                let alike = Font::Standard.glyph(code) == Font::Standard.glyph(other);
-                assert!(!alike, "{} and {}", code as char, other as char);
-            }
-        }
-    }
-}
+pub use chosen::Font;
+pub use glyph::{Point, strokes};
