@@ -37,7 +37,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("ps340/network", 2),
     ("ps340/operator/inspect", 3),
     ("ps340/rendering", 5),
-    ("ps340/shell", 2),
     ("ps340/structure/inputs", 5),
     ("host/cli", 27),
     ("host/script", 3),

@@ -1,6 +1,6 @@
 //! The thread of the machine: takes what happens on the lines, and lets frames pass when they are due.
 
-use super::{Clock, End, Mirror, Operator, Options, WAITING_EVENTS};
+use super::{Clock, End, Mirror, Operator, Options};
 use crate::{
     calligraphic::Screen,
     line::{Capture, Interface, LineEvent, LineId, OperatorLine, Reply, Writer},
@@ -16,6 +16,8 @@ use std::{
 };
 use tokio::sync::{mpsc, oneshot};
 
+/// Events that wait for the machine; with [`LineEvent::Bytes`] of 64 KiB this bounds memory.
+pub(super) const WAITING_EVENTS: usize = 16;
 /// Frames that a host which has closed its side still gets answers for, if the network is busy: a second.
 const GRACE_FRAMES: u64 = 60;
 /// How far the machine may lag behind the wall clock before it gives time up instead of catching up.
