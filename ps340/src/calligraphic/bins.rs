@@ -1,7 +1,7 @@
 //! Which strokes touch which tile, in their order.
 
-use super::light::{TILE_HEIGHT, TILE_WIDTH};
 use super::optics::Optics;
+use super::tile::{TILE_HEIGHT, TILE_WIDTH};
 use crate::traversal::Stroke;
 use processes::widest::{self, Work};
 use rayon::prelude::*;

@@ -16,8 +16,8 @@
 use super::bins::Bins;
 use super::drawer::Drawer;
 use super::exposure::Exposure;
-use super::light::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile};
 use super::phosphor::Emission;
+use super::tile::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile};
 use super::{Controls, Light, Refresh};
 use crate::picture::Picture;
 use crate::traversal::Stroke;

@@ -1,6 +1,7 @@
 //! The display over time: persistence against the closed form, refresh and flicker, knobs, pixels.
 
 use super::*;
+use crate::traversal::Stroke;
 
 const GREEN: &str = "P39";
 

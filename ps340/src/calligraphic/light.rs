@@ -2,19 +2,13 @@
 
 use super::bins::Bins;
 use super::optics::Optics;
-use super::track::{LANES, Room, Track};
+use super::{
+    tile::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile, tiles},
+    track::{Room, Track},
+};
 use crate::traversal::Stroke;
 use processes::widest::{self, Work};
 use rayon::prelude::*;
-
-/// Width of a tile in pixels.
-pub(super) const TILE_WIDTH: usize = 64;
-/// Height of a tile in pixels.
-pub(super) const TILE_HEIGHT: usize = 32;
-/// Floats of a row of a tile: room for a whole vector of lanes that begins at the last pixel.
-pub(super) const STRIDE: usize = TILE_WIDTH + LANES;
-/// Floats of a plane of a tile.
-pub(super) const PLANE: usize = STRIDE * TILE_HEIGHT;
 
 /// Strokes that are prepared before they are written, so that the processor waits for none of them. It has no influence
 /// on the light.
@@ -28,21 +22,6 @@ pub struct Light {
     pub(super) guns: usize,
     /// Row after row from the top.
     pub(super) tiles: Vec<Tile>,
-}
-
-/// The light of 64 by 32 pixels. Room is made when light first falls on it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Tile {
-    /// A plane for each gun: what one refresh writes. Worth something if `lit`.
-    pub planes: Vec<f32>,
-    /// Whether the picture writes here.
-    pub lit: bool,
-    /// A plane for each slow component of the phosphor: what it sends out in a frame. Worth something if `glowing`.
-    pub glow: Vec<f32>,
-    /// Whether a slow component is seen.
-    pub glowing: bool,
-    /// Whether the exposed picture is other than black here.
-    pub seen: bool,
 }
 
 impl Light {
@@ -132,11 +111,6 @@ impl Light {
             });
         }
     }
-}
-
-/// Columns and rows of tiles of a picture.
-fn tiles([width, height]: [usize; 2]) -> [usize; 2] {
-    [width.div_ceil(TILE_WIDTH), height.div_ceil(TILE_HEIGHT)]
 }
 
 /// Adding strokes to a tile.

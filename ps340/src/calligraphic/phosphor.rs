@@ -9,7 +9,7 @@
 //! Saturation and burn, decay that depends on how strongly the phosphor was excited, build-up, the spectrum beyond
 //! its chromaticity, the grain.
 
-use super::FRAME_SECONDS;
+use super::limits::FRAME_SECONDS;
 
 /// A phosphor, or the three of a shadow-mask tube.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,7 @@
 //! The brighter and slower drive of SET CSM ON, positioning that depends on direction, lines that the generator
 //! draws as several.
 
-use super::{DOT_LENGTH, FRAME_SECONDS};
+use super::{DOT_LENGTH, limits::FRAME_SECONDS};
 use crate::traversal::Stroke;
 
 /// Speed at which the beam writes, screen units a microsecond: across the screen in 20 microseconds.

@@ -1,6 +1,13 @@
 //! The beam against closed forms, conservation laws and an independent integration.
 
-use super::*;
+use super::{
+    bins::Bins,
+    light::Writing,
+    tile::{PLANE, TILE_HEIGHT, TILE_WIDTH},
+    track::{Room, Track},
+    *,
+};
+use crate::traversal::Stroke;
 use processes::widest;
 
 const WHITE: [f32; 3] = [1.0; 3];
@@ -199,12 +206,12 @@ fn wide_and_plain_instructions_give_the_same_bits() {
     let mut bins = Bins::default();
     wide.write(&mut bins, &strokes);
     assert!(wide.total()[0] > 0.0);
-    for way in 0..widest::ways::<light::Writing>().len() {
+    for way in 0..widest::ways::<Writing>().len() {
         let mut light = beam(150).dark(3);
         let columns = light.columns();
         for (index, tile) in light.tiles.iter_mut().enumerate() {
-            let corner = [index % columns * light::TILE_WIDTH, index / columns * light::TILE_HEIGHT];
-            widest::ways()[way](light::Writing { optics: &optics, guns: 3, corner, bins: &bins, index, tile });
+            let corner = [index % columns * TILE_WIDTH, index / columns * TILE_HEIGHT];
+            widest::ways()[way](Writing { optics: &optics, guns: 3, corner, bins: &bins, index, tile });
         }
         assert_eq!(wide, light);
     }
@@ -221,11 +228,11 @@ fn every_tile_knows_all_strokes_that_reach_it() {
         let mut light = beam(400).dark(3);
         let columns = light.columns();
         for (index, tile) in light.tiles.iter_mut().enumerate() {
-            let corner = [index % columns * light::TILE_WIDTH, index / columns * light::TILE_HEIGHT];
-            tile.planes.resize(3 * light::PLANE, 0.0);
+            let corner = [index % columns * TILE_WIDTH, index / columns * TILE_HEIGHT];
+            tile.planes.resize(3 * PLANE, 0.0);
             tile.lit = true;
-            if let Some(track) = track::Track::new(&wide, stroke, corner) {
-                let mut room = track::Room::new();
+            if let Some(track) = Track::new(&wide, stroke, corner) {
+                let mut room = Room::new();
                 track.find(&mut room);
                 track.write(&room, &mut tile.planes);
             }

@@ -1,12 +1,10 @@
 //! One stroke on its way over the pixels of a tile.
 
-use super::light::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH};
 use super::optics::Optics;
 use super::spot::{self, REACH, greater, lesser};
+use super::tile::{LANES, PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH};
 use crate::traversal::Stroke;
 
-/// Pixels are written in multiples of this number, into room beyond the last one if need be.
-pub(super) const LANES: usize = 8;
 /// How many of these multiples, from any rows, are reckoned together: the widest instructions hold two.
 const TOGETHER: usize = 2;
 /// Rows that are looked at together.

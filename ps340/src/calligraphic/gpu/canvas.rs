@@ -1,9 +1,13 @@
 //! The picture that a graphics processor draws on, and its way back into tiles.
 
-use super::{Gpu, Instance, floats, format};
+use super::{
+    device::Device,
+    instance::Instance,
+    pipeline::{floats, format},
+};
 use crate::calligraphic::{
     Light,
-    light::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile},
+    tile::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile},
 };
 use rayon::prelude::*;
 use std::sync::mpsc;
@@ -80,25 +84,25 @@ impl Canvas {
     }
 
     /// Takes away the light, and sets the spot for what comes.
-    pub fn clear(&self, gpu: &Gpu, spot: f64) {
+    pub fn clear(&self, on: &Device, spot: f64) {
         let [width, height] = self.size.map(|pixels| pixels as f32);
-        gpu.queue.write_buffer(&self.screen, 0, bytemuck::cast_slice(&[width, height, spot as f32, 0.0]));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        on.queue.write_buffer(&self.screen, 0, bytemuck::cast_slice(&[width, height, spot as f32, 0.0]));
+        let mut encoder = on.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.pass(&mut encoder, LoadOp::Clear(Color::TRANSPARENT));
-        gpu.queue.submit([encoder.finish()]);
+        on.queue.submit([encoder.finish()]);
     }
 
     /// Adds the light of strokes, at most [`BATCH`], in their order.
-    pub fn draw(&self, gpu: &Gpu, instances: &[Instance]) -> wgpu::SubmissionIndex {
-        gpu.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(instances));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    pub fn draw(&self, on: &Device, instances: &[Instance]) -> wgpu::SubmissionIndex {
+        on.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(instances));
+        let mut encoder = on.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = self.pass(&mut encoder, LoadOp::Load);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         pass.set_vertex_buffer(0, self.instances.slice(..));
         pass.draw(0..4, 0..instances.len() as u32);
         drop(pass);
-        gpu.queue.submit([encoder.finish()])
+        on.queue.submit([encoder.finish()])
     }
 
     fn pass<'a>(&self, encoder: &'a mut wgpu::CommandEncoder, load: LoadOp<Color>) -> wgpu::RenderPass<'a> {
@@ -117,13 +121,13 @@ impl Canvas {
     ///
     /// # Errors
     /// What the device complains about.
-    pub fn read(&self, gpu: &Gpu, light: &mut Light) -> Result<(), String> {
+    pub fn read(&self, on: &Device, light: &mut Light) -> Result<(), String> {
         let columns = light.columns();
         let bands = light.tiles.chunks_mut(columns * self.band_rows / TILE_HEIGHT).enumerate();
         for (index, tiles) in bands {
             let top = index * self.band_rows;
             let rows = self.band_rows.min(self.size[1] - top);
-            let mapped = self.fetch(gpu, top, rows)?;
+            let mapped = self.fetch(on, top, rows)?;
             let pixels: &[f32] = bytemuck::try_cast_slice(&mapped).map_err(|error| error.to_string())?;
             let rows = pixels.par_chunks(self.row_bytes / size_of::<f32>() * TILE_HEIGHT);
             rows.zip(tiles.par_chunks_mut(columns)).for_each(|(pixels, tiles)| {
@@ -138,8 +142,8 @@ impl Canvas {
     }
 
     /// Maps rows of pixels.
-    fn fetch(&self, gpu: &Gpu, top: usize, rows: usize) -> Result<wgpu::BufferView, String> {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    fn fetch(&self, on: &Device, top: usize, rows: usize) -> Result<wgpu::BufferView, String> {
+        let mut encoder = on.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut source = self.texture.as_image_copy();
         source.origin.y = top as u32;
         let layout =
@@ -149,11 +153,11 @@ impl Canvas {
             wgpu::TexelCopyBufferInfo { buffer: &self.band, layout },
             wgpu::Extent3d { width: self.size[0] as u32, height: rows as u32, depth_or_array_layers: 1 },
         );
-        let sent = gpu.queue.submit([encoder.finish()]);
+        let sent = on.queue.submit([encoder.finish()]);
         let bytes = self.band.slice(..(rows * self.row_bytes) as u64);
         let (sender, answer) = mpsc::channel();
         bytes.map_async(wgpu::MapMode::Read, move |mapped| drop(sender.send(mapped)));
-        gpu.wait(sent)?;
+        on.wait(sent)?;
         match answer.try_recv() {
             Ok(Ok(())) => bytes.get_mapped_range().map_err(|error| error.to_string()),
             Ok(Err(error)) => Err(error.to_string()),

@@ -2,9 +2,13 @@
 //!
 //! Where there is no adapter these tests say so and do nothing; where `CI` is set they fail.
 
-use super::*;
+use super::Gpu;
 use crate::calligraphic::tests::{difference, jumble};
-use crate::calligraphic::{Beam, Controls, Display, Drawer, PHOSPHORS, draw};
+use crate::{
+    calligraphic::{Beam, Controls, Display, Drawer, Light, PHOSPHORS, draw},
+    traversal::Stroke,
+};
+use std::sync::{Arc, OnceLock};
 
 const WHITE: [f32; 3] = [1.0; 3];
 /// Light over the strongest that 32 bits may lose: half a picture of 2000 pixels from the anchor, a direction of 24 bits
