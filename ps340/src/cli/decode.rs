@@ -1,6 +1,6 @@
 //! `ps340 decode`: what every byte of a stream means.
 
-use super::{Trouble, of_output, open};
+use super::trouble::{Trouble, of_output, open};
 use protocol::{
     capture::{CaptureReader, Event, Record, is_capture},
     listing::{Listing, Sender},

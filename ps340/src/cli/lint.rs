@@ -1,6 +1,6 @@
 //! `ps340 lint`: what is wrong in command files.
 
-use super::{Trouble, read, say};
+use super::trouble::{Trouble, read, say};
 use crate::lint::{Finding, Level, lint};
 use std::{path::PathBuf, process::ExitCode};
 

@@ -1,6 +1,6 @@
 //! `ps340 play`: command files on a machine in virtual time, with pictures, a transcript and an exit code.
 
-use super::{Trouble, read, say};
+use super::trouble::{Trouble, read, say};
 use crate::{
     example::{EXAMPLES, example},
     machine::Settings,

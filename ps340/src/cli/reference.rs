@@ -1,6 +1,6 @@
 //! `ps340 functions` and `ps340 commands`: the reference, from the tables.
 
-use super::{Trouble, say};
+use super::trouble::{Trouble, say};
 use crate::functions::page;
 use protocol::command::reference;
 use std::process::ExitCode;
