@@ -1,12 +1,13 @@
 //! The window as a whole: screens in the middle, devices below, views at the side.
 
 use super::{
-    Appearance, Link, WINDOW,
+    Appearance,
     bar::Bar,
     choices::{Choices, RasterPlace, Role},
     devices,
     dials::Dials,
     keys::Row,
+    link::{Link, WINDOW},
     mapping::Mapping,
     orders::Orders,
     pad::Pad,

@@ -1,7 +1,12 @@
 //! Counters and rates.
 
-use super::{Asked, Orders, Shown, Ui, View, refresh_row};
-use crate::machine::Counters;
+use super::{View, view::refresh_row};
+use crate::{
+    console::orders::Orders,
+    machine::Counters,
+    shell::{Asked, Shown},
+};
+use egui::Ui;
 
 /// Microseconds between two measurements of a rate.
 const BETWEEN: u64 = 500_000;

@@ -1,11 +1,12 @@
 //! The knobs of the display, its phosphor, and how the beam keeps up.
 
-use super::{Asked, Orders, Shown, Ui, View, refresh_row};
+use super::{View, view::refresh_row};
 use crate::{
     calligraphic::{KNOBS, PHOSPHORS, SCREENS},
-    console::places,
+    console::{orders::Orders, places},
+    shell::{Asked, Shown},
 };
-use egui::{ComboBox, Slider, vec2};
+use egui::{ComboBox, Slider, Ui, vec2};
 
 /// What a person sets at the display.
 pub struct DisplayView;

@@ -1,8 +1,14 @@
 //! Help, from the tables: orders of the operator, commands and functions of the machine.
 
-use super::{Asked, Orders, Shown, Ui, View};
-use crate::{functions, functions::page, operator};
-use egui::RichText;
+use super::View;
+use crate::{
+    console::orders::Orders,
+    functions,
+    functions::page,
+    operator,
+    shell::{Asked, Shown},
+};
+use egui::{RichText, Ui};
 use protocol::command::reference;
 
 /// A page of the reference.

@@ -1,7 +1,12 @@
 //! The bytes on the host lines, decoded.
 
-use super::{Asked, Orders, Shown, Ui, View};
-use crate::{line::LineId, shell::Passed};
+use super::View;
+use crate::{
+    console::orders::Orders,
+    line::LineId,
+    shell::{Asked, Passed, Shown},
+};
+use egui::Ui;
 use protocol::listing::{Listing, Sender};
 use std::{collections::BTreeMap, fmt::Write, sync::Arc};
 

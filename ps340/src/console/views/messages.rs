@@ -1,6 +1,11 @@
 //! The numbered messages of the machine.
 
-use super::{Asked, Orders, Shown, Ui, View};
+use super::View;
+use crate::{
+    console::orders::Orders,
+    shell::{Asked, Shown},
+};
+use egui::Ui;
 
 /// The latest messages.
 pub struct MessagesView;

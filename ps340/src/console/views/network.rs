@@ -1,8 +1,11 @@
 //! The function network: each function with its queues, its latest values and how often it fires.
 
-use super::{Asked, Orders, Shown, Ui, View};
-use crate::{console::readable::rounded, shell::FunctionShown};
-use egui::{Color32, RichText};
+use super::View;
+use crate::{
+    console::{orders::Orders, readable::rounded},
+    shell::{Asked, FunctionShown, Shown},
+};
+use egui::{Color32, RichText, Ui};
 use std::collections::HashMap;
 
 /// Microseconds between two measurements of the firing rates.

@@ -1,7 +1,11 @@
 //! The display structure as a tree.
 
-use super::{Asked, Orders, Shown, Ui, View};
-use crate::console::readable::rounded;
+use super::View;
+use crate::{
+    console::{orders::Orders, readable::rounded},
+    shell::{Asked, Shown},
+};
+use egui::Ui;
 
 /// The tree, with a filter.
 #[derive(Default)]

@@ -1,8 +1,11 @@
 //! The tablet as a pane of its own: the mouse over it is the puck, which stays where it is left.
 
-use super::{Asked, Orders, Shown, Ui, View};
-use crate::console::{mapping::Mouse, places, puck::Puck};
-use egui::{Color32, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Vec2, WidgetInfo, vec2};
+use super::View;
+use crate::{
+    console::{mapping::Mouse, orders::Orders, places, puck::Puck},
+    shell::{Asked, Shown},
+};
+use egui::{Color32, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
 /// Lines of the grid on the tablet, across.
 const GRID: usize = 11;

@@ -1,0 +1,30 @@
+//! What every view has, and what several show.
+
+use crate::{
+    console::orders::Orders,
+    shell::{Asked, Shown},
+};
+use egui::Ui;
+
+/// Something to look at beside the screens.
+pub trait View {
+    /// What its tab says.
+    fn title(&self) -> &'static str;
+    /// What it shows, in a sentence.
+    fn summary(&self) -> &'static str;
+    /// Whether it explains, rather than shows the machine.
+    fn is_help(&self) -> bool {
+        false
+    }
+    /// Asks the mirror for what the view shows.
+    fn ask(&self, asked: &mut Asked);
+    /// Shows it.
+    fn show(&mut self, ui: &mut Ui, shown: &Shown, orders: &mut Orders);
+}
+
+/// A row of a grid: how long the beam needs for the picture, and how often it draws it.
+pub(super) fn refresh_row(ui: &mut Ui, shown: &Shown) {
+    ui.label("refresh");
+    ui.monospace(shown.refresh.map_or("...".into(), |refresh| refresh.describe(shown.scene.controls.steady)));
+    ui.end_row();
+}
