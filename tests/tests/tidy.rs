@@ -26,7 +26,6 @@ const TOP_LEVEL: &[&str] = &[
 const CIRCLES: &[(&str, usize)] = &[
     ("protocol/command/strategy", 3),
     ("ps340/functions/devices", 6),
-    ("ps340/interpreter", 2),
     ("ps340/machine", 15),
     ("ps340/memory", 4),
     ("ps340/network", 2),

@@ -1,6 +1,6 @@
 //! Commands about the machine itself: status, password, configuration, interfaces.
 
-use super::{Draft, Interpreter, Message};
+use super::{Interpreter, Message, draft::Draft};
 use crate::{
     memory::{MASS_MEMORY, MassMemory, Refusal},
     port::Effect,

@@ -9,6 +9,7 @@ mod values;
 
 use super::*;
 use crate::{
+    memory::MassMemory,
     port::{Effect, ObjectId},
     structure::Node,
     traversal::{self, Requests},
