@@ -34,15 +34,6 @@ impl MassMemory {
             self.reuse_deleted();
         }
     }
-
-    /// Clears references to objects that were deleted, so that their numbers can be used again. Not while the network
-    /// wants something of its surroundings, which may concern them.
-    pub fn reuse_deleted(&mut self) {
-        if self.effects.is_empty() {
-            self.structures.forget(|id| self.objects.is_deleted(id));
-            self.objects.reuse_deleted();
-        }
-    }
 }
 
 #[cfg(test)]

@@ -5,36 +5,18 @@
 //! one directly below an operate node. Ours: inside a structure, where an operate node applies to all that follows,
 //! so do the new ones; nodes that follow a prefix go with it.
 
-use super::{MassMemory, Refusal};
+use super::{
+    MassMemory, Refusal,
+    insertions::{Insertion, Kind},
+};
 use crate::{
     port::ObjectId,
     structure::{Member, Node, Operation},
 };
 use protocol::Name;
-use std::collections::HashMap;
 
 /// Most nodes that PREFIX and FOLLOW put at one name. Ours.
 const MAX_INSERTIONS: usize = 1000;
-
-/// What PREFIX and FOLLOW did to each object, the latest last.
-#[derive(Debug, Default)]
-pub(super) struct Insertions(HashMap<ObjectId, Vec<Insertion>>);
-
-/// One node that was put in.
-#[derive(Clone, Copy, Debug)]
-struct Insertion {
-    kind: Kind,
-    /// The anonymous object: for a prefix what the name denoted before, else the follower.
-    node: ObjectId,
-    /// The structure that holds the anonymous object as a member of its own.
-    group: Option<ObjectId>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    Prefix,
-    Follower,
-}
 
 impl MassMemory {
     /// PREFIX name WITH operation.
@@ -122,26 +104,8 @@ impl MassMemory {
         Ok(())
     }
 
-    /// Forgets what was put in at an object, and returns the anonymous objects of it.
-    pub(super) fn insertions_of(&mut self, id: ObjectId) -> Vec<ObjectId> {
-        match self.insertions.0.remove(&id) {
-            Some(insertions) => self.detach(&insertions),
-            None => Vec::new(),
-        }
-    }
-
-    /// Takes anonymous objects out of the structures that hold them.
-    fn detach(&mut self, insertions: &[Insertion]) -> Vec<ObjectId> {
-        for insertion in insertions {
-            if let Some(group) = insertion.group {
-                self.structures.take_out(group, insertion.node);
-            }
-        }
-        insertions.iter().map(|insertion| insertion.node).collect()
-    }
-
     fn remember(&mut self, id: ObjectId, insertion: Insertion) {
-        self.insertions.0.entry(id).or_default().push(insertion);
+        self.insertions.push(id, insertion);
     }
 
     /// The display node that PREFIX or FOLLOW may change.
@@ -154,14 +118,14 @@ impl MassMemory {
         if self.structures.node(id).is_none() {
             return Err(Refusal::NotFound(name.clone()));
         }
-        let crowd = self.insertions.0.get(&id).is_some_and(|all| all.len() >= MAX_INSERTIONS);
+        let crowd = self.insertions.at(id).len() >= MAX_INSERTIONS;
         if crowd || self.is_full() { Err(Refusal::Full) } else { Ok(id) }
     }
 
     fn latest(&self, name: &Name, kind: Kind) -> Result<(ObjectId, usize), Refusal> {
         let id = self.objects.find(name.as_str()).ok_or_else(|| Refusal::NotFound(name.clone()))?;
         let id = self.structures.follow(id);
-        let place = self.insertions.0.get(&id).and_then(|all| all.iter().rposition(|i| i.kind == kind));
+        let place = self.insertions.at(id).iter().rposition(|i| i.kind == kind);
         let none = match kind {
             Kind::Prefix => "a name without a prefix",
             Kind::Follower => "a name without a follower",
@@ -184,32 +148,5 @@ impl MassMemory {
             Some(Member::Named(id)) => applies(self.structures.node(*id)),
             _ => false,
         }
-    }
-}
-
-impl Insertions {
-    /// Takes the insertions at an object from `place` on.
-    fn cut(&mut self, id: ObjectId, place: usize) -> Vec<Insertion> {
-        let Some(all) = self.0.get_mut(&id) else { return Vec::new() };
-        let cut = all.split_off(place);
-        if all.is_empty() {
-            self.0.remove(&id);
-        }
-        cut
-    }
-
-    /// Takes one insertion.
-    fn take(&mut self, id: ObjectId, place: usize) -> Option<Insertion> {
-        let all = self.0.get_mut(&id)?;
-        let taken = all.remove(place);
-        if all.is_empty() {
-            self.0.remove(&id);
-        }
-        Some(taken)
-    }
-
-    /// Forgets everything.
-    pub(super) fn clear(&mut self) {
-        self.0.clear();
     }
 }
