@@ -4,10 +4,12 @@ use super::*;
 use crate::{
     functions::{clocks::MAX_OUTPUTS_AT_ONCE, find},
     port::{
-        Effect,
+        Cause, Effect, Fault,
         Literal::{self, B, I, R, V2, V3},
+        ObjectId,
     },
 };
+use protocol::command::Input;
 use protocol::{Kind, Value};
 
 const CLOCK: ObjectId = ObjectId(0);

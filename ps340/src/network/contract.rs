@@ -3,9 +3,10 @@
 use super::*;
 use crate::{
     functions::{FunctionRow, Rule, Shape, all, devices},
-    port::{Effect, Literal, Role},
+    port::{Cause, Effect, Fault, Literal, ObjectId, Role},
 };
 use protocol::Value;
+use protocol::command::Input;
 use std::collections::HashSet;
 
 const FUNCTION: ObjectId = ObjectId(3);

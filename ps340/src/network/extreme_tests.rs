@@ -5,12 +5,13 @@ use crate::network::tests::{Bench, deliver, faults};
 use crate::{
     functions::find,
     port::{
-        Effect,
+        Cause, Effect,
         Literal::{I, R},
-        MAX_QUEUE,
+        MAX_QUEUE, ObjectId,
     },
 };
 use protocol::Value;
+use protocol::command::Input;
 
 fn reals(effects: Vec<Effect>) -> Vec<f64> {
     let number = |effect| deliver(effect).and_then(|(_, value)| value.number());

@@ -1,7 +1,7 @@
 //! What a person may switch on to see a network work: counters, a trace of messages, breaks.
 
 use super::{
-    Destination, Network,
+    Destination,
     observe::{Observer, Outcome, Source},
 };
 use crate::port::ObjectId;
@@ -64,129 +64,32 @@ pub enum Traced {
 #[derive(Debug, Default)]
 pub(super) struct Instruments {
     /// By the numbers of the objects; none if the counters are off.
-    activity: Option<Vec<Activity>>,
-    traced: Traced,
-    lines: VecDeque<Trace>,
+    pub(super) activity: Option<Vec<Activity>>,
+    pub(super) traced: Traced,
+    pub(super) lines: VecDeque<Trace>,
     /// Lines that went because there were too many.
-    cut: u64,
+    pub(super) cut: u64,
     /// Firings that began under observation, and before.
-    firings: u64,
-    breaks: BTreeSet<ObjectId>,
-    held: bool,
+    pub(super) firings: u64,
+    pub(super) breaks: BTreeSet<ObjectId>,
+    pub(super) held: bool,
     /// The next firing passes its break.
-    pass: bool,
+    pub(super) pass: bool,
 }
 
-impl Network {
-    /// Switches the counters of the functions on, from 0, or off.
-    pub fn count_activity(&mut self, on: bool) {
-        self.instruments_mut().activity = on.then(Vec::new);
-        self.put_away();
-    }
-
-    /// Whether the counters of the functions are on.
-    pub fn counts_activity(&self) -> bool {
-        self.instruments.as_ref().is_some_and(|instruments| instruments.activity.is_some())
-    }
-
-    /// What a function did since its counters were started; none if they are off, or it is no function.
-    pub fn activity(&self, id: ObjectId) -> Option<Activity> {
-        let counted = self.instruments.as_ref()?.activity.as_ref()?;
-        self.function(id).map(|_| counted.get(id.index()).copied().unwrap_or_default())
-    }
-
-    /// Counts that a device speaks, if functions are counted.
-    pub fn note_speech(&mut self, id: ObjectId) {
-        if let Some(instruments) = &mut self.instruments {
-            instruments.speaks(id);
-        }
-    }
-
-    /// Chooses which messages are traced from now on. What was traced before stays until it is taken.
-    pub fn trace(&mut self, traced: Traced) {
-        self.instruments_mut().traced = traced;
-        self.put_away();
-    }
-
-    /// Which messages are traced.
-    pub fn traced(&self) -> &Traced {
-        self.instruments.as_ref().map_or(&Traced::Nothing, |instruments| &instruments.traced)
-    }
-
-    /// Takes the trace, the oldest line first, and how many lines before it went because there were too many.
-    pub fn take_trace(&mut self) -> (Vec<Trace>, u64) {
-        let Some(instruments) = &mut self.instruments else { return (Vec::new(), 0) };
-        let taken = (std::mem::take(&mut instruments.lines).into(), std::mem::take(&mut instruments.cut));
-        self.put_away();
-        taken
-    }
-
-    /// Makes the network stop before an object fires, each time, also if it becomes another function; or no longer.
-    pub fn set_break(&mut self, id: ObjectId, on: bool) {
-        let breaks = &mut self.instruments_mut().breaks;
-        if on {
-            breaks.insert(id);
-        } else {
-            breaks.remove(&id);
-        }
-        self.put_away();
-    }
-
-    /// The objects with a break.
-    pub fn breaks(&self) -> impl Iterator<Item = ObjectId> {
-        self.instruments.iter().flat_map(|instruments| instruments.breaks.iter().copied())
-    }
-
-    /// Stops the network: messages still arrive, but nothing fires and clocks stand still until
-    /// [`resume`](Self::resume).
-    pub fn hold(&mut self) {
-        self.instruments_mut().held = true;
-    }
-
-    /// Whether the network is stopped, by [`hold`](Self::hold), a break or a single firing.
-    pub fn is_held(&self) -> bool {
-        self.instruments.as_ref().is_some_and(|instruments| instruments.held)
-    }
-
-    /// Lets a network that is stopped go on. The function before which it stopped passes its break once.
-    pub fn resume(&mut self) {
-        let Some(instruments) = &mut self.instruments else { return };
-        instruments.pass |= instruments.held;
-        instruments.held = false;
-        self.put_away();
-    }
-
-    /// The function that is going to fire next.
-    pub fn next(&self) -> Option<ObjectId> {
-        self.ready.iter().find(|id| self.instances[id.index()].is_ready())
-    }
-
+impl Instruments {
     /// Starts the counters of one function anew.
-    pub(super) fn forget_activity(&mut self, id: ObjectId) {
-        let counted = self.instruments.as_mut().and_then(|instruments| instruments.activity.as_mut());
-        if let Some(activity) = counted.and_then(|counted| counted.get_mut(id.index())) {
+    pub(super) fn forget(&mut self, id: ObjectId) {
+        if let Some(activity) = self.activity.as_mut().and_then(|counted| counted.get_mut(id.index())) {
             *activity = Activity::default();
         }
     }
 
-    fn instruments_mut(&mut self) -> &mut Instruments {
-        self.instruments.get_or_insert_with(|| Box::new(Instruments::starting(self.counters.firings)))
-    }
-
-    /// Puts the instruments away when all are off, so that the network is as fast as before.
-    fn put_away(&mut self) {
-        if self.instruments.as_ref().is_some_and(|instruments| instruments.is_off()) {
-            self.instruments = None;
-        }
-    }
-}
-
-impl Instruments {
-    fn starting(firings: u64) -> Instruments {
+    pub(super) fn starting(firings: u64) -> Instruments {
         Instruments { firings, ..Instruments::default() }
     }
 
-    fn is_off(&self) -> bool {
+    pub(super) fn is_off(&self) -> bool {
         let unused = self.lines.is_empty() && self.cut == 0 && self.breaks.is_empty();
         self.activity.is_none() && self.traced == Traced::Nothing && unused && !self.held
     }

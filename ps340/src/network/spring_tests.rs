@@ -22,10 +22,9 @@
 //! Half the step, half the error: both are of first order. Stiff by six orders of magnitude (decay rates of 1 and
 //! 10^6 / s, k = 10^6, c = 10^6 + 1): stable below h = 2.0 us only, whatever is asked of the slow part.
 
-use super::*;
 use crate::network::tests::Bench;
 use crate::port::{
-    Effect, Fault,
+    Cause, Effect, Fault,
     Literal::{B, I, R},
 };
 use protocol::Value;

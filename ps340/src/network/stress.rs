@@ -3,10 +3,11 @@
 use super::*;
 use crate::{
     functions::all,
-    port::{Effect, Literal},
+    port::{Effect, Literal, ObjectId},
 };
 use proptest::prelude::*;
 use protocol::Value;
+use protocol::command::Input;
 
 /// What a host may do.
 #[derive(Clone, Debug)]

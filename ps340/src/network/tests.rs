@@ -5,13 +5,17 @@ use crate::{
     functions::{devices, find},
     matrices::rotation,
     port::{
-        Effect,
+        Cause, Effect,
         Literal::{self, B, I, R, S, V2, V3},
-        MAX_QUEUE,
+        MAX_QUEUE, ObjectId,
     },
 };
 use glam::{DMat3, DMat4, DVec3};
-use protocol::{Kind, Name, Value, command::Axis, value::PickList};
+use protocol::{
+    Kind, Name, Value,
+    command::{Axis, Input},
+    value::PickList,
+};
 use std::collections::HashMap;
 
 /// A network whose objects have names; unknown names are objects without a function.

@@ -4,6 +4,7 @@ use super::*;
 use crate::network::tests::Bench;
 use crate::port::Literal::{I, S, V2};
 use protocol::Value;
+use protocol::command::Input;
 use std::collections::BTreeSet;
 
 /// A chain A, B, C of F:ADDC with 1, and X behind it, which is no function.
