@@ -1,8 +1,10 @@
 //! Orders that look into the machine: traces, breaks, single firings, counters of functions, graphs.
 
 use super::{
-    graph::{Language, Subject, graph, title},
-    order::{Order, OrderError, OrderRow, REFUSED, Words},
+    Inspection, Language, Order, OrderError, OrderRow, Subject,
+    fault::REFUSED,
+    graph::{graph, title},
+    words::Words,
 };
 use crate::{
     functions::printing::print,
@@ -20,40 +22,8 @@ const TOP: usize = 10;
 /// Characters of a message that a trace shows.
 const SHOWN: usize = 60;
 
-/// Something that a person wants to know of the machine's inside.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Inspection {
-    /// Takes what was traced.
-    Trace,
-    /// Traces the messages to and from an object, or all for none; or no longer.
-    TraceOf(Option<String>, bool),
-    /// Lists the breaks.
-    Breaks,
-    /// Stops the network before a function fires, or no longer.
-    Break(String, bool),
-    /// Lets one function fire, and stops the network.
-    Step,
-    /// Lets the network go on.
-    Continue,
-    /// Switches the counters of the functions on or off.
-    Count(bool),
-    /// What a function did.
-    Activity(String),
-    /// The functions that fired most.
-    Top(usize),
-    /// The network or the structure as a graph.
-    Graph {
-        /// What becomes a graph: the network or the structure.
-        subject: Subject,
-        /// In which form it is told.
-        language: Language,
-        /// Where to; into the reply if none.
-        file: Option<String>,
-    },
-}
-
 /// The rows of these orders.
-pub(super) const ROWS: &[OrderRow] = &[
+pub(super) const INSPECTION_ROWS: &[OrderRow] = &[
     OrderRow {
         word: "trace",
         arguments: "[NAME|all [on|off]]",
@@ -82,7 +52,7 @@ pub(super) const ROWS: &[OrderRow] = &[
         word: "count",
         arguments: "[on|off]",
         summary: "count what each function does, from 0; see counters NAME, top",
-        read: |words| Ok(Order::Inspect(Inspection::Count(on_or_off(words)?))),
+        read: |words| Ok(Order::Inspect(Inspection::Count(words.on_or_off()?))),
     },
     OrderRow {
         word: "top",
@@ -98,25 +68,17 @@ pub(super) const ROWS: &[OrderRow] = &[
     },
 ];
 
-pub(super) fn on_or_off(words: &mut Words<'_>) -> Result<bool, OrderError> {
-    match words.next() {
-        None | Some("on") => Ok(true),
-        Some("off") => Ok(false),
-        Some(other) => Err(OrderError::Bad { found: other.into(), expected: "'on' or 'off'" }),
-    }
-}
-
 fn trace(words: &mut Words<'_>) -> Result<Order, OrderError> {
     let Some(name) = words.next() else { return Ok(Order::Inspect(Inspection::Trace)) };
     let name = Some(name).filter(|name| !name.eq_ignore_ascii_case("all")).map(str::to_ascii_uppercase);
-    Ok(Order::Inspect(Inspection::TraceOf(name, on_or_off(words)?)))
+    Ok(Order::Inspect(Inspection::TraceOf(name, words.on_or_off()?)))
 }
 
 fn break_at(words: &mut Words<'_>) -> Result<Order, OrderError> {
     let Some(name) = words.next().map(str::to_ascii_uppercase) else {
         return Ok(Order::Inspect(Inspection::Breaks));
     };
-    Ok(Order::Inspect(Inspection::Break(name, on_or_off(words)?)))
+    Ok(Order::Inspect(Inspection::Break(name, words.on_or_off()?)))
 }
 
 fn read_graph(words: &mut Words<'_>) -> Result<Order, OrderError> {

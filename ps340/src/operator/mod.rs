@@ -2,27 +2,25 @@
 //!
 //! A reply begins with `ok` or `error`. Line ends inside a reply are written `\n`.
 
+mod fault;
+mod words;
 mod graph;
-mod inspect;
 mod order;
-mod perform;
+mod reading;
+mod inspect;
 mod sight;
+mod table;
+mod perform;
+mod reply;
 
+pub use fault::OrderError;
 pub use graph::{Language, Subject, title};
-pub use inspect::{Inspection, brief};
-pub use order::{Order, OrderError, OrderRow, Screen, parse, rows, unescape};
+pub use inspect::brief;
+pub use order::{Inspection, Order, OrderRow, Screen, SightOrder};
 pub use perform::{Outcome, Wait, perform};
-pub use sight::SightOrder;
-
-/// The reply line for a result: `ok`, `ok TEXT` or `error TEXT`, without the line end.
-pub fn reply(result: &Result<String, String>) -> String {
-    let (word, text) = match result {
-        Ok(text) => ("ok", text),
-        Err(text) => ("error", text),
-    };
-    let escaped = text.replace('\\', "\\\\").replace('\r', "\\r").replace('\n', "\\n");
-    if escaped.is_empty() { word.to_string() } else { format!("{word} {escaped}") }
-}
+pub use reading::unescape;
+pub use reply::reply;
+pub use table::{parse, rows};
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! Carrying out an order on a machine.
 
-use super::{Order, OrderRow, inspect::inspect, order::REFUSED, rows, sight};
+use super::{Order, OrderRow, fault::REFUSED, inspect::inspect, rows, sight};
 use crate::{
     calligraphic,
     example::EXAMPLES,

@@ -1,8 +1,8 @@
 //! Orders for the display: knobs, phosphor, steadiness, which screen, and pictures in files.
 
-use super::order::{Order, OrderError, OrderRow, REFUSED, Screen, Words};
+use super::{Order, OrderError, OrderRow, Screen, SightOrder, fault::REFUSED, words::Words};
 use crate::{
-    calligraphic::{self, Controls, KNOBS, Knob, MAX_SIZE, PHOSPHORS, Phosphor, SCREENS},
+    calligraphic::{self, Controls, KNOBS, MAX_SIZE, PHOSPHORS, Phosphor, SCREENS},
     machine::Machine,
     picture::Picture,
 };
@@ -11,39 +11,8 @@ use protocol::raster::{RASTER_HEIGHT, RASTER_WIDTH};
 use std::io::Write;
 use std::path::Path;
 
-/// Something that a person sets at the display, or wants of it.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SightOrder {
-    /// Turns a knob, or says how all stand.
-    Knob(Option<(&'static Knob, f32)>),
-    /// Takes another phosphor, or lists them.
-    Phosphor(Option<&'static Phosphor>),
-    /// Whether a long picture stands still instead of flickering; or says so.
-    Steady(Option<bool>),
-    /// Looks at another screen, or says which is looked at.
-    Screen(Option<u8>),
-    /// Says how long the beam needs, and how often it draws the picture.
-    Refresh,
-    /// The colour of a pixel of the raster screen.
-    Pixel {
-        /// The column from the left.
-        x: u32,
-        /// The line from the bottom.
-        y: u32,
-    },
-    /// Writes a picture of a screen, or its strokes.
-    Picture {
-        /// The screen that is written.
-        screen: Screen,
-        /// PNG, EXR, SVG or TXT, by extension.
-        file: String,
-        /// Width and height of the vector screen in pixels.
-        size: Option<[u32; 2]>,
-    },
-}
-
 /// The rows of these orders.
-pub(super) const ROWS: &[OrderRow] = &[
+pub(super) const SIGHT_ROWS: &[OrderRow] = &[
     OrderRow {
         word: "picture",
         arguments: "vector|raster FILE [SIZE|WIDTHxHEIGHT]",

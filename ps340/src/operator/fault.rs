@@ -1,0 +1,34 @@
+//! Why an order is not read, or not carried out.
+
+/// Why a line is no order.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum OrderError {
+    /// The first word is unknown.
+    #[error("unknown order '{word}'; {hint}'help' lists them")]
+    Unknown {
+        /// The word.
+        word: String,
+        /// A sentence about the order that is probably meant; empty if there is none.
+        hint: String,
+    },
+    /// Something is missing.
+    #[error("{0} is missing")]
+    Missing(&'static str),
+    /// Something cannot be read, or is out of range.
+    #[error("'{found}' is not {expected}")]
+    Bad {
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: &'static str,
+    },
+    /// There is no such program.
+    #[error("{0}")]
+    Example(String),
+    /// There is more on the line.
+    #[error("'{0}' is too much")]
+    TooMuch(String),
+}
+
+/// What is said of an order of a file that is played which reaches out.
+pub(super) const REFUSED: &str = "a file that is played may not write files or end the machine without --orders";
