@@ -27,7 +27,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("protocol/command/strategy", 3),
     ("ps340/functions/devices", 6),
     ("ps340/machine", 15),
-    ("ps340/rendering", 5),
     ("ps340/structure/inputs", 5),
     ("host/cli", 27),
     ("host/script", 3),

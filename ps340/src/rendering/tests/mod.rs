@@ -9,11 +9,12 @@ mod lines;
 
 use super::*;
 use crate::{
-    port::ObjectId,
-    structure::{Polygons, Structures},
+    functions::devices::shading::ShadingEnvironment,
+    port::{ObjectId, Rendering},
+    structure::{Member, Node, Operation, Polygons, Structures},
     traversal,
 };
-use glam::{DMat3, DMat4};
+use glam::{DMat3, DMat4, DVec3};
 use protocol::command::{Polygon, PolygonVertex};
 
 /// What is displayed: matrices from the outside in, then the rendering node, then what is below it.

@@ -1,0 +1,66 @@
+//! A rendering as a task in pieces of bounded work.
+
+use super::{
+    Facets, Outcome, RenderingFault, Segment,
+    back_face::back_face_removal,
+    hidden_line::HiddenLine,
+    section::{cross_section, sectioned},
+    shade::Shading,
+    solid::check,
+};
+use crate::{functions::devices::shading::ShadingEnvironment, port::Rendering};
+
+/// A rendering that is under way.
+#[derive(Debug)]
+pub struct Task(Stage);
+
+#[derive(Debug)]
+enum Stage {
+    Made(Vec<Segment>),
+    HiddenLine(Box<HiddenLine>),
+    Shading(Box<Shading>),
+}
+
+impl Task {
+    /// Begins a rendering.
+    ///
+    /// # Errors
+    /// A solid is none, or a cut has no plane.
+    pub fn new(kind: Rendering, facets: Facets, environment: &ShadingEnvironment) -> Result<Task, RenderingFault> {
+        if facets.solid {
+            check(&facets)?;
+        }
+        let plane = || facets.plane.ok_or(RenderingFault::NoPlane);
+        Ok(Task(match kind {
+            Rendering::CrossSection => Stage::Made(cross_section(&facets, &plane()?)),
+            Rendering::Sectioned => Stage::Made(sectioned(&facets, &plane()?)),
+            Rendering::BackFace => Stage::Made(back_face_removal(&facets)),
+            Rendering::HiddenLine => Stage::HiddenLine(Box::new(HiddenLine::new(&facets))),
+            Rendering::Wash | Rendering::Flat | Rendering::Gouraud | Rendering::Phong => {
+                Stage::Shading(Box::new(Shading::new(kind, facets, environment)))
+            }
+        }))
+    }
+
+    /// Goes on for about so many units of work, each some ten nanoseconds. Returns what was made, once it is done.
+    pub fn advance(&mut self, units: u64) -> Option<Outcome> {
+        match &mut self.0 {
+            Stage::Made(segments) => Some(Outcome::Lines(std::mem::take(segments))),
+            Stage::HiddenLine(lines) => lines.advance(units).map(Outcome::Lines),
+            Stage::Shading(shading) => shading.advance(units).map(Outcome::Image),
+        }
+    }
+}
+
+/// Makes a rendering at once.
+///
+/// # Errors
+/// As [`Task::new`].
+pub fn render(kind: Rendering, facets: Facets, environment: &ShadingEnvironment) -> Result<Outcome, RenderingFault> {
+    let mut task = Task::new(kind, facets, environment)?;
+    loop {
+        if let Some(outcome) = task.advance(u64::MAX) {
+            return Ok(outcome);
+        }
+    }
+}
