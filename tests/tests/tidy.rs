@@ -26,7 +26,6 @@ const TOP_LEVEL: &[&str] = &[
 const CIRCLES: &[(&str, usize)] = &[
     ("protocol/command/strategy", 3),
     ("ps340/functions/devices", 6),
-    ("ps340/machine", 15),
     ("ps340/structure/inputs", 5),
     ("host/cli", 27),
     ("host/script", 3),

@@ -1,7 +1,12 @@
 //! Tests of what functions ask of the machine: names, files, picks, transformed data, interpreters.
 
 use super::*;
-use crate::{functions::find, network::Network, port::ObjectId};
+use crate::line::LineId;
+use crate::{
+    functions::find,
+    network::Network,
+    port::{Effect, ObjectId},
+};
 use protocol::{
     Value,
     command::{Input as Place, encode},

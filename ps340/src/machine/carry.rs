@@ -3,7 +3,7 @@
 use super::{
     Machine,
     renderings::Renderings,
-    requests::{Pick, TransformRequest, Waiting},
+    waiting::{Pick, TransformRequest, Waiting},
 };
 use crate::{
     interpreter::Message,

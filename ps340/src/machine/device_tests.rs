@@ -1,6 +1,7 @@
 //! Tests of the devices in the whole machine: keyboard, terminal, cursor, labels, memory, screen saver.
 
 use super::*;
+use crate::line::LineId;
 use crate::{
     port::Label,
     traversal::{

@@ -4,7 +4,8 @@
 
 use super::{
     dials::Dials,
-    keyboard::{Key, KeyboardMode},
+    emission::Emission,
+    key::{Key, KeyboardMode},
     tablet::{Tablet, TabletEvent},
 };
 use crate::port::{DialSetting, TabletCommand};
@@ -33,9 +34,6 @@ pub enum Event {
     /// Gives the keyboard another mode, as the keys HOST, LOCAL and COMMAND do.
     Mode(KeyboardMode),
 }
-
-/// Instance, output and value of a message from a device.
-pub(super) type Emission = (&'static str, u16, Value);
 
 /// The state of dials and tablet.
 #[derive(Debug, Default)]

@@ -1,18 +1,10 @@
-//! One host line: bytes into commands, raster operations and terminal text.
+//! What the machine keeps for one host line: the readers of its bytes, and what is open on it.
 
-use super::Machine;
-use crate::interpreter::{Interpreter, Message};
-use crate::{line::LineId, memory::MassMemory};
+use crate::{interpreter::Interpreter, line::LineId, memory::MassMemory};
 use protocol::{
-    Value,
     command::{BinaryDecoder, CommandReader},
-    raster,
-    value::MAX_STRING,
-    wire::{Frame, FrameDecoder, Route, read_six_bit},
+    wire::FrameDecoder,
 };
-
-/// Characters of a diagnostic packet that are shown.
-const DIAGNOSTIC_CHARACTERS: usize = 240;
 
 /// Characters of a command that never ended that are shown.
 const SHOWN_CHARACTERS: usize = 40;
@@ -27,24 +19,21 @@ pub enum PlainText {
     Terminal,
 }
 
-/// The instances of the routes `0` to `9`; only 3 to 7 are channels of the site.
-const CHANNELS: [&str; 10] = ["", "", "", "CHANNEL3", "CHANNEL4", "CHANNEL5", "CHANNEL6", "CHANNEL7", "", ""];
-
 /// What the machine keeps for each host.
 #[derive(Debug)]
 pub(super) struct HostLine {
-    frames: FrameDecoder,
-    decoders: Decoders,
+    pub(super) frames: FrameDecoder,
+    pub(super) decoders: Decoders,
 }
 
 /// The readers behind the frames, one for each route.
 #[derive(Debug)]
-struct Decoders {
-    line: LineId,
-    plain_text: PlainText,
-    text: CommandReader,
-    binary: BinaryDecoder,
-    interpreter: Interpreter,
+pub(super) struct Decoders {
+    pub(super) line: LineId,
+    pub(super) plain_text: PlainText,
+    pub(super) text: CommandReader,
+    pub(super) binary: BinaryDecoder,
+    pub(super) interpreter: Interpreter,
 }
 
 impl HostLine {
@@ -60,15 +49,6 @@ impl HostLine {
                 interpreter: Interpreter::default(),
             },
         }
-    }
-
-    /// Takes bytes from the host and does what they say.
-    pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine) {
-        let HostLine { frames, decoders } = self;
-        frames.feed_quoted(bytes, |frame| {
-            decoders.frame(frame, machine);
-            decoders.text.is_quoting()
-        });
     }
 
     /// Everything that was begun on the line is forgotten: the machine starts again.
@@ -94,99 +74,4 @@ impl HostLine {
         text.reset();
         open.or(unfinished)
     }
-}
-
-impl Decoders {
-    fn frame(&mut self, frame: Frame<'_>, machine: &mut Machine) {
-        match frame {
-            Frame::Text(text) => match self.plain_text {
-                PlainText::Commands => {
-                    self.text.push(text);
-                    self.commands(machine);
-                }
-                PlainText::Terminal => machine.show_text(Some(self.line), text),
-            },
-            Frame::Packet { route, payload, .. } => self.packet(route, payload, machine),
-            Frame::Empty(_) => {}
-            Frame::Noise { bytes, reason } => {
-                machine.counters.noise += bytes.len() as u64;
-                machine.report(Message::Line(format!("{} bytes dropped: {reason}", bytes.len())));
-            }
-        }
-    }
-
-    fn packet(&mut self, route: Route, payload: &[u8], machine: &mut Machine) {
-        match route {
-            Route::Text => {
-                self.text.push_packet(payload);
-                self.commands(machine);
-            }
-            Route::Binary => self.binary(payload, machine),
-            Route::Raster => drop(raster_records(payload, machine)),
-            Route::SixBitBinary | Route::SixBitRaster => {
-                let mut records = Vec::new();
-                match read_six_bit(payload, &mut records) {
-                    Ok(()) if route == Route::SixBitBinary => self.binary(&records, machine),
-                    Ok(()) => drop(raster_records(&records, machine)),
-                    Err(error) => machine.report(Message::Line(format!("a 6-bit packet is dropped: {error}"))),
-                }
-            }
-            Route::Channel(number) => {
-                if payload.len() > MAX_STRING {
-                    let text =
-                        format!("{} bytes for CHANNEL{number}, more than {MAX_STRING}, are dropped", payload.len());
-                    return machine.report(Message::Line(text));
-                }
-                machine.emit_from_line(CHANNELS[usize::from(number) % 10], Value::string(payload));
-            }
-            Route::Terminal => machine.show_text(Some(self.line), payload),
-            Route::Diagnostic => {
-                let text: String = payload.escape_ascii().map(char::from).take(DIAGNOSTIC_CHARACTERS).collect();
-                machine.report(Message::Diagnostic(text));
-            }
-            Route::Message => {
-                if let Err(message) = machine.request_form(self.line, payload) {
-                    machine.report(message);
-                }
-            }
-            Route::Other(code) => {
-                let route = char::from(code).escape_default();
-                machine.report(Message::Line(format!("nobody reads packets on route '{route}'")));
-            }
-        }
-    }
-
-    fn commands(&mut self, machine: &mut Machine) {
-        for read in self.text.by_ref() {
-            machine.execute_read(&mut self.interpreter, read);
-        }
-    }
-
-    fn binary(&mut self, payload: &[u8], machine: &mut Machine) {
-        // The decoder's iterator holds the decoder, so the commands are collected first; they are few a packet.
-        let commands: Vec<_> = self.binary.push(payload).collect();
-        for read in commands {
-            match read {
-                Ok(command) => machine.execute(&mut self.interpreter, command),
-                Err(error) => machine.report(Message::Binary(error)),
-            }
-        }
-    }
-}
-
-/// Carries out raster records; returns how many.
-pub(super) fn raster_records(payload: &[u8], machine: &mut Machine) -> usize {
-    let mut completed = 0;
-    for read in raster::decode(payload) {
-        match read {
-            Ok(command) => {
-                if let Err(fault) = machine.frame_buffer.apply(&command) {
-                    machine.report(Message::Raster(fault));
-                }
-                completed += 1;
-            }
-            Err(error) => machine.report(Message::Line(error.to_string())),
-        }
-    }
-    completed
 }

@@ -5,6 +5,7 @@
 //! shape of the cross and the size of the pick box are ours.
 
 use crate::{
+    functions::devices::initial,
     memory::{MassMemory, Refusal},
     structure::{Node, Operation},
 };
@@ -20,7 +21,7 @@ const PICK_BOX: DVec2 = DVec2::new(0.01, 0.01);
 ///
 /// # Errors
 /// [`Refusal`], if a name of the tables is wrong.
-pub(super) fn define_structures(memory: &mut MassMemory) -> Result<(), Refusal> {
+fn define_structures(memory: &mut MassMemory) -> Result<(), Refusal> {
     memory.define_initial_node("CURSOR", Node::Vectors(Box::new(cross().into())))?;
     let operation = Operation::PickLocation { center: DVec2::ZERO, size: PICK_BOX };
     memory.define_initial_node("PICK_LOCATION", Node::Operate { operation, descendant: None })?;
@@ -40,4 +41,17 @@ fn cross() -> VectorList {
         points: vec![point(-CROSS, 0.0), point(CROSS, 0.0), point(0.0, -CROSS), point(0.0, CROSS)],
         lines: Vec::new(),
     }
+}
+
+/// The mass memory after the start: the initial function instances exist.
+pub(super) fn initial_memory() -> MassMemory {
+    let mut memory = MassMemory::default();
+    for initial in initial() {
+        let made = memory.define_initial(&initial);
+        debug_assert!(made.is_ok(), "{initial:?}: {made:?}");
+    }
+    let structures = define_structures(&mut memory);
+    debug_assert!(structures.is_ok(), "{structures:?}");
+    memory.objects.seal_system();
+    memory
 }

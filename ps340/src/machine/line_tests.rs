@@ -1,7 +1,9 @@
 //! Tests of lines with messages of their own.
 
 use super::*;
+use crate::line::LineId;
 use protocol::wire::{MessageForm, MessageReader, Route, write_packet};
+use std::collections::BTreeMap;
 
 /// A machine and the readers of the hosts on lines 1, 2 and 3, of which 1 and 2 have messages of their own.
 struct Room {

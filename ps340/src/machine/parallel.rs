@@ -1,161 +1,25 @@
 //! The machine's side of the parallel interface: command words, look-up, logical and physical reads and writes.
 
-use super::{Machine, PlainText, host_line::HostLine};
-use crate::{interpreter::Message, line::LineId, memory::MassMemory, structure::PhysicalFault};
+use super::{
+    Machine,
+    addresses::Addresses,
+    host_line::HostLine,
+    mailbox::Mailbox,
+    parallel_line::{Attached, ParallelLine, State},
+};
+use crate::{interpreter::Message, structure::PhysicalFault};
 use protocol::{
     Name,
     parallel::{
-        AddressList, Code, Command, DONE, ERROR, Frame, FrameReader, INFORMATION, MAX_BLOCK_BYTES, MAX_LOOKUP, Trouble,
-        swap, write_block, write_word,
+        AddressList, Code, Command, DONE, ERROR, Frame, INFORMATION, MAX_BLOCK_BYTES, MAX_LOOKUP, Trouble, swap,
+        write_block, write_word,
     },
 };
-use std::collections::{BTreeMap, VecDeque};
 
 /// Frames that the words and blocks of a command may take: half a minute. Ours; the driver of the time gave up after half
 /// a second, but there was no network between.
 const TRANSFER_FRAMES: u64 = 1800;
-/// Messages that wait for RDNET; later ones are dropped. Ours.
-const MAX_MESSAGES: usize = 1000;
-/// Bytes of messages that wait for RDNET. Ours.
-const MAX_MESSAGE_BYTES: usize = 8 << 20;
-/// Where the memory of objects begins, and the step between their addresses. Ours.
-const FIRST_ADDRESS: u32 = 0x0001_0000;
-const ADDRESS_STEP: u32 = 0x100;
-/// Objects that a host may look up before it resets the interface. Ours.
-const MAX_ADDRESSES: usize = 65_536;
-
-/// What the machine keeps for a host on the parallel interface.
-#[derive(Debug)]
-pub(super) struct ParallelLine {
-    line: LineId,
-    plain_text: PlainText,
-    frames: FrameReader,
-    /// Reads what WRNET writes.
-    host: HostLine,
-    attached: Option<Attached>,
-    state: State,
-    addresses: Addresses,
-    /// The frame of the machine at which the current command is given up.
-    deadline: u64,
-    /// Bytes that began no frame, since the latest frame that one began.
-    noise: u64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Attached {
-    ForAll,
-    ForMemory,
-}
-
-/// What the host is to say next.
-#[derive(Debug)]
-enum State {
-    /// A command.
-    Idle,
-    /// Nothing: RDNET waits for a message.
-    Mail(Command),
-    /// The byte count.
-    Count(Command),
-    /// The swap flag.
-    Flag(Command, u16),
-    /// The block.
-    Block(Command, u16, bool),
-    /// Nothing: WRPHY_SYNC waits for the refresh.
-    Refresh(Command, Vec<u8>),
-}
-
-/// Messages of the function network that wait for a host on the parallel interface.
-#[derive(Debug, Default)]
-pub(super) struct Mailbox {
-    open: bool,
-    messages: VecDeque<Vec<u8>>,
-    bytes: usize,
-    lost: u64,
-}
-
-impl Mailbox {
-    /// A message for the host; dropped and counted when too many wait, and nothing if the host is not attached.
-    pub(super) fn push(&mut self, message: &[u8]) {
-        if !self.open {
-            return;
-        }
-        if self.messages.len() >= MAX_MESSAGES || self.bytes + message.len() > MAX_MESSAGE_BYTES {
-            self.lost += 1;
-            return;
-        }
-        self.bytes += message.len();
-        self.messages.push_back(message.to_vec());
-    }
-
-    fn pop(&mut self) -> Option<Vec<u8>> {
-        let message = self.messages.pop_front()?;
-        self.bytes -= message.len();
-        Some(message)
-    }
-}
-
-/// The addresses that were given out: handles that stand for names, not places in any memory.
-#[derive(Debug)]
-struct Addresses {
-    /// By first address: whose, and how many words long.
-    ranges: BTreeMap<u32, (Name, u32)>,
-    /// The latest address of each name.
-    latest: BTreeMap<Name, u32>,
-    next: u32,
-}
-
-impl Default for Addresses {
-    fn default() -> Addresses {
-        Addresses { ranges: BTreeMap::new(), latest: BTreeMap::new(), next: FIRST_ADDRESS }
-    }
-}
-
-impl Addresses {
-    /// The address of a named object with so many words.
-    fn give(&mut self, name: &Name, words: u32) -> Result<u32, Trouble> {
-        let latest = self.latest.get(name).copied();
-        if let Some(address) = latest.filter(|address| self.ranges.get(address).is_some_and(|range| range.1 == words)) {
-            return Ok(address);
-        }
-        let bytes = words.checked_mul(2).and_then(|bytes| bytes.checked_next_multiple_of(ADDRESS_STEP));
-        let next = bytes.and_then(|bytes| self.next.checked_add(bytes.max(ADDRESS_STEP))).ok_or(Trouble::Address)?;
-        if self.ranges.len() >= MAX_ADDRESSES {
-            return Err(Trouble::Address);
-        }
-        let address = std::mem::replace(&mut self.next, next);
-        self.ranges.insert(address, (name.clone(), words));
-        self.latest.insert(name.clone(), address);
-        Ok(address)
-    }
-
-    /// Whose memory an address is, and which word of it.
-    fn find(&self, address: u32) -> Result<(&Name, usize), Trouble> {
-        let (begin, (name, words)) = self.ranges.range(..=address).next_back().ok_or(Trouble::Address)?;
-        let offset = address - begin;
-        if !offset.is_multiple_of(2) || offset / 2 > *words {
-            return Err(Trouble::Address);
-        }
-        Ok((name, (offset / 2) as usize))
-    }
-}
-
 impl ParallelLine {
-    /// A line on which nothing has been said; the machine tells that it is there.
-    pub(super) fn new(line: LineId, plain_text: PlainText, out: &mut Vec<u8>) -> ParallelLine {
-        write_word(Code::Reset as u16, out);
-        ParallelLine {
-            line,
-            plain_text,
-            frames: FrameReader::default(),
-            host: HostLine::new(line, plain_text),
-            attached: None,
-            state: State::Idle,
-            addresses: Addresses::default(),
-            deadline: 0,
-            noise: 0,
-        }
-    }
-
     /// Takes bytes from the host and does what they say; the answers are appended to `out`.
     pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine, out: &mut Vec<u8>) {
         self.frames.push(bytes);
@@ -176,11 +40,6 @@ impl ParallelLine {
                 }
             }
         }
-    }
-
-    /// Gives up what is open. Returns the name of the structure that was.
-    pub(super) fn abandon(&mut self, memory: &mut MassMemory) -> Option<String> {
-        self.host.abandon(memory)
     }
 
     fn word(&mut self, word: u16, machine: &mut Machine, out: &mut Vec<u8>) {

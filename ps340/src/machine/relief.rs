@@ -3,8 +3,6 @@
 //! Lists of strokes, tables of nodes and the like keep their room from frame to frame, since the next one is usually as
 //! large. When much of what was there has gone, as after INITIALIZE, that room is given back.
 
-use super::Machine;
-
 /// Bytes by which structures and strokes must have become fewer, since they were most.
 const RELIEF_BYTES: usize = 8 << 20;
 
@@ -16,23 +14,20 @@ pub(super) struct Relief {
     is_due: bool,
 }
 
-impl Machine {
-    /// Gives back the room of what has gone, if that is much.
-    pub(super) fn relieve(&mut self) {
-        let burden = self.memory.bytes() + size_of_val(self.update.strokes.as_slice());
-        if burden + RELIEF_BYTES > self.relief.most {
-            self.relief.most = self.relief.most.max(burden);
-            return;
+impl Relief {
+    /// Whether much of what was there has gone, now that there are so many bytes of structures and strokes.
+    pub(super) fn comes(&mut self, burden: usize) -> bool {
+        if burden + RELIEF_BYTES > self.most {
+            self.most = self.most.max(burden);
+            return false;
         }
-        self.relief = Relief { most: burden, is_due: true };
-        self.memory.shrink();
-        self.update.strokes.shrink_to_fit();
-        self.shrink_sight();
+        *self = Relief { most: burden, is_due: true };
+        true
     }
 
-    /// Whether much memory was freed since this was asked last, so that the process may give it back to the system.
-    pub fn was_relieved(&mut self) -> bool {
-        std::mem::take(&mut self.relief.is_due)
+    /// Whether much memory was freed since this was asked last.
+    pub(super) fn take_due(&mut self) -> bool {
+        std::mem::take(&mut self.is_due)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rendering nodes on the whole machine: commands in, strokes, pixels and messages out.
 
 use super::*;
+use crate::line::LineId;
 use crate::traversal::Stroke;
 use protocol::{
     Value,

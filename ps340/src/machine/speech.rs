@@ -9,7 +9,6 @@ use protocol::{
     Value,
     wire::{MessageForm, MessageWriter},
 };
-use std::collections::VecDeque;
 
 /// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames, those that one line alone is told
 /// not counted; the rest are logged and counted only, so that a message that causes messages ends. The terminal shows as
@@ -19,37 +18,6 @@ pub const REPORTS_PER_FRAME: u64 = 1000;
 const LOGGED_PER_FRAME: u64 = 20;
 /// Messages of the machine that [`Machine::log`] keeps.
 const LOG_LINES: usize = 1000;
-/// Messages to the host that wait for the operator.
-const KEPT_MESSAGES: usize = 1000;
-/// Bytes of them; but the latest is always kept.
-const KEPT_BYTES: usize = 1 << 20;
-
-/// The latest messages to the host, for the operator.
-#[derive(Debug, Default)]
-pub(super) struct Kept {
-    messages: VecDeque<Vec<u8>>,
-    bytes: usize,
-}
-
-impl Kept {
-    /// One more message; the oldest give way.
-    fn push(&mut self, message: &[u8]) {
-        while self.messages.len() >= KEPT_MESSAGES || self.bytes + message.len() > KEPT_BYTES {
-            if self.pop().is_none() {
-                break;
-            }
-        }
-        self.bytes += message.len();
-        self.messages.push_back(message.to_vec());
-    }
-
-    /// The oldest message.
-    pub(super) fn pop(&mut self) -> Option<Vec<u8>> {
-        let oldest = self.messages.pop_front()?;
-        self.bytes -= oldest.len();
-        Some(oldest)
-    }
-}
 
 impl Machine {
     /// A message to the host goes to every host that asked for none of its own, and that of an instance of one line to

@@ -1,203 +1,43 @@
-//! Interpreters that belong to functions: F:CI, F:READSTREAM, F:RASTERSTREAM.
-//!
-//! What the functions give waits in a queue and is interpreted one message at a time, never one inside the other, so
-//! that commands which cause commands need no stack; each message takes its share of the work of a step.
+//! The interpreters that belong to functions, and what waits for them.
 
-use super::{Machine, host_line::raster_records};
 use crate::{
-    interpreter::{Interpreter, Message},
-    memory::Refusal,
-    port::{Cause, Fault, ObjectId, Stream},
+    interpreter::Interpreter,
+    port::{ObjectId, Stream},
 };
-use protocol::{
-    Value,
-    command::{BinaryDecoder, Command, CommandError, CommandReader, Spanned},
-};
+use protocol::command::{BinaryDecoder, CommandReader};
 use std::collections::{BTreeMap, VecDeque};
-
-/// Bytes that wait to be interpreted; more are lost and reported. Ours.
-const MAX_WAITING: usize = 4 << 20;
-/// Functions with an interpreter of their own. Ours.
-const MAX_INTERPRETERS: usize = 256;
-/// What interpreting a message costs of the work of a step, besides what it causes: it takes about as long as so many
-/// messages between functions.
-const UNITS_PER_PIECE: u64 = 50;
-/// Bytes of it that cost one unit more.
-const BYTES_PER_UNIT: usize = 8;
 
 /// The interpreters of functions, and what waits for them.
 #[derive(Debug, Default)]
 pub(super) struct Streams {
-    interpreters: BTreeMap<ObjectId, Reader>,
-    waiting: VecDeque<Piece>,
-    bytes: usize,
-    lost: u64,
+    pub(super) interpreters: BTreeMap<ObjectId, Reader>,
+    pub(super) waiting: VecDeque<Piece>,
+    pub(super) bytes: usize,
+    pub(super) lost: u64,
     /// Whether a piece is being interpreted.
-    busy: bool,
+    pub(super) busy: bool,
 }
 
+/// A message that waits.
 #[derive(Debug)]
-struct Piece {
-    function: ObjectId,
-    stream: Stream,
-    bytes: Box<[u8]>,
-    fresh: bool,
+pub(super) struct Piece {
+    pub(super) function: ObjectId,
+    pub(super) stream: Stream,
+    pub(super) bytes: Box<[u8]>,
+    pub(super) fresh: bool,
 }
 
+/// The readers of a function, and its interpreter.
 #[derive(Debug, Default)]
-struct Reader {
-    text: CommandReader,
-    binary: BinaryDecoder,
-    interpreter: Interpreter,
+pub(super) struct Reader {
+    pub(super) text: CommandReader,
+    pub(super) binary: BinaryDecoder,
+    pub(super) interpreter: Interpreter,
 }
 
 impl Streams {
     /// Whether nothing waits.
     pub(super) fn are_quiet(&self) -> bool {
         self.waiting.is_empty()
-    }
-}
-
-impl Machine {
-    /// Lets bytes wait for the interpreter of a function.
-    pub(super) fn queue_stream(&mut self, function: ObjectId, stream: Stream, bytes: Box<[u8]>, fresh: bool) {
-        // An empty message takes room too.
-        let size = bytes.len() + size_of::<Piece>();
-        if self.streams.bytes + size > MAX_WAITING {
-            self.streams.lost += 1;
-            let lost = self.streams.lost;
-            let type_name = self.memory.network.function(function).map_or("CI", |row| row.name);
-            let name = self.memory.title(function);
-            let fault = Fault { function: type_name, cause: Cause::Flood { input: 1, lost } };
-            return self.report(Message::Function { name, fault });
-        }
-        self.streams.bytes += size;
-        self.streams.waiting.push_back(Piece { function, stream, bytes, fresh });
-    }
-
-    /// Interprets the oldest message that waits, unless one is being interpreted. Returns whether there was one.
-    pub(super) fn interpret_next(&mut self) -> bool {
-        if self.streams.busy {
-            return false;
-        }
-        let Some(piece) = self.streams.waiting.pop_front() else { return false };
-        self.streams.bytes -= piece.bytes.len() + size_of::<Piece>();
-        self.work_left = self.work_left.saturating_sub(UNITS_PER_PIECE + (piece.bytes.len() / BYTES_PER_UNIT) as u64);
-        let is_reader = |machine: &Machine, id: ObjectId| {
-            let row = machine.memory.network.function(id);
-            row.is_some_and(|row| ["CI", "READSTREAM", "RASTERSTREAM"].contains(&row.name))
-        };
-        if !is_reader(self, piece.function) {
-            self.streams.interpreters.remove(&piece.function);
-            return true;
-        }
-        let mut reader = self.streams.interpreters.remove(&piece.function).unwrap_or_default();
-        if self.streams.interpreters.len() >= MAX_INTERPRETERS {
-            let mut kept = std::mem::take(&mut self.streams.interpreters);
-            kept.retain(|id, _| is_reader(self, *id));
-            self.streams.interpreters = kept;
-        }
-        if self.streams.interpreters.len() >= MAX_INTERPRETERS {
-            self.report(Message::Refused(Refusal::Full));
-            return true;
-        }
-        if piece.fresh {
-            reader = Reader::default();
-        }
-        // The commands that a function gives are nobody's, whoever caused them.
-        let speaking = self.speaking.take();
-        self.streams.busy = true;
-        let completed = match piece.stream {
-            Stream::Text => self.interpret_text(&mut reader, &piece.bytes),
-            Stream::Binary => self.interpret_records(&mut reader, &piece.bytes),
-            Stream::Raster => raster_records(&piece.bytes, self),
-        };
-        self.streams.busy = false;
-        self.speaking = speaking;
-        self.streams.interpreters.insert(piece.function, reader);
-        self.reply(piece.function, 1, Value::Integer(i32::try_from(completed).unwrap_or(i32::MAX)));
-        true
-    }
-
-    fn interpret_text(&mut self, reader: &mut Reader, text: &[u8]) -> usize {
-        let mut completed = 0;
-        reader.text.push(text);
-        for read in reader.text.by_ref() {
-            completed += usize::from(self.execute_read(&mut reader.interpreter, read));
-        }
-        completed
-    }
-
-    fn interpret_records(&mut self, reader: &mut Reader, records: &[u8]) -> usize {
-        let mut completed = 0;
-        let commands: Vec<_> = reader.binary.push(records).collect();
-        for read in commands {
-            match read {
-                Ok(command) => {
-                    self.execute(&mut reader.interpreter, command);
-                    completed += 1;
-                }
-                Err(error) => self.report(Message::Binary(error)),
-            }
-        }
-        completed
-    }
-
-    /// Carries out a command that was read, or reports why it could not be. Returns whether it was one.
-    pub(super) fn execute_read(
-        &mut self,
-        interpreter: &mut Interpreter,
-        read: Result<Spanned<Command>, CommandError>,
-    ) -> bool {
-        match read {
-            Ok(read) => {
-                read.warnings.into_iter().for_each(|warning| self.report(Message::LeftOut(warning)));
-                self.execute(interpreter, read.command);
-                true
-            }
-            Err(error) => {
-                self.report(Message::Syntax(error));
-                false
-            }
-        }
-    }
-
-    /// Carries out a command and what it causes.
-    ///
-    /// What it sends into the network is carried out before the next one, as long as the share of this step lasts; after
-    /// that the queues fill, and what is too much for them is counted and reported.
-    pub(super) fn execute(&mut self, interpreter: &mut Interpreter, command: Command) {
-        self.counters.commands += 1;
-        let rested = self.network_idle;
-        self.memory.set_speaker(self.speaking);
-        interpreter.execute(command, &mut self.memory, &mut self.messages);
-        self.memory.set_speaker(None);
-        self.network_idle = false;
-        self.carry_effects();
-        self.settle_after(rested);
-    }
-
-    /// A message from an initial instance of the host line, or the one of the line that speaks, and what it causes.
-    pub(super) fn emit_from_line(&mut self, instance: &str, value: Value) {
-        let rested = self.network_idle;
-        self.memory.set_speaker(self.speaking);
-        let object = self.memory.objects.find(instance).map(|id| self.memory.resolve(id));
-        self.memory.set_speaker(None);
-        if let Some(object) = object {
-            self.memory.network.note_speech(object);
-            self.memory.network.emit(object, 1, value, &mut self.memory.effects);
-        }
-        self.network_idle = false;
-        self.carry_effects();
-        self.settle_after(rested);
-    }
-
-    /// Lets the network work. What functions report while they work is told to the line that speaks only if the network
-    /// had come to rest before: otherwise nobody knows whose doing it is.
-    fn settle_after(&mut self, rested: bool) {
-        let speaking = self.speaking.filter(|_| rested);
-        let speaking = std::mem::replace(&mut self.speaking, speaking);
-        self.settle();
-        self.speaking = speaking;
     }
 }

@@ -1,6 +1,7 @@
 //! Tests of the whole machine: bytes in, strokes and bytes out.
 
 use super::*;
+use crate::line::LineId;
 use crate::port::Label;
 use crate::traversal::Stroke;
 

@@ -1,22 +1,9 @@
-//! What the vector screen shows besides the displayed structure: the cursor, the message line, the terminal's text.
-//!
-//! These strokes are made anew only when something of them changes.
-//!
-//! # Source
-//! That the system itself displays CURSOR and moves it with the tablet is confirmed; that it does so while stylus or puck
-//! is in range is ours.
+//! Switches of the vector screen, and what is drawn over the picture.
 
-use super::{KeyboardMode, Machine};
 use crate::{
-    interpreter::Message,
-    terminal::{Ink, MESSAGE_ROW, text_line},
-    traversal::{self, State, Stroke, Update},
+    terminal::Ink,
+    traversal::{Stroke, Update},
 };
-use glam::{DMat4, DVec3};
-use std::borrow::Cow;
-
-/// Frames for which blinking characters are seen, and then not seen. Ours.
-const BLINK_FRAMES: u64 = 30;
 
 /// Switches of the screen, and what is drawn over the picture.
 #[derive(Debug)]
@@ -27,39 +14,39 @@ pub(super) struct Tube {
     pub(super) text: bool,
     /// Whether nothing is seen, since nobody is there.
     pub(super) blanked: bool,
-    words: Words,
-    words_of: Option<WordsKey>,
-    message: Vec<u8>,
-    cursor: Update,
-    cursor_of: Option<CursorKey>,
+    pub(super) words: Words,
+    pub(super) words_of: Option<WordsKey>,
+    pub(super) message: Vec<u8>,
+    pub(super) cursor: Update,
+    pub(super) cursor_of: Option<CursorKey>,
     /// The strokes of words and cursor.
-    overlay: Vec<Stroke>,
+    pub(super) overlay: Vec<Stroke>,
     /// Changes with them.
-    overlay_version: u64,
+    pub(super) overlay_version: u64,
 }
 
 /// Strokes of terminal and message line.
 #[derive(Debug, Default)]
-struct Words {
-    strokes: Vec<Stroke>,
-    blinking: bool,
+pub(super) struct Words {
+    pub(super) strokes: Vec<Stroke>,
+    pub(super) blinking: bool,
 }
 
 /// Of what the strokes of terminal and message line were made, but for the message.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct WordsKey {
+pub(super) struct WordsKey {
     /// Version of the terminal, and whether its cursor is drawn; none if it is not seen.
-    terminal: Option<(u64, bool)>,
+    pub(super) terminal: Option<(u64, bool)>,
     /// Whether blinking characters are seen.
-    lit: bool,
-    ink: Ink,
+    pub(super) lit: bool,
+    pub(super) ink: Ink,
 }
 
 /// Of what the strokes of the cursor were made: version of the structure, and place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct CursorKey {
-    structure: u64,
-    place: [f64; 2],
+pub(super) struct CursorKey {
+    pub(super) structure: u64,
+    pub(super) place: [f64; 2],
 }
 
 impl Default for Tube {
@@ -94,112 +81,5 @@ impl Tube {
     pub(super) fn forget_overlay(&mut self) {
         self.words_of = None;
         self.cursor_of = None;
-    }
-}
-
-impl Machine {
-    /// The strokes that the screen that is looked at shows: those of the structure, then terminal, message line and cursor, as
-    /// far as the keys GRAPH and TERM and the screen saver let them be seen.
-    pub fn visible_strokes(&self) -> Cow<'_, [Stroke]> {
-        let Tube { graphics, blanked, overlay, .. } = &self.tube;
-        match (*blanked, *graphics) {
-            (true, _) => Cow::Borrowed(&[]),
-            (false, false) => Cow::Borrowed(overlay),
-            (false, true) if overlay.is_empty() && self.update.scopes.is_empty() => Cow::Borrowed(&self.update.strokes),
-            (false, true) => self.update.on_screen(self.controls().screen).chain(overlay).copied().collect(),
-        }
-    }
-
-    /// The strokes over the picture: terminal, message line and cursor.
-    pub fn overlay(&self) -> &[Stroke] {
-        &self.tube.overlay
-    }
-
-    /// One line each on the switches of keyboard and screen.
-    pub fn switches(&self) -> String {
-        let word = |on| if on { "on" } else { "off" };
-        let Self { tube, .. } = self;
-        let saver = if tube.blanked { ", blanked" } else { "" };
-        let mode = self.keyboard_mode().word();
-        format!("keyboard: {mode}\nscreen: graphics {}, text {}{saver}", word(tube.graphics), word(tube.text))
-    }
-
-    /// Whether the strokes over the picture are those of now.
-    pub(super) fn overlay_is_current(&self) -> bool {
-        self.words_are_current() && self.cursor_is_current()
-    }
-
-    /// Brings the strokes over the picture up to date.
-    pub(super) fn update_overlay(&mut self) {
-        if self.overlay_is_current() {
-            return;
-        }
-        if !self.words_are_current() {
-            self.update_words();
-        }
-        if !self.cursor_is_current() {
-            self.update_cursor();
-        }
-        let screen = self.controls().screen;
-        let Tube { words, cursor, overlay, overlay_version, .. } = &mut self.tube;
-        overlay.clear();
-        overlay.extend(words.strokes.iter().chain(cursor.on_screen(screen)));
-        *overlay_version += 1;
-    }
-
-    fn update_words(&mut self) {
-        let key = self.words_key();
-        let Words { strokes, blinking } = &mut self.tube.words;
-        *strokes = text_line(MESSAGE_ROW, self.panel.message(), self.terminal.ink());
-        *blinking = key.terminal.is_some() && self.terminal.blinks();
-        if let Some((_, cursor)) = key.terminal {
-            strokes.extend(self.terminal.strokes(key.lit, cursor));
-        }
-        self.tube.message = self.panel.message().to_vec();
-        // Whether something blinks may just have changed, and with it whether it is lit: then the next frame draws it.
-        self.tube.words_of = Some(key);
-    }
-
-    fn update_cursor(&mut self) {
-        let key = self.cursor_key();
-        let before = self.tube.cursor.trouble;
-        self.tube.cursor_of = key;
-        self.tube.cursor = match (key, self.memory.objects.find("CURSOR")) {
-            (Some(key), Some(cursor)) => {
-                let [x, y] = key.place;
-                let ctm = DMat4::from_translation(DVec3::new(x, y, 0.0));
-                traversal::alone(&self.memory.structures, self.frame, cursor, State { ctm, ..State::default() })
-            }
-            _ => Update::default(),
-        };
-        // What was said of the cursor before is not said again.
-        if let Some(trouble) = self.tube.cursor.trouble.filter(|trouble| before != Some(*trouble)) {
-            self.report(Message::Update(trouble));
-        }
-    }
-
-    fn words_are_current(&self) -> bool {
-        self.tube.words_of == Some(self.words_key()) && self.tube.message == self.panel.message()
-    }
-
-    fn words_key(&self) -> WordsKey {
-        // The cursor of the terminal is seen while the keyboard belongs to it.
-        let mark = self.keyboard.mode() != KeyboardMode::Interactive;
-        WordsKey {
-            terminal: self.tube.text.then(|| (self.terminal.version(), mark)),
-            lit: !self.tube.words.blinking || (self.frame / BLINK_FRAMES).is_multiple_of(2),
-            ink: *self.terminal.ink(),
-        }
-    }
-
-    /// A cursor may also change by itself, at a rate.
-    fn cursor_is_current(&self) -> bool {
-        let stays = self.tube.cursor.next_change.is_none_or(|change| self.frame < change);
-        self.tube.cursor_of == self.cursor_key() && stays
-    }
-
-    fn cursor_key(&self) -> Option<CursorKey> {
-        let place = self.devices.pointer()?;
-        Some(CursorKey { structure: self.memory.structures.version(), place })
     }
 }

@@ -1,11 +1,7 @@
-//! What the machine watches by itself: the use of memory, and whether somebody is there.
+//! When the machine raises an alarm about its memory, and when nobody is there.
 
-use super::{FRAMES_PER_SECOND, Machine};
-use crate::memory::MASS_MEMORY;
-use protocol::Value;
+use super::FRAMES_PER_SECOND;
 
-/// The alarms of memory.
-const ALERTS: [&str; 2] = ["MEMORY_ALERT", "MEMALERT"];
 /// Percent by which the use of memory must fall before an alarm speaks again. Ours.
 const RELIEF: f64 = 5.0;
 
@@ -18,43 +14,30 @@ pub(super) struct Watch {
     active: u64,
 }
 
-impl Machine {
-    /// The use of memory in one line. Ours; it fits the strip over the function keys.
-    pub(super) fn memory_line(&self) -> String {
-        let used = self.memory.bytes();
-        let free = MASS_MEMORY.saturating_sub(used);
-        format!("MEMORY {used:>10} bytes in use {free:>10} bytes free")
-    }
-
-    /// Somebody does something: the screen saver waits again.
-    pub(super) fn activity(&mut self) {
-        self.watch.active = self.frame;
-        self.tube.blanked = false;
-    }
-
-    /// Looks after memory and screen, once a frame.
-    pub(super) fn watch(&mut self) {
-        let percent = self.memory.bytes() as f64 / MASS_MEMORY as f64 * 100.0;
-        for (place, name) in ALERTS.into_iter().enumerate() {
-            let Some(limit) = self.constant(name, 1) else { continue };
-            let alerted = &mut self.watch.alerted[place];
-            if percent < limit - RELIEF || alerted.is_some_and(|before| before != limit) {
-                *alerted = None;
-            }
-            if percent >= limit && alerted.is_none() {
-                *alerted = Some(limit);
-                let text = Value::string(self.memory_line());
-                self.emit(vec![(name, 1, text)]);
-            }
+impl Watch {
+    /// Whether an alarm speaks: when the use of memory reaches its limit, once until it falls or the limit changes.
+    ///
+    /// - `place`: which of the alarms.
+    /// - `percent`: of the memory that is in use.
+    pub(super) fn alarms(&mut self, place: usize, percent: f64, limit: f64) -> bool {
+        let alerted = &mut self.alerted[place];
+        if percent < limit - RELIEF || alerted.is_some_and(|before| before != limit) {
+            *alerted = None;
         }
-        let minutes = self.constant("SCREENSAVE", 2).unwrap_or(0.0);
-        let idle = (self.frame - self.watch.active) as f64 / (60 * FRAMES_PER_SECOND) as f64;
-        self.tube.blanked |= minutes > 0.0 && idle >= minutes;
+        let speaks = percent >= limit && alerted.is_none();
+        if speaks {
+            *alerted = Some(limit);
+        }
+        speaks
     }
 
-    /// The number at a constant input of a system function.
-    fn constant(&self, name: &str, input: u16) -> Option<f64> {
-        let port = self.memory.network.port(self.memory.objects.find(name)?, input)?;
-        port.first().and_then(Value::number)
+    /// Somebody did something at a frame.
+    pub(super) fn note_activity(&mut self, frame: u64) {
+        self.active = frame;
+    }
+
+    /// Minutes for which nobody has done anything.
+    pub(super) fn idle_minutes(&self, frame: u64) -> f64 {
+        (frame - self.active) as f64 / (60 * FRAMES_PER_SECOND) as f64
     }
 }

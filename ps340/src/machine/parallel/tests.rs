@@ -1,9 +1,10 @@
 //! Facts about the parallel interface, from the words on.
 
 use super::*;
-use crate::machine::{Input, Settings, time_of_frame};
+use crate::line::LineId;
+use crate::machine::{Input, Settings, addresses::FIRST_ADDRESS, mailbox::MAX_MESSAGES, time_of_frame};
 use proptest::prelude::*;
-use protocol::parallel::{Block, write_reset};
+use protocol::parallel::{Block, FrameReader, write_reset};
 
 const HOST: LineId = LineId(1);
 const TEXT: LineId = LineId(2);

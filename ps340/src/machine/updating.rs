@@ -1,6 +1,9 @@
-//! What functions want of the next update: matrices, vectors, picks, and the picture itself; and the update.
+//! Updates of the picture, and the answers to what functions want of them.
 
-use super::Machine;
+use super::{
+    Machine,
+    waiting::{Pick, TransformRequest},
+};
 use crate::{
     interpreter::Message,
     memory::Refusal,
@@ -19,85 +22,9 @@ use protocol::{
 };
 use std::sync::Arc;
 
-/// Requests of one kind that wait for an update; more are refused. Ours.
-const MAX_WAITING: usize = 1_000;
 /// Vectors of a picture that is drawn in each frame in which it changes, though nobody may look: about a tenth of the frame.
 /// Ours.
 const ALWAYS_DRAWN: u64 = 200_000;
-
-/// Requests that wait for the next update.
-#[derive(Debug, Default)]
-pub(super) struct Waiting {
-    transforms: Vec<TransformRequest>,
-    picks: Vec<Pick>,
-    /// Nodes whose picture is to be written back; none for all that is displayed.
-    write_backs: Vec<Option<ObjectId>>,
-}
-
-/// The matrix or vectors of an XFORM node are wanted.
-#[derive(Debug)]
-pub(super) struct TransformRequest {
-    /// The function that asked.
-    pub(super) function: ObjectId,
-    /// The node.
-    pub(super) node: Name,
-    /// What gets the data as its definition, besides the message.
-    pub(super) destination: Option<Name>,
-    /// Of vectors: the first one, from 1.
-    pub(super) first: u32,
-    /// Of vectors: how many.
-    pub(super) count: u32,
-}
-
-/// A pick is wanted.
-#[derive(Debug)]
-pub(super) struct Pick {
-    /// The function that asked.
-    pub(super) function: ObjectId,
-    /// The centre of the box.
-    pub(super) at: DVec2,
-    /// Whether coordinates are wanted.
-    pub(super) coordinates: bool,
-    /// Updates that are still tried.
-    pub(super) frames: u32,
-}
-
-impl Waiting {
-    /// Whether nothing waits.
-    pub(super) fn is_empty(&self) -> bool {
-        self.transforms.is_empty() && self.picks.is_empty() && self.write_backs.is_empty()
-    }
-
-    /// Whether the strokes of the picture themselves are wanted.
-    fn want_strokes(&self) -> bool {
-        !self.write_backs.is_empty()
-    }
-
-    pub(super) fn add_transform(&mut self, request: TransformRequest) -> bool {
-        let room = self.transforms.len() < MAX_WAITING;
-        if room {
-            self.transforms.push(request);
-        }
-        room
-    }
-
-    /// A new pick of a function takes the place of the one before.
-    pub(super) fn add_pick(&mut self, pick: Pick) -> bool {
-        self.picks.retain(|other| other.function != pick.function);
-        let room = self.picks.len() < MAX_WAITING;
-        if room {
-            self.picks.push(pick);
-        }
-        room
-    }
-
-    /// Only one write-back of a node is made at a time.
-    pub(super) fn add_write_back(&mut self, node: Option<ObjectId>) {
-        if !self.write_backs.contains(&node) {
-            self.write_backs.push(node);
-        }
-    }
-}
 
 impl Machine {
     /// Makes the picture anew if something of it changed, or something is wanted of it.

@@ -1,0 +1,6 @@
+//! What a device says.
+
+use protocol::Value;
+
+/// Instance, output and value of a message from a device.
+pub(super) type Emission = (&'static str, u16, Value);

@@ -1,0 +1,166 @@
+//! What is seen of the machine: the display with its settings, and which strokes it shows.
+//!
+//! The light on the screen is made when somebody looks. Only where what is seen depends on what was seen before, with a
+//! phosphor that glows on or a picture that may flicker, does the display go along with every frame: by the machine, or
+//! by the window that shares the screen ([`Machine::share_screen`]), as fast as it can.
+
+use super::{
+    Machine,
+    sight::{PictureVersion, Sight},
+};
+use crate::{
+    calligraphic::{Controls, DISPLAY_SIZE, Display, Refresh, Scene, Screen},
+    picture::Picture,
+    traversal,
+};
+use std::sync::Arc;
+
+impl Machine {
+    /// Takes another screen to show the picture on.
+    ///
+    /// - `is_watched`: whether its other owner looks at it in every frame.
+    pub fn share_screen(&mut self, screen: Arc<Screen>, is_watched: bool) {
+        self.sight.screen = screen;
+        self.sight.is_watched = is_watched;
+    }
+
+    /// The screen that shows the picture.
+    pub fn screen(&self) -> &Screen {
+        &self.sight.screen
+    }
+
+    /// Knobs, phosphor, and which screen is looked at.
+    pub fn controls(&self) -> &Controls {
+        &self.sight.controls
+    }
+
+    /// Sets them.
+    pub fn set_controls(&mut self, controls: Controls) {
+        let other_screen = controls.screen != self.sight.controls.screen;
+        self.sight.controls = controls;
+        self.sight.settings += 1;
+        if other_screen {
+            self.tube.forget_overlay();
+            self.update_overlay();
+        }
+    }
+
+    /// How long the beam needs for the picture, on all screens together: that of now, or the latest that was drawn.
+    pub fn refresh(&self) -> Refresh {
+        let key = self.picture_version();
+        if let Some((of, refresh)) = self.sight.refresh.get()
+            && (of == key || self.update.is_counted_only)
+        {
+            return refresh;
+        }
+        let tube = &self.tube;
+        let structure = if tube.graphics { self.update.strokes.as_slice() } else { &[] };
+        let strokes = structure.iter().chain(self.overlay()).filter(|_| !tube.blanked);
+        let refresh = Refresh::of(strokes);
+        self.sight.refresh.set(Some((key, refresh)));
+        refresh
+    }
+
+    fn picture_version(&self) -> PictureVersion {
+        PictureVersion {
+            updates: self.counters.updates,
+            overlay: self.tube.overlay_version(),
+            graphics: self.tube.graphics,
+            blanked: self.tube.blanked,
+            screen: self.sight.controls.screen,
+        }
+    }
+
+    /// What the vector screen is to show now.
+    pub fn scene(&mut self) -> &Scene {
+        let key = self.picture_version();
+        if self.sight.of != Some(key) {
+            let strokes = Arc::new(self.visible_strokes().into_owned());
+            self.sight.of = Some(key);
+            self.sight.scene.version += 1;
+            self.sight.scene.strokes = strokes;
+        }
+        let Sight { scene, settings, controls, .. } = &mut self.sight;
+        (scene.frame, scene.settings, scene.controls) = (self.frame, *settings, *controls);
+        scene
+    }
+
+    /// The pixels of the vector screen now, red, green, blue (sRGB) and 255, row after row from the top.
+    ///
+    /// - `size`: width and height in pixels, at most [`crate::calligraphic::MAX_SIZE`].
+    pub fn vector_frame(&mut self, size: [u32; 2]) -> Vec<u8> {
+        self.renew_picture();
+        self.look(Some(size), |display| display.frame().to_vec())
+    }
+
+    /// The vector screen now: what [`Machine::vector_frame`] shows, and the window, in linear floats.
+    ///
+    /// - `size`: width and height in pixels; those of the display if none are given. A picture of another size shows
+    ///   no afterglow.
+    pub fn vector_picture(&mut self, size: Option<[u32; 2]>) -> Picture {
+        if !self.is_followed() {
+            self.update_sight();
+            if self.update.is_counted_only {
+                return self.large_picture(size);
+            }
+        }
+        self.renew_picture();
+        let standing = self.sight.screen.size();
+        if let Some(size) = size.filter(|size| standing.is_some_and(|standing| standing != *size)) {
+            let drawer = self.sight.screen.drawer().clone();
+            let mut display = Display::drawn_by(drawer, self.sight.controls, size);
+            display.show(&self.visible_strokes(), 0, self.frame);
+            return display.picture();
+        }
+        self.look(size, Display::picture)
+    }
+
+    /// A picture of so many vectors that their strokes are written as they are made, and not kept.
+    fn large_picture(&self, size: Option<[u32; 2]>) -> Picture {
+        let Sight { screen, controls, .. } = &self.sight;
+        let size = size.or(screen.size()).unwrap_or(DISPLAY_SIZE);
+        let mut display = Display::drawn_by(screen.drawer().clone(), *controls, size);
+        display.show_parts(|take| {
+            if self.tube.graphics && !self.tube.blanked {
+                traversal::draw_in_parts(&self.memory.structures, self.frame, controls.screen, take);
+            }
+            if !self.tube.blanked {
+                take(self.overlay());
+            }
+        });
+        display.picture()
+    }
+
+    /// Whether each frame is looked at: by a window, or since the display glows on or flickers.
+    pub(super) fn is_followed(&self) -> bool {
+        self.sight.is_watched || self.sight.controls.remembers()
+    }
+
+    /// Lets nothing refer to strokes of before, and gives the room of them back.
+    pub(super) fn shrink_sight(&mut self) {
+        match self.sight.screen.size() {
+            Some(_) => self.look(None, |_| ()),
+            None => drop(self.scene()),
+        }
+        self.sight.screen.shrink();
+    }
+
+    /// How many strokes the latest scene has.
+    #[cfg(test)]
+    pub(super) fn sight_strokes(&self) -> usize {
+        self.sight.scene.strokes.len()
+    }
+
+    /// Looks at the display with the scene of now.
+    fn look<T>(&mut self, size: Option<[u32; 2]>, see: impl FnOnce(&Display) -> T) -> T {
+        self.scene();
+        self.sight.screen.look(&self.sight.scene, size, |seen| see(seen.display))
+    }
+
+    /// Lets a display that remembers go along with the frame.
+    pub(super) fn follow_frame(&mut self) {
+        if self.sight.controls.remembers() && !self.sight.is_watched {
+            self.look(None, |_| ());
+        }
+    }
+}
