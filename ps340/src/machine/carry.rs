@@ -25,34 +25,34 @@ impl Machine {
             Effect::Deliver { object, input, value } => self.deliver(object, input, value),
             Effect::Fault { object, fault } => {
                 let name = self.memory.title(object);
-                self.messages.push(Message::Function { name, fault });
+                self.reports.push(Message::Function { name, fault });
             }
             Effect::RequestTransform { function, node, destination, first, count } => {
                 let request = TransformRequest { function, node, destination, first, count };
-                let room = self.waiting.add_transform(request);
+                let room = self.drawn.waiting.add_transform(request);
                 self.lose_without(room, function, "XFORMDATA");
             }
             Effect::RequestPick { function, at, coordinates, frames } => {
-                let room = self.waiting.add_pick(Pick { function, at, coordinates, frames });
+                let room = self.drawn.waiting.add_pick(Pick { function, at, coordinates, frames });
                 self.lose_without(room, function, "PICK");
             }
             Effect::ForgetRequests => {
-                self.waiting = Waiting::default();
+                self.drawn.waiting = Waiting::default();
                 self.renderings = Renderings::default();
                 // The identities of objects are given out again: trouble with a new object is no old trouble.
-                self.update.trouble = None;
+                self.drawn.update.trouble = None;
             }
-            Effect::RequestWriteBack { node } => self.waiting.add_write_back(node),
+            Effect::RequestWriteBack { node } => self.drawn.waiting.add_write_back(node),
             Effect::Fetch { function, name } => self.fetch(function, &name),
             Effect::ExtractLabel { function, name, index } => self.extract_label(function, name, index),
             Effect::SendTo { name, input, value } => match self.memory.target(&name) {
                 Some(object) if self.memory.is_defined(object) => self.deliver(object, input, value),
-                _ => self.messages.push(Refusal::NotFound(name).into()),
+                _ => self.reports.push(Refusal::NotFound(name).into()),
             },
             Effect::ReadDisk { function, name } => self.read_disk(function, &name),
             Effect::WriteDisk { name, bytes, append } => {
                 if let Err(fault) = self.disk.write(name, &bytes, append) {
-                    self.messages.push(Message::Disk(fault));
+                    self.reports.push(Message::Disk(fault));
                 }
             }
             Effect::Interpret { function, stream, bytes, fresh } => self.queue_stream(function, stream, bytes, fresh),
@@ -88,7 +88,7 @@ impl Machine {
 
     fn deliver(&mut self, object: ObjectId, input: command::Input, value: Value) {
         if let Err(fault) = self.memory.accept(object, input, value) {
-            self.messages.push(Message::of_node(object, fault, &self.memory));
+            self.reports.push(Message::of_node(object, fault, &self.memory));
         }
     }
 
@@ -97,7 +97,7 @@ impl Machine {
         if !room {
             let fault = Fault { function: row, cause: Cause::Flood { input: 1, lost: 1 } };
             let name = self.memory.title(function);
-            self.messages.push(Message::Function { name, fault });
+            self.reports.push(Message::Function { name, fault });
         }
     }
 
@@ -109,9 +109,9 @@ impl Machine {
             }
             Ok(None) => {
                 let text = "the variable has no value yet".into();
-                self.messages.push(Message::Range { of: name.to_string(), text });
+                self.reports.push(Message::Range { of: name.to_string(), text });
             }
-            Err(refusal) => self.messages.push(refusal.into()),
+            Err(refusal) => self.reports.push(refusal.into()),
         }
     }
 
@@ -119,13 +119,13 @@ impl Machine {
         let node = self.memory.target(&name).and_then(|id| self.memory.structures.node(id));
         let block = match node {
             Some(Node::Labels(block)) => block,
-            Some(_) => return self.messages.push(Refusal::Misfit(name, "no LABELS").into()),
-            None => return self.messages.push(Refusal::NotFound(name).into()),
+            Some(_) => return self.reports.push(Refusal::Misfit(name, "no LABELS").into()),
+            None => return self.reports.push(Refusal::NotFound(name).into()),
         };
         let place = usize::try_from(index).ok().and_then(|index| index.checked_sub(1));
         let Some((label, shown)) = place.and_then(|place| block.labels.get(place)) else {
             let text = format!("there is no label {index}");
-            return self.messages.push(Message::Range { of: name.to_string(), text });
+            return self.reports.push(Message::Range { of: name.to_string(), text });
         };
         let parts = [Value::String(label.text.clone()), Value::Vector3(label.position), Value::Boolean(*shown)];
         for (output, part) in (1..).zip(parts) {
@@ -141,7 +141,7 @@ impl Machine {
                     self.memory.network.emit(function, 1, Value::string(part), &mut self.memory.effects);
                 }
             }
-            Err(fault) => self.messages.push(Message::Disk(fault)),
+            Err(fault) => self.reports.push(Message::Disk(fault)),
         }
     }
 

@@ -35,8 +35,8 @@ impl Machine {
     pub(super) fn execute(&mut self, interpreter: &mut Interpreter, command: Command) {
         self.counters.commands += 1;
         let rested = self.network_idle;
-        self.memory.set_speaker(self.speaking);
-        interpreter.execute(command, &mut self.memory, &mut self.messages);
+        self.memory.set_speaker(self.lines.speaking);
+        interpreter.execute(command, &mut self.memory, &mut self.reports.pending);
         self.memory.set_speaker(None);
         self.network_idle = false;
         self.carry_effects();
@@ -46,7 +46,7 @@ impl Machine {
     /// A message from an initial instance of the host line, or the one of the line that speaks, and what it causes.
     pub(super) fn emit_from_line(&mut self, instance: &str, value: Value) {
         let rested = self.network_idle;
-        self.memory.set_speaker(self.speaking);
+        self.memory.set_speaker(self.lines.speaking);
         let object = self.memory.objects.find(instance).map(|id| self.memory.resolve(id));
         self.memory.set_speaker(None);
         if let Some(object) = object {
@@ -61,10 +61,10 @@ impl Machine {
     /// Lets the network work. What functions report while they work is told to the line that speaks only if the network
     /// had come to rest before: otherwise nobody knows whose doing it is.
     fn settle_after(&mut self, rested: bool) {
-        let speaking = self.speaking.filter(|_| rested);
-        let speaking = std::mem::replace(&mut self.speaking, speaking);
+        let speaking = self.lines.speaking.filter(|_| rested);
+        let speaking = std::mem::replace(&mut self.lines.speaking, speaking);
         self.settle();
-        self.speaking = speaking;
+        self.lines.speaking = speaking;
     }
 }
 

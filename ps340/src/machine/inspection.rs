@@ -26,7 +26,7 @@ impl Machine {
 
     /// The latest update.
     pub fn latest_update(&self) -> &Update {
-        &self.update
+        &self.drawn.update
     }
 
     /// The terminal emulator: its text, cursor and modes.
@@ -51,7 +51,7 @@ impl Machine {
 
     /// The latest messages of the machine, oldest first.
     pub fn log(&self) -> impl Iterator<Item = &str> {
-        self.log.iter().map(String::as_str)
+        self.reports.log()
     }
 
     /// What the machine has counted. Strokes and refresh are those of the latest picture that was drawn: one of many vectors
@@ -62,7 +62,7 @@ impl Machine {
             frame: self.frame,
             objects: self.memory.objects.len() as u64,
             bytes: self.memory.bytes() as u64,
-            vectors: self.update.vectors,
+            vectors: self.drawn.update.vectors,
             refresh_micros: refresh.micros as u64,
             refresh_frames: refresh.frames,
             ..self.counters

@@ -72,7 +72,7 @@ impl Machine {
             reader = Reader::default();
         }
         // The commands that a function gives are nobody's, whoever caused them.
-        let speaking = self.speaking.take();
+        let speaking = self.lines.speaking.take();
         self.streams.busy = true;
         let completed = match piece.stream {
             Stream::Text => self.interpret_text(&mut reader, &piece.bytes),
@@ -80,7 +80,7 @@ impl Machine {
             Stream::Raster => raster_records(&piece.bytes, self),
         };
         self.streams.busy = false;
-        self.speaking = speaking;
+        self.lines.speaking = speaking;
         self.streams.interpreters.insert(piece.function, reader);
         self.reply(piece.function, 1, Value::Integer(i32::try_from(completed).unwrap_or(i32::MAX)));
         true

@@ -49,12 +49,12 @@ impl Machine {
     pub fn refresh(&self) -> Refresh {
         let key = self.picture_version();
         if let Some((of, refresh)) = self.sight.refresh.get()
-            && (of == key || self.update.is_counted_only)
+            && (of == key || self.drawn.update.is_counted_only)
         {
             return refresh;
         }
         let tube = &self.tube;
-        let structure = if tube.graphics { self.update.strokes.as_slice() } else { &[] };
+        let structure = if tube.graphics { self.drawn.update.strokes.as_slice() } else { &[] };
         let strokes = structure.iter().chain(self.overlay()).filter(|_| !tube.blanked);
         let refresh = Refresh::of(strokes);
         self.sight.refresh.set(Some((key, refresh)));
@@ -100,7 +100,7 @@ impl Machine {
     pub fn vector_picture(&mut self, size: Option<[u32; 2]>) -> Picture {
         if !self.is_followed() {
             self.update_sight();
-            if self.update.is_counted_only {
+            if self.drawn.update.is_counted_only {
                 return self.large_picture(size);
             }
         }

@@ -29,8 +29,10 @@ impl Machine {
         match (*blanked, *graphics) {
             (true, _) => Cow::Borrowed(&[]),
             (false, false) => Cow::Borrowed(overlay),
-            (false, true) if overlay.is_empty() && self.update.scopes.is_empty() => Cow::Borrowed(&self.update.strokes),
-            (false, true) => self.update.on_screen(self.controls().screen).chain(overlay).copied().collect(),
+            (false, true) if overlay.is_empty() && self.drawn.update.scopes.is_empty() => {
+                Cow::Borrowed(&self.drawn.update.strokes)
+            }
+            (false, true) => self.drawn.update.on_screen(self.controls().screen).chain(overlay).copied().collect(),
         }
     }
 

@@ -74,7 +74,7 @@ impl ParallelLine {
             Code::Attach | Code::DiagnosticAttach => {
                 let for_all = command.code == Code::Attach;
                 self.attached = Some(if for_all { Attached::ForAll } else { Attached::ForMemory });
-                machine.mailbox(self.line).open = for_all;
+                machine.lines.mailbox(self.line).open = for_all;
             }
             Code::Detach => self.let_go(machine),
             Code::ReadNet => {
@@ -100,7 +100,7 @@ impl ParallelLine {
     fn let_go(&mut self, machine: &mut Machine) {
         self.attached = None;
         self.addresses = Addresses::default();
-        *machine.mailbox(self.line) = Mailbox::default();
+        *machine.lines.mailbox(self.line) = Mailbox::default();
         if let Some(open) = self.host.abandon(&mut machine.memory) {
             machine.report(Message::Structure(format!("the host left while {open} was open")));
         }
@@ -110,7 +110,7 @@ impl ParallelLine {
     /// Answers RDNET if a message is there.
     pub(super) fn serve_mail(&mut self, machine: &mut Machine, out: &mut Vec<u8>) {
         let State::Mail(command) = self.state else { return };
-        let mailbox = machine.mailbox(self.line);
+        let mailbox = machine.lines.mailbox(self.line);
         let lost = std::mem::take(&mut mailbox.lost);
         if !mailbox.messages.is_empty() {
             write_word(command.word(), out);
@@ -124,7 +124,7 @@ impl ParallelLine {
     }
 
     fn read_net(&mut self, command: Command, count: u16, swapped: bool, machine: &mut Machine, out: &mut Vec<u8>) {
-        let mut message = machine.mailbox(self.line).pop().unwrap_or_default();
+        let mut message = machine.lines.mailbox(self.line).pop().unwrap_or_default();
         // A buffer that is too small gets the beginning, as in the library of the time.
         message.truncate(usize::from(count));
         give(command, message, swapped, out);

@@ -38,7 +38,7 @@ impl Machine {
         if self.renderings.waiting.len() >= MAX_WAITING {
             let name = self.memory.objects.name(node).to_owned();
             let fault = NodeFault::Full { input: Input::Number(1) };
-            return self.messages.push(Message::Node { name, fault, hint: String::new() });
+            return self.reports.push(Message::Node { name, fault, hint: String::new() });
         }
         let at_once = self.renderings.waiting.is_empty() && matches!(request, RenderingRequest::Render(_));
         self.renderings.waiting.push_back((node, request));
@@ -137,10 +137,10 @@ impl Machine {
         let success = Value::Boolean(done.is_ok());
         match done {
             Ok(()) => {}
-            Err(Failure::Refused(refusal)) => self.messages.push(refusal.into()),
+            Err(Failure::Refused(refusal)) => self.reports.push(refusal.into()),
             Err(Failure::Rendering(fault)) => {
                 let name = self.memory.objects.name(node).to_owned();
-                self.messages.push(Message::Rendering { name, fault });
+                self.reports.push(Message::Rendering { name, fault });
             }
         }
         self.memory.network.emit(node, 1, success, &mut self.memory.effects);

@@ -10,15 +10,6 @@ use protocol::{
     wire::{MessageForm, MessageWriter},
 };
 
-/// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames, those that one line alone is told
-/// not counted; the rest are logged and counted only, so that a message that causes messages ends. The terminal shows as
-/// many of all.
-pub const REPORTS_PER_FRAME: u64 = 1000;
-/// Messages of the machine between two frames that are written to the log of the process one by one.
-const LOGGED_PER_FRAME: u64 = 20;
-/// Messages of the machine that [`Machine::log`] keeps.
-const LOG_LINES: usize = 1000;
-
 impl Machine {
     /// A message to the host goes to every host that asked for none of its own, and that of an instance of one line to
     /// this line alone; a `binary` one goes without an end of line.
@@ -26,7 +17,7 @@ impl Machine {
         self.counters.messages_out += 1;
         self.to_host.push(message);
         if self.memory.line_of(object).is_none() {
-            self.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
+            self.lines.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
         }
         for (line, writer) in self.hearers(object) {
             let mut bytes = Vec::new();
@@ -44,12 +35,7 @@ impl Machine {
 
     /// The lines with a writer to which an instance of the host line sends.
     pub(super) fn hearers(&self, object: ObjectId) -> Vec<(LineId, MessageWriter)> {
-        let of = self.memory.line_of(object).map(|(line, _)| line);
-        let hears = |line: &LineId, writer: &MessageWriter| match of {
-            Some(owner) => *line == owner,
-            None => writer.form() != MessageForm::Own,
-        };
-        self.writers.iter().filter(|(line, writer)| hears(line, writer)).map(|(line, w)| (*line, *w)).collect()
+        self.lines.hearers(self.memory.line_of(object).map(|(line, _)| line))
     }
 
     /// Obeys the body of a packet on the route of messages from a host.
@@ -58,7 +44,7 @@ impl Machine {
     /// Why it is not obeyed.
     pub(super) fn request_form(&mut self, line: LineId, body: &[u8]) -> Result<(), Message> {
         // A line without a writer has only one form.
-        if !self.writers.contains_key(&line) {
+        if !self.lines.writers.contains_key(&line) {
             return Ok(());
         }
         let unknown = || Message::Line("a packet on the route of messages asks for no form".into());
@@ -68,23 +54,16 @@ impl Machine {
         } else {
             self.memory.close_line(line);
         }
-        self.writers.entry(line).or_default().set_form(form);
-        self.speak_for(line);
+        self.lines.writers.entry(line).or_default().set_form(form);
+        self.lines.speak_for(line);
         Ok(())
-    }
-
-    /// What is reported from now on is about the commands of a line: if it asked for messages of its own, it alone is
-    /// told.
-    pub(super) fn speak_for(&mut self, line: LineId) {
-        let own = |writer: &MessageWriter| writer.form() == MessageForm::Own;
-        self.speaking = self.writers.get(&line).is_some_and(own).then_some(line);
     }
 
     /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION, or to the line whose command it is
     /// about, if that asked for messages of its own. Of a name that is not known, the one that was probably meant is
     /// told, as long as it is no flood of messages.
     pub(super) fn report(&mut self, message: Message) {
-        let unknown = message.unknown().filter(|_| self.reported < LOGGED_PER_FRAME);
+        let unknown = message.unknown().filter(|_| self.reports.are_few());
         let text = match unknown.and_then(|name| self.memory.meant(&name)) {
             Some(meant) => format!("{message}; did you mean {meant}?"),
             None => message.to_string(),
@@ -95,37 +74,27 @@ impl Machine {
             Class::Information => "INFORMATION",
         };
         self.counters.messages += 1;
-        if self.log.len() >= LOG_LINES {
-            self.log.pop_front();
-        }
-        self.reported += 1;
-        if self.reported <= LOGGED_PER_FRAME {
+        if self.reports.are_few() {
             tracing::info!("{text}");
         }
-        self.log.push_back(text.clone());
-        if self.reported <= REPORTS_PER_FRAME {
+        if self.reports.keep(&text) {
             self.show_message(&text);
         }
-        if let Some(line) = self.speaking {
+        if let Some(line) = self.lines.speaking {
             let mut bytes = Vec::new();
-            let written = self.writers.get(&line).map(|writer| writer.write_report(&text, &mut bytes));
+            let written = self.lines.writers.get(&line).map(|writer| writer.write_report(&text, &mut bytes));
             if written.is_some_and(|written| written.is_ok()) {
                 self.outputs.push(line, bytes);
             }
-        } else if self.emitted < REPORTS_PER_FRAME {
-            self.emitted += 1;
+        } else if self.reports.is_heard() {
             self.emit(vec![(instance, 1, Value::string(&text))]);
-        } else {
-            self.unheard += 1;
         }
     }
 
     /// Says how many messages were too many for the log and for ERROR and WARNING since the latest frame.
     pub(super) fn account_for_reports(&mut self) {
-        let [reported, unheard] = [&mut self.reported, &mut self.unheard].map(std::mem::take);
-        self.emitted = 0;
-        if reported > LOGGED_PER_FRAME {
-            let rest = reported - LOGGED_PER_FRAME;
+        let (rest, unheard) = self.reports.begin_frame();
+        if rest > 0 {
             tracing::warn!("{rest} more messages in one frame; {unheard} of them did not reach ERROR and WARNING");
         }
     }

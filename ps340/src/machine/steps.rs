@@ -3,22 +3,18 @@
 use super::{
     Event, Input, Machine, Micros, Output, Panel, WORK_PER_STEP,
     devices::Devices,
+    drawn::Drawn,
     emission::Emission,
     host_line::HostLine,
     initial::initial_memory,
     keyboard::Keyboard,
-    mailbox::Mailbox,
     parallel_line::ParallelLine,
     renderings::Renderings,
     streams::Streams,
     time::{centiseconds, time_of_frame},
-    waiting::Waiting,
     watch::Watch,
 };
-use crate::{
-    interpreter::Message, line::LineId, port::Effect, raster::FrameBuffer, terminal::Terminal, traversal::Update,
-};
-use protocol::wire::{MessageForm, MessageWriter};
+use crate::{interpreter::Message, line::LineId, port::Effect, raster::FrameBuffer, terminal::Terminal};
 
 impl Machine {
     /// Takes the inputs, in order, at the time of the machine; then lets time run to `until` (a time in the
@@ -27,14 +23,9 @@ impl Machine {
         self.work_left = WORK_PER_STEP;
         for input in inputs {
             match input {
-                Input::Attach(line) => {
-                    self.lines.insert(line, HostLine::new(line, self.settings.plain_text));
-                    self.writers.insert(line, MessageWriter::default());
-                }
+                Input::Attach(line) => self.lines.attach(line, self.settings.plain_text),
                 Input::AttachParallel(line) => {
-                    let mut bytes = Vec::new();
-                    let parallel = ParallelLine::new(line, self.settings.plain_text, &mut bytes);
-                    self.parallels.insert(line, parallel);
+                    let bytes = self.lines.attach_parallel(line, self.settings.plain_text);
                     self.outputs.push(line, bytes);
                 }
                 Input::Bytes(line, bytes) => self.receive(line, &bytes),
@@ -94,13 +85,13 @@ impl Machine {
     pub fn is_idle(&self) -> bool {
         self.network_rests()
             && self.devices.is_quiet()
-            && self.updated == Some(self.memory.structures.version())
+            && self.drawn.version == Some(self.memory.structures.version())
             && self.overlay_is_current()
     }
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.waiting.is_empty() && self.renderings.are_done() && self.streams.are_quiet()
+        self.network_idle && self.drawn.waiting.is_empty() && self.renderings.are_done() && self.streams.are_quiet()
     }
 
     /// Makes the picture of now, with all its strokes.
@@ -130,25 +121,25 @@ impl Machine {
     fn receive(&mut self, line: LineId, bytes: &[u8]) {
         self.activity();
         self.counters.bytes_in += bytes.len() as u64;
-        self.speak_for(line);
-        if let Some(mut host) = self.lines.remove(&line) {
+        self.lines.speak_for(line);
+        if let Some(mut host) = self.lines.hosts.remove(&line) {
             host.receive(bytes, self);
-            self.lines.insert(line, host);
-        } else if let Some(mut parallel) = self.parallels.remove(&line) {
+            self.lines.hosts.insert(line, host);
+        } else if let Some(mut parallel) = self.lines.parallels.remove(&line) {
             let mut answer = Vec::new();
             parallel.receive(bytes, self, &mut answer);
-            self.parallels.insert(line, parallel);
+            self.lines.parallels.insert(line, parallel);
             self.answer(line, answer);
         }
-        self.speaking = None;
+        self.lines.speaking = None;
     }
 
     /// Does something with every host on the parallel interface, and sends what it answers.
     fn with_parallels(&mut self, action: impl Fn(&mut ParallelLine, &mut Machine, &mut Vec<u8>)) {
-        for (line, mut parallel) in std::mem::take(&mut self.parallels) {
+        for (line, mut parallel) in std::mem::take(&mut self.lines.parallels) {
             let mut answer = Vec::new();
             action(&mut parallel, self, &mut answer);
-            self.parallels.insert(line, parallel);
+            self.lines.parallels.insert(line, parallel);
             self.answer(line, answer);
         }
     }
@@ -159,21 +150,17 @@ impl Machine {
         }
     }
 
-    pub(super) fn mailbox(&mut self, line: LineId) -> &mut Mailbox {
-        self.mailboxes.entry(line).or_default()
-    }
-
     fn detach(&mut self, line: LineId) {
-        self.speak_for(line);
+        self.lines.speak_for(line);
         self.keyboard.detach(line);
-        self.mailboxes.remove(&line);
-        let host = self.lines.remove(&line).and_then(|mut host| host.abandon(&mut self.memory));
-        let parallel = self.parallels.remove(&line).and_then(|mut parallel| parallel.abandon(&mut self.memory));
+        self.lines.mailboxes.remove(&line);
+        let host = self.lines.hosts.remove(&line).and_then(|mut host| host.abandon(&mut self.memory));
+        let parallel = self.lines.parallels.remove(&line).and_then(|mut parallel| parallel.abandon(&mut self.memory));
         if let Some(open) = host.or(parallel) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
-        self.speaking = None;
-        self.writers.remove(&line);
+        self.lines.speaking = None;
+        self.lines.writers.remove(&line);
         self.memory.close_line(line);
     }
 
@@ -196,7 +183,7 @@ impl Machine {
     }
 
     pub(super) fn carry_effects(&mut self) {
-        while !self.memory.effects.is_empty() || !self.messages.is_empty() {
+        while !self.memory.effects.is_empty() || !self.reports.pending.is_empty() {
             for effect in std::mem::take(&mut self.memory.effects) {
                 if effect == Effect::Restart {
                     self.restart();
@@ -204,7 +191,7 @@ impl Machine {
                 }
                 self.carry(effect);
             }
-            for message in std::mem::take(&mut self.messages) {
+            for message in std::mem::take(&mut self.reports.pending) {
                 self.report(message);
             }
         }
@@ -217,18 +204,15 @@ impl Machine {
         self.memory.system.password = password;
         self.memory.structures.set_frame(self.frame);
         self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
-        self.lines.values_mut().for_each(HostLine::restart);
-        let own = self.writers.iter().filter(|(_, writer)| writer.form() == MessageForm::Own);
-        for line in own.map(|(line, _)| *line) {
+        self.lines.hosts.values_mut().for_each(HostLine::restart);
+        for line in self.lines.with_own_messages() {
             let made = self.memory.open_line(line);
             debug_assert!(made.is_ok(), "nothing else is there");
         }
         self.devices = Devices::default();
         self.panel = Panel::default();
         self.frame_buffer = FrameBuffer::default();
-        self.update = Update::default();
-        self.updated = None;
-        self.waiting = Waiting::default();
+        self.drawn = Drawn::default();
         self.renderings = Renderings::default();
         self.streams = Streams::default();
         self.keyboard = Keyboard::default();
@@ -236,14 +220,14 @@ impl Machine {
         self.tube = self.tube.restarted();
         self.watch = Watch::default();
         self.switch_keyboard(self.settings.keyboard);
-        self.messages.push(Message::Information("the machine was started again".into()));
+        self.reports.push(Message::Information("the machine was started again".into()));
     }
 
     /// Gives back the room of what has gone, if that is much.
     fn relieve(&mut self) {
-        if self.relief.comes(self.memory.bytes() + size_of_val(self.update.strokes.as_slice())) {
+        if self.relief.comes(self.memory.bytes() + size_of_val(self.drawn.update.strokes.as_slice())) {
             self.memory.shrink();
-            self.update.strokes.shrink_to_fit();
+            self.drawn.update.strokes.shrink_to_fit();
             self.shrink_sight();
         }
     }

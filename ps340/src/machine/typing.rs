@@ -142,7 +142,7 @@ impl Machine {
         if self.keyboard.mode == KeyboardMode::Command {
             self.keyboard.prompted = true;
             // CAN ends a sequence that somebody else has begun on the terminal.
-            let open = self.lines.get(&LOCAL).map_or(String::new(), HostLine::open);
+            let open = self.lines.hosts.get(&LOCAL).map_or(String::new(), HostLine::open);
             let blank = if open.is_empty() { " " } else { "> " };
             let line = [b"\x18", PROMPT.as_bytes(), open.as_bytes(), blank.as_bytes(), &self.keyboard.line].concat();
             self.terminal.feed(&line);
@@ -158,9 +158,9 @@ impl Machine {
 
     /// Gives text to the machine's own command interpreter.
     fn interpret(&mut self, text: &[u8]) {
-        let mut local = self.lines.remove(&LOCAL).unwrap_or_else(|| HostLine::new(LOCAL, PlainText::Commands));
+        let mut local = self.lines.hosts.remove(&LOCAL).unwrap_or_else(|| HostLine::new(LOCAL, PlainText::Commands));
         local.receive(text, self);
-        self.lines.insert(LOCAL, local);
+        self.lines.hosts.insert(LOCAL, local);
         self.settle();
     }
 
@@ -187,8 +187,7 @@ impl Machine {
 
     /// Sends what the terminal says to the host that spoke to it last, or else to the one that came first.
     fn send_to_terminal_host(&mut self, bytes: Vec<u8>) {
-        let host = self.keyboard.host.filter(|line| self.writers.contains_key(line));
-        let host = host.or_else(|| self.writers.keys().next().copied());
+        let host = self.lines.terminal_host(self.keyboard.host);
         if let (Some(line), false) = (host, bytes.is_empty()) {
             let room = MAX_TYPED.saturating_sub(self.keyboard.typed.len());
             self.keyboard.typed.extend_from_slice(&bytes[..bytes.len().min(room)]);

@@ -235,7 +235,7 @@ fn messages_that_nobody_reads_are_limited() {
     let many = "SEND 'm' TO <1>HOST_MESSAGE;".repeat(MAX_MESSAGES + 7);
     scene.machine.step([Input::Bytes(TEXT, many.into())], 0);
     scene.say(&[Frame::Word(0x5000)]);
-    assert_eq!(scene.machine.mailbox(HOST).messages.len(), MAX_MESSAGES);
+    assert_eq!(scene.machine.lines.mailbox(HOST).messages.len(), MAX_MESSAGES);
     assert!(scene.machine.log().any(|line| line.starts_with("W 12 *** 7 messages")));
 }
 
@@ -263,7 +263,7 @@ proptest! {
         scene.say(&frames);
         scene.pass(2);
         // A frame that was cut off takes what follows for its own.
-        scene.say(&vec![Frame::Noise(0); if scene.machine.parallels[&HOST].frames.is_unfinished() { 70_000 } else { 0 }]);
+        scene.say(&vec![Frame::Noise(0); if scene.machine.lines.parallels[&HOST].frames.is_unfinished() { 70_000 } else { 0 }]);
         scene.say(&[Frame::Reset]);
         prop_assert_eq!(scene.say(&[Frame::Word(0xe000)]), [Frame::Word(0xe000)]);
         scene.address("V");
