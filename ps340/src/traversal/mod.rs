@@ -9,12 +9,12 @@
 
 mod limits;
 pub mod stroke;
-mod clip;
 mod phase;
 pub mod font;
 mod identifiers;
 mod sight;
 mod state;
+mod clip;
 mod gather;
 mod outline;
 mod pick;
