@@ -1,25 +1,22 @@
 //! Records: what they hold, and their bytes.
 //!
-//! The bytes of a record are its version and a checksum, four bytes each, lowest first, and then in bincode a head (what
+//! The bytes of a record are its version and a checksum, four bytes each, lowest first, and then, encoded, a head (what
 //! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
 
 use super::kind::{LONGEST_NAME, MAX_RECORD};
 use super::{CaughtLight, DatabaseError, Kind, first_materials};
 use crate::color::shipped::Metal;
 use crate::color::{Origin, Spectrum};
+use crate::encoding::{Integers, decode, encode};
 use crate::illumination::light::{Light, SkyMap};
 use crate::illumination::material::Material;
 use crate::mesh::Grouped;
 use crate::picture::Picture;
-use bincode::config::{Configuration, Limit, LittleEndian, Varint};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// Bytes before the head.
 const BEFORE: usize = 8;
-
-const ENCODING: Configuration<LittleEndian, Varint, Limit<MAX_RECORD>> =
-    bincode::config::standard().with_limit::<MAX_RECORD>();
 
 /// A record of a database.
 #[derive(Clone, Debug, PartialEq)]
@@ -337,7 +334,7 @@ fn head<'a>(kind: Kind, name: &str, bytes: &'a [u8]) -> Result<(u32, Head, &'a [
     if version == 0 {
         return Err(failed("damaged: it has no version".into()));
     }
-    let (head, used) = bincode::serde::decode_from_slice(rest, ENCODING)
+    let (head, used) = decode::<_, MAX_RECORD>(rest, Integers::Compact)
         .map_err(|error| failed(format!("damaged: its head cannot be read: {error}")))?;
     Ok((version, head, &rest[used..]))
 }
@@ -370,11 +367,11 @@ pub(super) fn checksum_for_tests(kind: Kind, name: &str, bytes: &[u8]) -> u32 {
 }
 
 fn encoded<T: Serialize>(value: &T) -> Result<Vec<u8>, String> {
-    bincode::serde::encode_to_vec(value, ENCODING).map_err(|error| format!("it cannot be stored: {error}"))
+    encode(value, Integers::Compact).map_err(|error| format!("it cannot be stored: {error}"))
 }
 
 fn decoded<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
-    let (value, used) = bincode::serde::decode_from_slice(bytes, ENCODING)
+    let (value, used) = decode::<_, MAX_RECORD>(bytes, Integers::Compact)
         .map_err(|error| format!("its content cannot be read: {error}"))?;
     if used == bytes.len() { Ok(value) } else { Err("its content is followed by other bytes".into()) }
 }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::color::shipped::Metal;
 use crate::color::{Beyond, Color, Origin, Spectrum, shipped as colors};
+use crate::encoding::{Integers, decode, encode};
 use crate::illumination::distribution::Tabulated;
 use crate::illumination::light::{Goniometry, Light, Patch, SkyMap};
 use crate::illumination::material::{Body, Classic, Coated, Form, Index, Material, Shaped, Transparent};
@@ -177,8 +178,8 @@ fn patterns_without_end_are_refused_when_they_are_read() {
         })
     };
     let read = |depth: usize| {
-        let bytes = bincode::serde::encode_to_vec(nested(depth), bincode::config::standard()).expect("bytes");
-        bincode::serde::decode_from_slice::<Paint, _>(&bytes, bincode::config::standard()).map(|(paint, _)| paint)
+        let bytes = encode(&nested(depth), Integers::Compact).expect("bytes");
+        decode::<Paint, 1_000_000>(&bytes, Integers::Compact).map(|(paint, _)| paint)
     };
     assert_eq!(read(10).expect("a pattern"), nested(10));
     assert!(read(1000).is_err_and(|error| error.to_string().contains("nested")));

@@ -3,7 +3,7 @@
 //! Layout: eight bytes of name, version (u32), checksum (CRC-32 of the rest, u32), then the fields of [`Stored`]. Numbers
 //! are little-endian; integers of the fields have variable length.
 
-use bincode::config::{Configuration, standard};
+use crate::encoding::{Integers, decode, encode};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -25,8 +25,6 @@ const NAME: &[u8; 8] = b"PERISOCT";
 const VERSION: u32 = 1;
 /// Bytes before the fields.
 const HEAD: usize = 16;
-
-const ENCODING: Configuration = standard();
 
 /// How the name of an octree file ends.
 pub const ENDING: &str = "octree";
@@ -96,8 +94,7 @@ impl Octree {
             counts: (0..leaves.codes.len()).map(|leaf| leaves.of(leaf).len() as u32).collect(),
             references: leaves.triangles.clone(),
         };
-        let fields =
-            bincode::serde::encode_to_vec(&stored, ENCODING).map_err(|error| FileError::Fields(error.to_string()))?;
+        let fields = encode(&stored, Integers::Compact).map_err(|error| FileError::Fields(error.to_string()))?;
         let mut bytes = NAME.to_vec();
         bytes.extend(VERSION.to_le_bytes());
         bytes.extend(crc32fast::hash(&fields).to_le_bytes());
@@ -135,7 +132,7 @@ impl Octree {
         if number(12) != crc32fast::hash(fields) {
             return Err(FileError::Checksum);
         }
-        let (stored, used) = bincode::serde::decode_from_slice::<Stored, _>(fields, ENCODING)
+        let (stored, used) = decode::<Stored, { MAX_BYTES as usize }>(fields, Integers::Compact)
             .map_err(|error| FileError::Fields(error.to_string()))?;
         if used != fields.len() {
             return Err(FileError::Fields("bytes are left over".into()));

@@ -5,8 +5,7 @@
 //! are little-endian. A last record that is not whole, as after a crash, is written anew.
 
 use super::StateError;
-use bincode::config::{Configuration, Fixint, Limit, LittleEndian, standard};
-use bincode::serde::{decode_from_slice, encode_to_vec};
+use crate::encoding::{Integers, decode, encode};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -22,8 +21,6 @@ const MAGIC: [u8; 8] = *b"PERISM\x00\x01";
 const HEAD: u64 = 12;
 /// Most bytes of a record; a length in it that says more is no length.
 const MOST: usize = 1 << 30;
-const ENCODING: Configuration<LittleEndian, Fixint, Limit<MOST>> =
-    standard().with_fixed_int_encoding().with_limit::<MOST>();
 /// Results of a record: computed in about a tenth of a second, and enough for many threads.
 const CHUNK: usize = 8192;
 
@@ -142,7 +139,7 @@ impl Stand {
         let Stand::Reading(file, end) = self else { return None };
         match record(file, *end) {
             Ok((content, next)) => {
-                if let Ok((found, used)) = decode_from_slice::<R, _>(&content, ENCODING)
+                if let Ok((found, used)) = decode::<R, MOST>(&content, Integers::Fixed)
                     && used == content.len()
                     && is_right(&found)
                 {
@@ -169,7 +166,10 @@ impl Stand {
 
     fn write(&mut self, made: &impl Serialize) -> io::Result<()> {
         let Stand::Writing(file) = self else { return Ok(()) };
-        let content = encode_to_vec(made, ENCODING).map_err(io::Error::other)?;
+        let content = encode(made, Integers::Fixed).map_err(io::Error::other)?;
+        if content.len() > MOST {
+            return Err(io::Error::other("a result is too long to be kept"));
+        }
         let head = [&(content.len() as u64).to_le_bytes()[..], &crc32fast::hash(&content).to_le_bytes()].concat();
         let written = file.write_all(&head).and_then(|()| file.write_all(&content));
         if written.is_err() {

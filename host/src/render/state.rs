@@ -8,11 +8,10 @@ use super::Order;
 use super::film::{Adaptive, Film};
 use super::guide::Guide;
 use super::tally::Tally;
+use crate::encoding::{EncodingError, Integers, decode_from, encode_into};
 use crate::picture::PictureError;
 use crate::picture::display::DisplayTransform;
 use crate::scene::{Prepared, Scene};
-use bincode::config::{Configuration, Fixint, LittleEndian, standard};
-use bincode::serde::{decode_from_std_read, encode_into_std_write};
 use crc32fast::Hasher;
 use files::{Destination, WriteError};
 use serde::de::DeserializeOwned;
@@ -36,7 +35,6 @@ const MAGIC: [u8; 7] = *b"PERISF\x00";
 /// The versions of films without and with guides of a denoiser.
 const PLAIN: u8 = 4;
 const GUIDED: u8 = 5;
-const ENCODING: Configuration<LittleEndian, Fixint> = standard().with_fixed_int_encoding();
 
 /// Bytes that are written at a time.
 const PIECE: usize = 1 << 20;
@@ -269,19 +267,14 @@ impl State {
 }
 
 fn encode(value: &impl Serialize, file: &mut impl Write) -> io::Result<()> {
-    encode_into_std_write(value, file, ENCODING).map(drop).map_err(|error| match error {
-        bincode::error::EncodeError::Io { inner, .. } => inner,
+    encode_into(value, Integers::Fixed, file).map_err(|error| match error {
+        EncodingError::File(error) => error,
         other => io::Error::other(other),
     })
 }
 
 fn decode<T: DeserializeOwned>(file: &mut impl Read) -> Result<T, String> {
-    decode_from_std_read(file, ENCODING).map_err(|error| match error {
-        bincode::error::DecodeError::Io { inner, .. } if inner.kind() == io::ErrorKind::UnexpectedEof => {
-            "it is cut off".into()
-        }
-        other => other.to_string(),
-    })
+    decode_from(file, Integers::Fixed).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]

@@ -213,6 +213,7 @@ impl<'de> Deserialize<'de> for Number {
 mod tests {
     use super::super::Laying;
     use super::*;
+    use crate::encoding::{Integers, decode, encode};
     use glam::{DVec2, DVec3};
 
     fn checks(from: f64, to: f64) -> Number {
@@ -239,9 +240,9 @@ mod tests {
         for number in [Number::Constant(0.3), checks(0.1, 0.4)] {
             let text = serde_json::to_string(&number).expect("plain data");
             assert_eq!(serde_json::from_str::<Number>(&text).expect("the same"), number);
-            let config = bincode::config::standard();
-            let bytes = bincode::serde::encode_to_vec(&number, config).expect("plain data");
-            assert_eq!(bincode::serde::decode_from_slice::<Number, _>(&bytes, config).expect("the same").0, number);
+            let bytes = encode(&number, Integers::Compact).expect("plain data");
+            let read = decode::<Number, 1_000_000>(&bytes, Integers::Compact).expect("the number").0;
+            assert_eq!(read, number);
         }
         assert_eq!(serde_json::to_string(&Number::Constant(0.5)).expect("plain data"), "0.5");
     }

@@ -10,10 +10,10 @@ use super::lamps::Lamp;
 use super::{Block, CHUNK, Chunk};
 use crate::color::{Channels, Color, LANES, Origin};
 use crate::database::{CaughtBlock, CaughtLight, Content, DatabaseError, Kind, Record, Store};
+use crate::encoding::{Integers, encode_into};
 use crate::illumination::optics::Interreflection;
 use crate::render::world::World;
 use crate::scene::{ImageSettings, LightSettings, PhotonSettings, Prepared, RadiositySettings, Scene, Settings};
-use bincode::config::standard;
 use glam::DVec3;
 use serde::Serialize;
 use siphasher::sip128::{Hasher128, SipHasher13};
@@ -63,7 +63,7 @@ impl Sum {
 
     fn add(&mut self, value: &impl Serialize) {
         // Neither scenes nor settings have anything that cannot be written, and what is written to does not fail.
-        let written = bincode::serde::encode_into_std_write(value, self, standard());
+        let written = encode_into(value, Integers::Compact, self);
         debug_assert!(written.is_ok());
     }
 
