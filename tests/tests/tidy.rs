@@ -27,7 +27,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("protocol/command/strategy", 3),
     ("ps340/functions/devices", 6),
     ("ps340/structure/inputs", 5),
-    ("host/cli", 27),
     ("host/script", 3),
     ("host/script/argument", 4),
     ("host/study", 8),

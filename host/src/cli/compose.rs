@@ -1,6 +1,7 @@
 //! `peris compose`: two pictures made one.
 
-use super::{Exit, Failure, Row, say, warn};
+use super::say::warn;
+use super::{Exit, Failure, Row, say};
 use crate::picture::{self, Deep, Operator, Picture};
 use clap::{Args, FromArgMatches};
 use files::Destination;

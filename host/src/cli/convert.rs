@@ -46,7 +46,7 @@ struct Arguments {
     #[arg(long, value_enum, default_value = "grid")]
     lines: Lines,
     /// For .ps300: distance between curved surfaces and their triangles, as a part of the object's diagonal
-    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::part)]
+    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::values::part)]
     tolerance: f64,
     #[command(flatten)]
     display: DisplayArguments,

@@ -1,5 +1,6 @@
 //! How the program ends.
 
+use crate::database::DatabaseError;
 use crate::mesh::MeshError;
 use crate::picture::PictureError;
 use crate::production::ProductionError;
@@ -53,6 +54,14 @@ impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> ExitCode {
         ExitCode::from(exit as u8)
     }
+}
+
+/// An error with its causes, without those that it tells itself.
+pub(super) fn story(error: &anyhow::Error) -> String {
+    error.chain().skip(1).fold(error.to_string(), |text, cause| {
+        let cause = cause.to_string();
+        if text.contains(&cause) { text } else { format!("{text}: {cause}") }
+    })
 }
 
 /// The exit codes, for the end of each help text.
@@ -119,6 +128,16 @@ impl From<PictureError> for Failure {
 impl From<StateError> for Failure {
     fn from(error: StateError) -> Failure {
         let exit = if let StateError::Other { .. } = error { Exit::Usage } else { Exit::Failed };
+        Failure::new(exit, error)
+    }
+}
+
+impl From<DatabaseError> for Failure {
+    fn from(error: DatabaseError) -> Failure {
+        let exit = match error {
+            DatabaseError::Unknown { .. } | DatabaseError::Exists { .. } | DatabaseError::Name(_) => Exit::Usage,
+            _ => Exit::Failed,
+        };
         Failure::new(exit, error)
     }
 }

@@ -24,10 +24,10 @@ struct Arguments {
     #[command(flatten)]
     definitions: Definitions,
     /// Residual at which a point counts as found, as a part of the size of the objects
-    #[arg(long, value_name = "PART", default_value_t = Precision::default().newton, value_parser = super::part)]
+    #[arg(long, value_name = "PART", default_value_t = Precision::default().newton, value_parser = super::values::part)]
     newton: f64,
     /// Adds points until the lines between them are this near to the curve, scene units
-    #[arg(long, value_name = "LENGTH", value_parser = super::length)]
+    #[arg(long, value_name = "LENGTH", value_parser = super::values::length)]
     chord: Option<f64>,
     /// A file for all points (.csv) or for the curves as lines (.obj); may be given more than once
     #[arg(short, long, value_name = "FILE")]

@@ -1,7 +1,8 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
-use super::source::stem;
-use super::{Definitions, Failure, Row, SCRIPT_HELP, Waits, interrupts, load, load_lit, progress};
+use super::source::{load_lit, stem, warn_of_emptiness};
+use super::waits::Waits;
+use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load, progress};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
@@ -61,7 +62,7 @@ struct Common {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
     samples: Option<u32>,
     /// Threads [default: one for each core]
-    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    #[arg(long, value_name = "COUNT", value_parser = super::values::threads)]
     threads: Option<NonZeroUsize>,
     /// Reports as JSON on standard output
     #[arg(long)]
@@ -173,7 +174,7 @@ impl Job<'_> {
         interrupts::say_kept(format!("what was finished is in {}", folder.path().display()));
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.image.samples = self.common.samples.unwrap_or(self.scene.settings.image.samples);
-        super::warn_of_emptiness(&self.scene);
+        warn_of_emptiness(&self.scene);
         let patience = self.common.waits.patience();
         let (mut emulator, line) = match self.to {
             Some(line) => (None, line.clone()),

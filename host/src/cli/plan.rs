@@ -1,6 +1,7 @@
 //! `peris plan`: what a scene needs, and why.
 
-use super::{Definitions, Failure, Row, SCRIPT_HELP, load_lit};
+use super::source::load_lit;
+use super::{Definitions, Failure, Row, SCRIPT_HELP};
 use crate::plan::Plan;
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};

@@ -3,7 +3,8 @@
 //! Texts may come from a script or a file of somebody else: characters that would command the terminal are shown as
 //! escapes.
 
-use super::{Exit, progress};
+use super::exit::Exit;
+use super::progress;
 use crate::memory;
 use serde_json::Value;
 use std::{borrow::Cow, fmt::Arguments, io::Write};
@@ -21,6 +22,11 @@ pub(super) fn write(text: Arguments<'_>) {
 pub(super) fn tell(text: &str) {
     progress::clear();
     eprintln!("{}", harmless(text));
+}
+
+/// Says on standard error what is probably not meant.
+pub(super) fn warn(text: &str) {
+    tell(&format!("warning: {text}"));
 }
 
 /// A text whose control characters are escapes, but for the ends of lines and tabulators.

@@ -63,6 +63,13 @@ pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, Failure> {
     Ok(Evaluated { scene, ..evaluated })
 }
 
+/// Says on standard error that a picture will be empty.
+pub(super) fn warn_of_emptiness(scene: &Scene) {
+    if scene.objects.is_empty() {
+        say::warn("the scene has no objects; only its background will be seen");
+    }
+}
+
 /// Runs the script that the command line names, or takes the mesh that it names as the only object of a scene; what the
 /// script prints goes to standard error.
 ///

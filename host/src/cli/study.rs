@@ -1,8 +1,9 @@
 //! `peris study`: error against run time.
 
-use super::source::stem;
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, interrupts, load_lit, progress, study_render};
-use crate::render::{Memo, Watch};
+use super::source::{load_lit, stem};
+use super::study_memo::memo;
+use super::{Definitions, Failure, Row, SCRIPT_HELP, progress, study_render};
+use crate::render::Watch;
 use crate::study::{KNOBS, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use files::Folder;
@@ -36,7 +37,7 @@ struct Arguments {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=16))]
     settings: Option<u32>,
     /// Threads [default: one for each core]
-    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    #[arg(long, value_name = "COUNT", value_parser = super::values::threads)]
     threads: Option<NonZeroUsize>,
     /// Goes on with a study that was interrupted: what it has done is kept in the folder, in a file that ends in .state
     #[arg(long)]
@@ -63,20 +64,6 @@ struct IlluminationArguments {
     /// Reports as JSON on standard output
     #[arg(long)]
     json: bool,
-}
-
-/// What was done of a study before, if that is asked for; and where what is done is kept.
-///
-/// - `name`: of the study and its files. `study`: whatever it depends on, in words.
-pub(super) fn memo(folder: &Folder, name: &str, study: &str, resume: bool) -> Result<Memo, Failure> {
-    let path = folder.path().join(format!("{name}.state"));
-    let file = path.display();
-    if !resume && path.exists() {
-        let why = format!("{file} holds what an interrupted study has done; --resume goes on, remove it to begin anew");
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
-    }
-    interrupts::say_kept(format!("what is finished is kept in {file}; --resume goes on"));
-    Ok(Memo::open(&path, crc32fast::hash(study.as_bytes()))?)
 }
 
 fn arguments(command: Command) -> Command {

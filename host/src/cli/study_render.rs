@@ -1,8 +1,8 @@
 //! `peris study render`: error against run time of every knob of every renderer.
 
-use super::source::stem;
-use super::study::memo;
-use super::{Definitions, Failure, SCRIPT_HELP, load_lit, progress};
+use super::source::{load_lit, stem};
+use super::study_memo::memo;
+use super::{Definitions, Failure, SCRIPT_HELP, progress};
 use crate::render::Watch;
 use crate::render::{RENDERERS, Technique};
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, renderers, studied, usual};
@@ -41,7 +41,7 @@ struct Arguments {
     #[arg(long, value_name = "COUNT", default_value_t = RENDER_OPTIONS.settings, value_parser = clap::value_parser!(u32).range(2..=16))]
     settings: u32,
     /// Threads [default: one for each core]
-    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
+    #[arg(long, value_name = "COUNT", value_parser = super::values::threads)]
     threads: Option<NonZeroUsize>,
     /// Goes on with a study that was interrupted: what it has done is kept in the folder, in a file that ends in .state
     #[arg(long)]

@@ -24,7 +24,7 @@ struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Largest distance between surface and triangles, scene units [default: that of the scene and its objects]
-    #[arg(long, value_name = "LENGTH", value_parser = super::length)]
+    #[arg(long, value_name = "LENGTH", value_parser = super::values::length)]
     chord: Option<f64>,
     /// Largest turn of the normal along a triangle, degrees [default: that of the scene, 45]
     #[arg(long, value_name = "DEGREES", value_parser = angle)]

@@ -1,16 +1,17 @@
 //! `peris db`: databases of geometry, textures, materials, lights and spectra.
 
+mod place;
 mod plot;
 mod show;
 
 use super::{Definitions, Exit, Failure, Row};
 use crate::database::{
-    self, Content, DatabaseError, Entry, Kind, Library, Quantity, Record, Report, Store, check_name, shipped,
+    self, Content, DatabaseError, Entry, Kind, Quantity, Record, Report, Store, check_name, shipped,
 };
 use crate::scene::{Object, Scene, Shape};
-use crate::spelling;
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use files::{Destination, Folder};
+use place::{Place, SHIPPED, kind_of};
 use std::path::{Path, PathBuf};
 
 pub(super) const ROW: Row = Row {
@@ -24,9 +25,6 @@ pub(super) const ROW: Row = Row {
     },
     run: |matches| run(matches),
 };
-
-/// What stands for the database in the program.
-const SHIPPED: &str = "shipped";
 
 #[derive(Subcommand, Debug)]
 enum Commands {
@@ -92,20 +90,6 @@ enum Commands {
     },
 }
 
-/// Where a record is.
-#[derive(Args, Debug)]
-struct Place {
-    /// The database (.redb), or "shipped" for what ships with the program
-    #[arg(value_name = "DATABASE")]
-    database: PathBuf,
-    /// Its name
-    #[arg(value_name = "NAME")]
-    name: String,
-    /// Its kind, if there are several of that name
-    #[arg(long, value_enum, value_name = "KIND")]
-    kind: Option<Kind>,
-}
-
 #[derive(Args, Debug)]
 struct Addition {
     /// The database (.redb)
@@ -134,16 +118,6 @@ struct Addition {
     replace: bool,
 }
 
-impl From<DatabaseError> for Failure {
-    fn from(error: DatabaseError) -> Failure {
-        let exit = match error {
-            DatabaseError::Unknown { .. } | DatabaseError::Exists { .. } | DatabaseError::Name(_) => Exit::Usage,
-            _ => Exit::Failed,
-        };
-        Failure::new(exit, error)
-    }
-}
-
 fn run(matches: &ArgMatches) -> Result<(), Failure> {
     match Commands::from_arg_matches(matches)? {
         Commands::List { database, kind, json } => list(database.as_deref(), kind, json),
@@ -166,62 +140,6 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
             Ok(())
         }
         Commands::Check { database, json } => check(&database, json),
-    }
-}
-
-impl Place {
-    /// The file; none for what ships.
-    fn file(&self) -> Option<&Path> {
-        Some(&*self.database).filter(|path| *path != Path::new(SHIPPED))
-    }
-
-    fn record(&self) -> Result<Record, Failure> {
-        let kind = kind_of(self)?;
-        match self.file() {
-            Some(file) => Ok(Store::open(file)?.record(kind, &self.name)?),
-            None => Ok(shipped::record(kind, &self.name)?),
-        }
-    }
-
-    fn library(&self) -> Result<Library, Failure> {
-        Ok(Library::of(self.file())?)
-    }
-}
-
-/// The kind of a record; an error that lists the kinds, if there are several, or the names, if there is none.
-fn kind_of(place: &Place) -> Result<Kind, Failure> {
-    if let Some(kind) = place.kind {
-        return Ok(kind);
-    }
-    let names = match place.file() {
-        Some(file) => {
-            let store = Store::open(file)?;
-            Kind::ALL.map(|kind| store.names(kind))
-        }
-        None => Kind::ALL.map(|kind| Ok(shipped::names(kind).into_iter().map(str::to_owned).collect())),
-    };
-    let (mut kinds, mut known) = (Vec::new(), Vec::new());
-    for (kind, names) in Kind::ALL.into_iter().zip(names) {
-        let names: Vec<String> = names?;
-        if names.contains(&place.name) {
-            kinds.push(kind);
-        }
-        known.extend(names);
-    }
-    known.sort_unstable();
-    known.dedup();
-    match kinds[..] {
-        [kind] => Ok(kind),
-        [] => {
-            let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let advice = spelling::advice(&place.name, &known);
-            Err(DatabaseError::Unknown { kind: "record".into(), name: place.name.clone(), advice }.into())
-        }
-        _ => {
-            let kinds: Vec<String> = kinds.iter().map(|kind| format!("--kind {kind}")).collect();
-            let message = format!("there are several records \"{}\"; say {}", place.name, kinds.join(" or "));
-            Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
-        }
     }
 }
 

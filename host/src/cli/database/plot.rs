@@ -1,7 +1,7 @@
 //! Records drawn: spectra as curves, materials and geometry as pictures.
 
-use super::{Failure, Place};
-use crate::cli::progress;
+use super::place::Place;
+use crate::cli::{Failure, progress};
 use crate::color::Color;
 use crate::database::{Content, Curves, Record};
 use crate::illumination::material::Material;

@@ -1,6 +1,6 @@
 //! A record in full, as text.
 
-use super::Failure;
+use crate::cli::Failure;
 use crate::color::columns;
 use crate::database::{Content, Record};
 use crate::mesh::Grouped;

@@ -1,6 +1,6 @@
 //! One pixel, explained.
 
-use super::Arguments;
+use super::arguments::Arguments;
 use crate::cli::{Exit, Failure};
 use crate::render::Order;
 use crate::render::ray_tracing::{Explanation, RayTracer};
@@ -9,13 +9,6 @@ use glam::DVec3;
 
 /// Most samples of a pixel that are explained.
 const EXPLAINED: usize = 4;
-
-/// Reads the place of a pixel.
-pub(super) fn place(text: &str) -> Result<[u32; 2], String> {
-    let (x, y) = text.split_once(',').ok_or("give X,Y")?;
-    let number = |text: &str| text.trim().parse().map_err(|_| format!("'{text}' is no number of a pixel"));
-    Ok([number(x)?, number(y)?])
-}
 
 /// Prints what is known of one pixel.
 pub(super) fn explain(

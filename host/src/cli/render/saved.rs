@@ -1,6 +1,6 @@
 //! Files from which an interrupted rendering goes on: its film, and beside it what was found before there was one.
 
-use super::Arguments;
+use super::arguments::Arguments;
 use crate::cli::Failure;
 use crate::plan::{Plan, Stage};
 use crate::render::{Film, Fingerprint, Memo, Order, State, StateError};

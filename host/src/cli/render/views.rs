@@ -1,10 +1,11 @@
 //! Views that are rendered one after the other, each written and reported on.
 
-use super::Arguments;
+use super::arguments::Arguments;
 use super::saved::Saved;
 use crate::cli::interrupts::{self, Keeping};
+use crate::cli::say::{self, warn};
 use crate::cli::source::stem;
-use crate::cli::{Exit, Failure, progress, say, warn};
+use crate::cli::{Exit, Failure, progress};
 use crate::memory;
 use crate::picture::display::{DisplayTransform, Tone, clipped};
 use crate::picture::{Picture, Provenance};

@@ -1,8 +1,8 @@
 //! What becomes of a scene while its script is edited: whenever a file that it is made of is saved, it is made anew.
 
-use super::{Arguments, Failure, modelled};
+use super::{arguments::Arguments, ready::modelled};
 use crate::{
-    cli::{load, source},
+    cli::{Failure, load, source},
     production::Model,
     scene::{Camera, Scene},
     workstation::InitialView,

@@ -1,23 +1,26 @@
 //! `peris show`: a scene on a workstation, with dials and keys, until someone ends it.
 
+mod arguments;
+mod ready;
 mod edits;
-mod serving;
 mod told;
+mod serving;
 
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, Waits, load, progress, source};
+use super::say::warn;
+use super::{Exit, Failure, Row, load, source};
 use crate::{
-    production::{Model, Production, Sent, tiling},
+    production::{Production, Sent},
     render::tiles::Tiling,
-    scene::Scene,
     script::Evaluated,
-    workstation::{Drawing, Emulator, InitialView, Lines, Patience, Session, network::KEYS},
+    workstation::{Emulator, Patience, Session, network::KEYS},
 };
+use arguments::Arguments;
 use clap::{Args, FromArgMatches};
 use edits::Watched;
 use files::Destination;
 use protocol::address::Address;
+use ready::modelled;
 use serving::Server;
-use std::{num::NonZeroUsize, path::PathBuf};
 use told::Told;
 
 pub(super) const ROW: Row = Row {
@@ -26,65 +29,6 @@ pub(super) const ROW: Row = Row {
     arguments: Arguments::augment_args,
     run: |matches| run(&Arguments::from_arg_matches(matches)?),
 };
-
-#[derive(Args, Clone, Debug)]
-struct Arguments {
-    #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
-    script: String,
-    #[command(flatten)]
-    definitions: Definitions,
-    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, with a window if
-    /// there is a display, and the lines of standard input are orders for its operator ('help' lists them)
-    #[arg(long, value_name = "LINE")]
-    to: Option<Address>,
-    /// Sends the scene and ends, without waiting for keys
-    #[arg(long, requires = "to")]
-    once: bool,
-    /// Shows the scene anew whenever its script, or a file that this reads, is saved. The view stays as dials have set it,
-    /// unless the script asks for another camera than before
-    #[arg(long, conflicts_with = "once")]
-    watch: bool,
-    /// Denoises what key 1 renders, when all samples are there
-    #[arg(long, conflicts_with = "once")]
-    denoise: bool,
-    /// Samples of a pixel that key 1 takes, instead of those of the scene
-    #[arg(long, value_name = "COUNT", conflicts_with = "once", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
-    samples: Option<u32>,
-    /// Reports what was sent as JSON on standard output
-    #[arg(long)]
-    json: bool,
-    /// Which edges are sent
-    #[arg(long, value_enum, default_value = "grid")]
-    lines: Lines,
-    /// Edges that bend more than this are always sent, degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = Drawing::default().crease_degrees)]
-    crease: f64,
-    /// Sends polygons, materials and lights instead of vectors; the machine renders them itself when a host or operator
-    /// sends FIX(1) to FIX(8) to <1>PERIS.SHADE, such as FIX(4), hidden lines, and FIX(8), Phong
-    #[arg(long)]
-    facets: bool,
-    /// Solves for the light that goes from diffuse surface to diffuse surface, and sends it as colours at the corners of
-    /// polygons beside the vectors; the machine shades them on its raster screen whenever the dials have stood still
-    #[arg(long, conflicts_with = "facets")]
-    radiosity: bool,
-    /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
-    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::part)]
-    tolerance: f64,
-    /// Opens no window, even if there is a display: orders from standard input do all
-    #[arg(long, conflicts_with = "to")]
-    headless: bool,
-    /// Threads that render [default: one for each core]
-    #[arg(long, value_name = "COUNT", value_parser = super::threads)]
-    threads: Option<NonZeroUsize>,
-    /// Writes the line of a script that asks for the view into this file, when key 3 is pressed and in the end
-    #[arg(long, value_name = "FILE", conflicts_with = "once")]
-    camera: Option<PathBuf>,
-    /// The folder below which orders such as 'picture vector a.png' write files
-    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "to")]
-    files: PathBuf,
-    #[command(flatten)]
-    waits: Waits,
-}
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !(0.0..=180.0).contains(&arguments.crease) {
@@ -131,37 +75,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     match told.tell(&mut production) {
         // It ends as it was asked to, whether the machine still answers or not.
         Err(failure) if failure.exit == Exit::Line => {
-            super::warn(&format!("the view is not known: {}", failure.error));
+            warn(&format!("the view is not known: {}", failure.error));
             Ok(())
         }
         told => told,
     }
-}
-
-impl Arguments {
-    fn drawing(&self) -> Drawing {
-        Drawing { lines: self.lines, crease_degrees: self.crease, tolerance: self.tolerance, facets: self.facets }
-    }
-}
-
-/// The scene ready to be shown as the arguments say, with the light of its surfaces if that is to be shown.
-///
-/// - `initial`: from where it is seen, instead of by its own camera.
-fn modelled(
-    scene: &Scene,
-    arguments: &Arguments,
-    initial: Option<InitialView>,
-) -> Result<(Model, Option<Tiling>), Failure> {
-    let light = if arguments.radiosity {
-        super::warn_of_emptiness(scene);
-        let light = tiling(scene, arguments.threads, &progress::watch())?;
-        progress::clear();
-        Some(light)
-    } else {
-        None
-    };
-    let model = Model::new(scene, &arguments.drawing(), light.as_ref(), initial)?;
-    Ok((model, light))
 }
 
 /// Starts a PS 340 of our own, with a window if there is a display to open it on.
@@ -171,7 +89,7 @@ fn start(arguments: &Arguments, patience: Patience) -> Result<Emulator, Failure>
     if has_display && !arguments.headless {
         match Emulator::start(patience, &arguments.files, true) {
             Ok(emulator) => return Ok(emulator),
-            Err(error) => super::warn(&format!("{error}; it is started without a window")),
+            Err(error) => warn(&format!("{error}; it is started without a window")),
         }
     }
     Ok(Emulator::start(patience, &arguments.files, false)?)

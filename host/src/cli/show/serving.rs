@@ -1,8 +1,8 @@
 //! Keys of the workstation, orders from standard input, edits of the script and the rendering that goes on meanwhile.
 
-use super::{Arguments, Failure, Told, edits::Edit};
+use super::{arguments::Arguments, edits::Edit, told::Told};
 use crate::{
-    cli::{progress, say, story},
+    cli::{Failure, exit::story, progress, say},
     picture::display::DisplayTransform,
     production::{News, Production, ProductionError, Progressive, Shot},
     render::{Amount, Order},

@@ -1,6 +1,6 @@
 //! The view that is set, told as a line of a script.
 
-use super::Failure;
+use crate::cli::{Failure, say::warn};
 use crate::{production::Production, script::camera_call};
 use files::Destination;
 use std::io::Write;
@@ -26,7 +26,7 @@ impl Told {
     /// Tells the view that is set now, unless that was told already.
     pub(super) fn tell(&mut self, production: &mut Production) -> Result<(), Failure> {
         let Some(camera) = production.camera()? else {
-            crate::cli::warn("no camera sees what is set: it is scaled unequally, or not seen at all");
+            warn("no camera sees what is set: it is scaled unequally, or not seen at all");
             return Ok(());
         };
         let line = camera_call(&camera);

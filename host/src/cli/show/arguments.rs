@@ -1,0 +1,74 @@
+//! The arguments of `peris show`.
+
+use crate::cli::waits::Waits;
+use crate::cli::{Definitions, SCRIPT_HELP};
+use crate::workstation::{Drawing, Lines};
+use clap::Args;
+use protocol::address::Address;
+use std::{num::NonZeroUsize, path::PathBuf};
+
+#[derive(Args, Clone, Debug)]
+pub(super) struct Arguments {
+    #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
+    pub(super) script: String,
+    #[command(flatten)]
+    pub(super) definitions: Definitions,
+    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, with a window if
+    /// there is a display, and the lines of standard input are orders for its operator ('help' lists them)
+    #[arg(long, value_name = "LINE")]
+    pub(super) to: Option<Address>,
+    /// Sends the scene and ends, without waiting for keys
+    #[arg(long, requires = "to")]
+    pub(super) once: bool,
+    /// Shows the scene anew whenever its script, or a file that this reads, is saved. The view stays as dials have set it,
+    /// unless the script asks for another camera than before
+    #[arg(long, conflicts_with = "once")]
+    pub(super) watch: bool,
+    /// Denoises what key 1 renders, when all samples are there
+    #[arg(long, conflicts_with = "once")]
+    pub(super) denoise: bool,
+    /// Samples of a pixel that key 1 takes, instead of those of the scene
+    #[arg(long, value_name = "COUNT", conflicts_with = "once", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
+    pub(super) samples: Option<u32>,
+    /// Reports what was sent as JSON on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Which edges are sent
+    #[arg(long, value_enum, default_value = "grid")]
+    pub(super) lines: Lines,
+    /// Edges that bend more than this are always sent, degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = Drawing::default().crease_degrees)]
+    pub(super) crease: f64,
+    /// Sends polygons, materials and lights instead of vectors; the machine renders them itself when a host or operator
+    /// sends FIX(1) to FIX(8) to <1>PERIS.SHADE, such as FIX(4), hidden lines, and FIX(8), Phong
+    #[arg(long)]
+    pub(super) facets: bool,
+    /// Solves for the light that goes from diffuse surface to diffuse surface, and sends it as colours at the corners of
+    /// polygons beside the vectors; the machine shades them on its raster screen whenever the dials have stood still
+    #[arg(long, conflicts_with = "facets")]
+    pub(super) radiosity: bool,
+    /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
+    #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = crate::cli::values::part)]
+    pub(super) tolerance: f64,
+    /// Opens no window, even if there is a display: orders from standard input do all
+    #[arg(long, conflicts_with = "to")]
+    pub(super) headless: bool,
+    /// Threads that render [default: one for each core]
+    #[arg(long, value_name = "COUNT", value_parser = crate::cli::values::threads)]
+    pub(super) threads: Option<NonZeroUsize>,
+    /// Writes the line of a script that asks for the view into this file, when key 3 is pressed and in the end
+    #[arg(long, value_name = "FILE", conflicts_with = "once")]
+    pub(super) camera: Option<PathBuf>,
+    /// The folder below which orders such as 'picture vector a.png' write files
+    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "to")]
+    pub(super) files: PathBuf,
+    #[command(flatten)]
+    pub(super) waits: Waits,
+}
+
+impl Arguments {
+    /// The lines that are sent, and how they are made.
+    pub(super) fn drawing(&self) -> Drawing {
+        Drawing { lines: self.lines, crease_degrees: self.crease, tolerance: self.tolerance, facets: self.facets }
+    }
+}

@@ -1,0 +1,62 @@
+//! Numbers that commands read from the command line.
+
+use crate::memory;
+use std::num::NonZeroUsize;
+
+/// Most threads that a command takes.
+const MAX_THREADS: usize = 1024;
+/// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
+const LEAST_MEMORY: u64 = 64 << 20;
+
+/// Reads a number of threads.
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let count = text.parse().ok().filter(|n: &NonZeroUsize| n.get() <= MAX_THREADS);
+    count.ok_or_else(|| format!("give 1 to {MAX_THREADS}"))
+}
+
+/// Reads a number of bytes.
+pub(super) fn bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "" | "B" => 0,
+        "K" | "KB" | "KIB" => 10,
+        "M" | "MB" | "MIB" => 20,
+        "G" | "GB" | "GIB" => 30,
+        "T" | "TB" | "TIB" => 40,
+        _ => return Err("give a number of bytes with K, M, G or T behind it, such as 512M".into()),
+    };
+    let bytes = digits.parse().ok().map(|number: f64| number * 2f64.powi(unit));
+    let bytes = bytes.filter(|bytes| (LEAST_MEMORY as f64..=u64::MAX as f64).contains(bytes));
+    bytes
+        .map(|bytes| bytes as u64)
+        .ok_or_else(|| format!("give at least {}, such as 512M", memory::readable(LEAST_MEMORY)))
+}
+
+/// Reads a length above 0.
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| *length > 0.0 && *length < f64::INFINITY);
+    length.ok_or_else(|| "give a length above 0".to_string())
+}
+
+/// Reads a distance as a part of a diagonal.
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    let part = text.parse().ok().filter(|part| *part > 0.0 && *part <= 1.0);
+    part.ok_or_else(|| "give a part of the diagonal, above 0 and at most 1".to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_given_in_bytes_and_their_multiples() {
+        for (text, expected) in
+            [("512M", 512 << 20), ("0.5GiB", 512 << 20), ("100000000", 100_000_000), ("2t", 2 << 40)]
+        {
+            assert_eq!(bytes(text), Ok(expected), "{text}");
+        }
+        for text in ["", "M", "63M", "-1G", "1X", "NaNG", "1e300G", "infT"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+    }
+}
