@@ -29,7 +29,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("ps340/structure/inputs", 5),
     ("host/script", 3),
     ("host/script/argument", 4),
-    ("host/study", 8),
     ("tests/corpus/classes", 4),
 ];
 

@@ -1,6 +1,7 @@
 //! The knob of the modeller: how closely triangles follow the exact surfaces.
 
-use super::{Knob, Options, Study, StudyError, Trial, resized, sweep};
+use super::options::resized;
+use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::picture::{Picture, difference};
 use crate::plan::Plan;
 use crate::render::ray_tracer;

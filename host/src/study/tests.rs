@@ -5,7 +5,8 @@ use crate::color::Color;
 use crate::illumination::Light;
 use crate::illumination::Paint;
 use crate::illumination::material::Classic;
-use crate::scene::{Cage, Composite, Object, Operation, Sculpture, Settings, Shape, Sheet};
+use crate::render::Watch;
+use crate::scene::{Cage, Composite, Object, Operation, Scene, Sculpture, Settings, Shape, Sheet};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
