@@ -1,4 +1,4 @@
-//! How a study is made: the size of its pictures, samples, settings and threads.
+//! The options of a study: size of its pictures, samples, settings and threads.
 
 use crate::scene::Scene;
 use std::num::NonZeroUsize;
