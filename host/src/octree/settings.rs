@@ -3,7 +3,7 @@
 /// How an octree is built and walked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Resolution N: the modelling cube has 2^N voxels a side. Counts as [`MAX_DEPTH`] above it.
+    /// Resolution N: the modelling cube has 2^N voxels a side. Counts as [`MAX_DEPTH`](super::MAX_DEPTH) above it.
     pub depth: u32,
     /// A cell is not divided if no more triangles than this are small enough for it and have their middle in it.
     pub leaf_triangles: usize,

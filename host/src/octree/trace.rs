@@ -12,7 +12,7 @@ impl Octree {
     /// Either side of a triangle is hit. Edges and corners belong to their triangles, so a closed mesh lets no ray
     /// through; of several hits with the same `t` the triangle with the lowest index counts. A triangle seen exactly
     /// edge-on is not hit. A ray whose direction is zero, or that is not finite, or that begins farther away than
-    /// [`MAX_DISTANCE`] sides of the modelling cube, hits nothing.
+    /// [`MAX_DISTANCE`](super::MAX_DISTANCE) sides of the modelling cube, hits nothing.
     #[inline]
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
         match self.walk {

@@ -73,8 +73,8 @@ impl Octree {
     /// - `triangles`: corners, indices into `vertices`; degenerate ones are welcome and are never hit.
     ///
     /// # Errors
-    /// A vertex that is not finite or too far out, an index out of range, more than [`MAX_TRIANGLES`]. No triangles
-    /// at all is fine.
+    /// A vertex that is not finite or too far out, an index out of range, more than
+    /// [`MAX_TRIANGLES`](super::MAX_TRIANGLES). No triangles at all is fine.
     pub fn build(vertices: &[DVec3], triangles: &[[u32; 3]], settings: &Settings) -> Result<Self, OctreeError> {
         Self::sharing(Arc::new(vertices.to_vec()), Arc::new(triangles.to_vec()), settings)
     }
