@@ -1,6 +1,9 @@
 //! Random objects: data of every kind.
 
-use super::{limits, names, operates, reals, singles, texts, vectors2, vectors3};
+use super::{
+    basic::{names, reals, singles, texts, vectors2, vectors3},
+    operate::operates,
+};
 use crate::command::syntax::{
     Attributes, Bspline, Characters, CornerColor, FontCharacter, Fourth, Illumination, Label, Labels, Object, Pattern,
     Polygon, PolygonVertex, Polynomial, SurfaceColor, VectorClass, VectorList,
@@ -142,9 +145,4 @@ pub fn objects() -> impl Strategy<Value = Object> {
         1 => (names(), 1..=u32::MAX, any::<u32>())
             .prop_map(|(source, start, count)| Object::Copy { source, start, count }),
     ]
-}
-
-/// Boundaries of views, or none.
-pub(super) fn boundaries() -> impl Strategy<Value = Option<crate::command::Boundaries>> {
-    prop::option::of(limits().prop_map(|[front, back]| crate::command::Boundaries { front, back }))
 }

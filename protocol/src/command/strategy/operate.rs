@@ -1,7 +1,7 @@
 //! Random operate nodes of every kind.
 
-use super::{data::boundaries, limits, matrices2, matrices3, matrices4, matrices4x3, names, reals, vectors2, vectors3};
-use crate::command::syntax::{Axis, CharacterOrientation, Comparison, Operate, Rate, Scopes};
+use super::basic::{limits, matrices2, matrices3, matrices4, matrices4x3, names, reals, vectors2, vectors3};
+use crate::command::syntax::{Axis, Boundaries, CharacterOrientation, Comparison, Operate, Rate, Scopes};
 use proptest::prelude::*;
 
 /// Operate nodes of every kind.
@@ -115,4 +115,9 @@ fn plain() -> impl Strategy<Value = Operate> {
         Operate::SolidRendering,
         Operate::SectioningPlane,
     ])
+}
+
+/// Boundaries of views, or none.
+fn boundaries() -> impl Strategy<Value = Option<Boundaries>> {
+    prop::option::of(limits().prop_map(|[front, back]| Boundaries { front, back }))
 }
