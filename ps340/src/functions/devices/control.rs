@@ -2,7 +2,7 @@
 
 use super::{
     super::{Example, Family, FunctionRow, Rule, Source},
-    ask,
+    common::ask,
 };
 use crate::port::{
     DialSetting, Effect, Firing, KindSet,

@@ -2,7 +2,7 @@
 
 use super::{
     super::{Example, Family, FunctionRow, Source, printing::print},
-    TEXT, TRIGGER, ask,
+    common::{TEXT, TRIGGER, ask},
 };
 use crate::port::{
     Effect, Firing, KindSet, Label,

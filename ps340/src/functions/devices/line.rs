@@ -2,7 +2,7 @@
 
 use super::{
     super::{Family, FunctionRow, Source},
-    TEXT, ask,
+    common::{TEXT, ask},
 };
 use crate::port::{Effect, Firing, Problem};
 

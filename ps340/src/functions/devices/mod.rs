@@ -2,6 +2,7 @@
 //!
 //! Sources have outputs only; the machine sends from them what a person does. Sinks ask the machine for an effect.
 
+mod common;
 pub mod control;
 pub mod display;
 pub mod line;
@@ -9,7 +10,6 @@ pub mod shading;
 pub mod status;
 
 use super::{Family, FunctionRow};
-use crate::port::{Effect, Firing, KindSet, PortSpec, Problem};
 
 /// The initial instances by what they belong to.
 pub static FAMILIES: [(&str, &[FunctionRow]); 5] = [
@@ -19,9 +19,6 @@ pub static FAMILIES: [(&str, &[FunctionRow]); 5] = [
     ("status", status::ROWS),
     ("shading", shading::ROWS),
 ];
-
-const TEXT: &[PortSpec] = &[PortSpec::active(KindSet::STRING, "text")];
-const TRIGGER: &[PortSpec] = &[PortSpec::active(KindSet::ANY, "trigger")];
 
 /// A function that exists at start under a name of its own.
 #[derive(Clone, Debug)]
@@ -58,9 +55,4 @@ pub fn initial() -> impl Iterator<Item = Initial> {
 /// The initial instances of the host line, of which a line may have its own.
 pub fn of_line() -> impl Iterator<Item = Initial> {
     initial().filter(|initial| line::ROWS.iter().any(|row| row.name == initial.function.name))
-}
-
-fn ask(f: &mut Firing, effect: Effect) -> Result<(), Problem> {
-    f.effect(effect);
-    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::{
     super::{Example, FunctionRow, Source},
-    ask,
+    common::ask,
 };
 use crate::{
     hue,

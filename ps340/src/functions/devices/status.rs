@@ -2,7 +2,7 @@
 
 use super::{
     super::{Example, FunctionRow, Source},
-    TEXT,
+    common::TEXT,
 };
 use crate::port::{
     Effect, Elapsed, Firing, KindSet,

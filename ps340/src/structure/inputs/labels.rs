@@ -1,6 +1,6 @@
 //! Inputs of LABELS.
 
-use super::{count, element, place, wrong_kind};
+use super::value::{count, element, place, wrong_kind};
 use crate::structure::{Labels, NodeFault};
 use glam::DVec3;
 use protocol::{

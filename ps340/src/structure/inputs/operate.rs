@@ -1,6 +1,6 @@
 //! Inputs of operate nodes.
 
-use super::{FIRST, FOURTH, SECOND, THIRD, boolean, count, integer, number, place, wrong_kind};
+use super::value::{FIRST, FOURTH, SECOND, THIRD, boolean, count, integer, number, place, wrong_kind};
 use crate::structure::{NodeFault, Operation, operation::MAX_LEVEL};
 use protocol::{Value, command::Input};
 

@@ -1,7 +1,7 @@
 //! Which inputs a node has, and which kinds of message it takes there: what arcs are checked against, and what messages
 //! say. Tests hold it to what the nodes do.
 
-use super::{FIRST, FOURTH, SECOND, THIRD};
+use super::value::{FIRST, FOURTH, SECOND, THIRD};
 use crate::{
     port::KindSet,
     structure::{Node, Operation},

@@ -1,6 +1,6 @@
 //! Inputs of CHARACTERS.
 
-use super::{count, place, wrong_kind};
+use super::value::{count, place, wrong_kind};
 use crate::structure::NodeFault;
 use protocol::{
     Value,

@@ -1,6 +1,6 @@
 //! Inputs of vector lists.
 
-use super::{boolean, count, element, wrong_kind};
+use super::value::{boolean, count, element, wrong_kind};
 use crate::structure::NodeFault;
 use protocol::{
     Value,
