@@ -2,6 +2,7 @@
 
 pub mod syntax;
 pub mod number;
+mod matrix;
 pub mod spelling;
 pub mod words;
 pub mod token;

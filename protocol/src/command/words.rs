@@ -22,8 +22,33 @@ macro_rules! words {
                     $(Word::$word => $form,)*
                 }
             }
+
+            /// The whole word in capitals, as a list of it alone: what an error says was expected.
+            pub const fn expected(self) -> &'static [&'static str] {
+                match self {
+                    $(Word::$word => {
+                        const BYTES: &[u8] = &capitals::<{ $form.len() }>($form);
+                        const TEXT: &str = ascii(BYTES);
+                        &[TEXT]
+                    })*
+                }
+            }
         }
     };
+}
+
+const fn capitals<const N: usize>(form: &str) -> [u8; N] {
+    let mut bytes = [0; N];
+    bytes.copy_from_slice(form.as_bytes());
+    bytes.make_ascii_uppercase();
+    bytes
+}
+
+const fn ascii(bytes: &'static [u8]) -> &'static str {
+    match str::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(_) => panic!("words are ASCII"),
+    }
 }
 
 words! {
@@ -414,8 +439,13 @@ pub const VALUES: &[Word] = &[
 
 impl Word {
     /// The whole word in capitals, as the printer writes it.
+    pub const fn capitals(self) -> &'static str {
+        self.expected()[0]
+    }
+
+    /// The whole word in capitals, as a text of its own.
     pub fn upper(self) -> String {
-        self.form().to_ascii_uppercase()
+        self.capitals().to_owned()
     }
 
     /// The shortest form.
@@ -424,9 +454,26 @@ impl Word {
     }
 
     /// The length of the shortest form: all before the first small letter and an underscore there, or the whole word.
-    pub fn shortest(self) -> usize {
-        let form = self.form();
-        form.find(|c: char| c.is_ascii_lowercase()).map_or(form, |end| form[..end].trim_end_matches('_')).len()
+    pub const fn shortest(self) -> usize {
+        /// The length for each word, so that it is not counted for each word that is read.
+        const LENGTHS: [u8; Word::ALL.len()] = {
+            let mut lengths = [0; Word::ALL.len()];
+            let mut index = 0;
+            while index < lengths.len() {
+                let form = Word::ALL[index].form().as_bytes();
+                let mut end = 0;
+                while end < form.len() && !form[end].is_ascii_lowercase() {
+                    end += 1;
+                }
+                while end < form.len() && end > 0 && form[end - 1] == b'_' {
+                    end -= 1;
+                }
+                lengths[index] = end as u8;
+                index += 1;
+            }
+            lengths
+        };
+        LENGTHS[self as usize] as usize
     }
 
     /// Whether `text` is the word, or a prefix of it that is long enough, in any case.
@@ -451,8 +498,8 @@ impl Word {
     }
 
     /// The list of this word alone.
-    pub fn alone(self) -> &'static [Word] {
-        &Word::ALL[self as usize..][..1]
+    pub const fn alone(self) -> &'static [Word] {
+        Word::ALL.split_at(self as usize).1.split_at(1).0
     }
 
     /// The word among `words` that `text` is.

@@ -4,7 +4,9 @@ use super::{FLAG_BLOCK, FLAG_ESTIMATE, FLAG_INTERNAL, FOURTH_BIT, Opcode, PART_P
 use crate::{
     Kind, Name, Value,
     command::{
-        MAX_POINTS, MAX_STATEMENT, parse,
+        MAX_POINTS, MAX_STATEMENT,
+        matrix::from_four_by_three,
+        parse,
         syntax::{
             Arc, Axis, Boundaries, Characters, Command, Destination, Fourth, Initialize, Input, NamePattern, Object,
             Operate, VectorClass, VectorList,
@@ -345,9 +347,7 @@ fn destination<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Destination
 }
 
 fn matrix4x3<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<DMat4, BinaryError> {
-    let rows: [f64; 12] = reader.reals("row by row")?;
-    let row = |i: usize, w: f64| DVec4::new(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2], w);
-    Ok(DMat4::from_cols(row(0, 0.0), row(1, 0.0), row(2, 0.0), row(3, 1.0)))
+    Ok(from_four_by_three(&reader.reals("row by row")?))
 }
 
 fn value<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Value, BinaryError> {

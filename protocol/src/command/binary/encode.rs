@@ -5,7 +5,8 @@ use crate::{
     Name, Value,
     command::{
         MAX_POINTS, MAX_STATEMENT, MAX_TEXT,
-        print::{four_by_three, print},
+        matrix::four_by_three,
+        print::print,
         syntax::{
             Arc, Axis, Boundaries, Command, Destination, Initialize, NamePattern, Object, Operate, VectorClass,
             VectorList,

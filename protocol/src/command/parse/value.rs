@@ -5,6 +5,7 @@ use crate::{
     Value,
     command::{
         error::Fault,
+        matrix::from_four_by_three,
         token::TokenKind,
         words::{self, Word},
     },
@@ -67,9 +68,7 @@ impl Parser<'_> {
 
     /// Four rows of three, completed with 0, 0, 0, 1.
     pub(super) fn matrix4x3(&mut self) -> Result<DMat4, Fault> {
-        let rows: [f64; 12] = self.reals()?;
-        let row = |i: usize, w: f64| DVec4::new(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2], w);
-        Ok(DMat4::from_cols(row(0, 0.0), row(1, 0.0), row(2, 0.0), row(3, 1.0)))
+        Ok(from_four_by_three(&self.reals()?))
     }
 
     pub(super) fn matrix4(&mut self) -> Result<DMat4, Fault> {

@@ -2,15 +2,17 @@
 
 mod object;
 mod operate;
+pub(super) mod printer;
 
 use super::{
+    matrix::four_by_three,
     parse::is_plain_value,
     syntax::{Arc, Command, Destination, FontCharacter, Initialize, NamePattern, Object},
     words::Word,
 };
 use crate::{Name, Value};
-use glam::DMat4;
-use std::{fmt, io::Write};
+use printer::{List, Number, Printer};
+use std::fmt;
 
 /// Appends a command as text, with its `;`. BEGIN_STRUCTURE and BEGIN_FONT have none; a line end follows them, so that
 /// commands can be printed one behind the other.
@@ -19,7 +21,7 @@ use std::{fmt, io::Write};
 /// without a name) is printed as it is, and the text cannot be parsed. The text is printable except for the bytes of
 /// texts in quotes, which stand as they are.
 pub fn print(command: &Command, out: &mut Vec<u8>) {
-    Printer { out }.command(command);
+    Printer::new(out).command(command);
 }
 
 impl fmt::Display for Command {
@@ -35,57 +37,12 @@ impl fmt::Display for Value {
     /// The value as SEND has it: `FIX(1)`, `0.5`, `'text'`, `V3D(1,2,3)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut out = Vec::new();
-        Printer { out: &mut out }.value(self);
+        Printer::new(&mut out).value(self);
         f.write_str(&String::from_utf8_lossy(&out))
     }
 }
 
-/// A number that is written so that it reads back equal.
-struct Number<T>(T);
-
-impl<T: fmt::Display + fmt::UpperExp + Copy + Into<f64>> fmt::Display for Number<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size: f64 = self.0.into();
-        if size == 0.0 || (1e-5..1e16).contains(&size.abs()) {
-            write!(f, "{}", self.0)
-        } else {
-            write!(f, "{:E}", self.0)
-        }
-    }
-}
-
-/// Numbers with commas between them.
-struct List<'n>(&'n [f64]);
-
-impl fmt::Display for List<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, number) in self.0.iter().enumerate() {
-            if index > 0 {
-                f.write_str(",")?;
-            }
-            Number(*number).fmt(f)?;
-        }
-        Ok(())
-    }
-}
-
-struct Printer<'o> {
-    out: &'o mut Vec<u8>,
-}
-
 impl Printer<'_> {
-    fn put(&mut self, text: fmt::Arguments<'_>) {
-        self.out.write_fmt(text).expect("a vector takes all bytes");
-    }
-
-    fn text(&mut self, text: &str) {
-        self.out.extend_from_slice(text.as_bytes());
-    }
-
-    fn word(&mut self, word: Word) {
-        self.text(&word.upper());
-    }
-
     /// Names with commas between them.
     fn names(&mut self, names: &[Name]) {
         for (index, name) in names.iter().enumerate() {
@@ -295,19 +252,13 @@ impl Printer<'_> {
     fn quoted(&mut self, text: &[u8]) {
         self.text("'");
         for &byte in text {
-            self.out.push(byte);
+            self.byte(byte);
             if byte == b'\'' {
-                self.out.push(byte);
+                self.byte(byte);
             }
         }
         self.text("'");
     }
-}
-
-/// The numbers of a 4x3 matrix, row by row of the machine.
-pub(super) fn four_by_three(matrix: &DMat4) -> [f64; 12] {
-    let columns = matrix.to_cols_array();
-    std::array::from_fn(|i| columns[i / 3 * 4 + i % 3])
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a name can be, as text.
 
-use super::{List, Number, Printer};
+use super::printer::{List, Number, Printer};
 use crate::{
     Name,
     command::{

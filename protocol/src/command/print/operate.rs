@@ -1,7 +1,10 @@
 //! Operate nodes as text.
 
-use super::{List, Number, Printer, four_by_three};
-use crate::command::syntax::{Axis, Boundaries, CharacterOrientation, Operate, Scopes};
+use super::printer::{List, Number, Printer};
+use crate::command::{
+    matrix::four_by_three,
+    syntax::{Axis, Boundaries, CharacterOrientation, Operate, Scopes},
+};
 
 impl Printer<'_> {
     /// An operate node without what it is applied to: transformations and viewing here, the others below.

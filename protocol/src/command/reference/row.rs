@@ -1,7 +1,6 @@
-//! One row of the command table, and how it is printed.
+//! One row of the command table.
 
-use crate::command::{parse, syntax::Command, words::Word};
-use std::fmt;
+use crate::command::words::Word;
 
 /// How well a command is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +73,7 @@ pub struct CommandRow {
 }
 
 /// What the rows have in common.
-pub(super) const PLAIN: CommandRow = CommandRow {
+pub(in crate::command) const PLAIN: CommandRow = CommandRow {
     name: "",
     section: "",
     confidence: Confidence::Remembered,
@@ -87,7 +86,7 @@ pub(super) const PLAIN: CommandRow = CommandRow {
 };
 
 /// A row of options.
-pub(super) const fn option(
+pub(in crate::command) const fn option(
     form: &'static str,
     meaning: &'static str,
     range: &'static str,
@@ -97,7 +96,7 @@ pub(super) const fn option(
 }
 
 /// A row of inputs.
-pub(super) const fn input(input: &'static str, takes: &'static str, effect: &'static str) -> InputRow {
+pub(in crate::command) const fn input(input: &'static str, takes: &'static str, effect: &'static str) -> InputRow {
     InputRow { input, takes, effect }
 }
 
@@ -112,49 +111,4 @@ impl CommandRow {
 /// The words of a line of syntax, keywords and parameters.
 pub(super) fn pieces(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|piece| !piece.is_empty())
-}
-
-impl fmt::Display for CommandRow {
-    /// The whole entry, over several lines.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: {}", self.name, self.summary)?;
-        writeln!(f, "({}; section {})\n", self.confidence.word(), self.section)?;
-        for line in self.syntax {
-            writeln!(f, "    {line}")?;
-        }
-        let width = |lengths: &mut dyn Iterator<Item = usize>| lengths.max().unwrap_or(0);
-        if !self.options.is_empty() {
-            writeln!(f)?;
-            let column = width(&mut self.options.iter().map(|o| o.form.len()));
-            for OptionRow { form, meaning, range, default } in self.options {
-                write!(f, "  {form:column$}  {meaning}")?;
-                if !range.is_empty() {
-                    write!(f, "; {range}")?;
-                }
-                if !default.is_empty() {
-                    write!(f, " (default {default})")?;
-                }
-                writeln!(f)?;
-            }
-        }
-        if !self.inputs.is_empty() {
-            writeln!(f, "\nInputs of the node:")?;
-            let column = width(&mut self.inputs.iter().map(|i| i.input.len()));
-            let kinds = width(&mut self.inputs.iter().map(|i| i.takes.len()));
-            for InputRow { input, takes, effect } in self.inputs {
-                writeln!(f, "  {input:column$}  {takes:kinds$}  {effect}")?;
-            }
-        }
-        if !self.routines.is_empty() {
-            writeln!(f, "\nLibrary routines: {}", self.routines.join(", "))?;
-        }
-        writeln!(f, "\nExample:")?;
-        for line in self.example.lines() {
-            writeln!(f, "    {line}")?;
-        }
-        if let Ok(Command::Define { name: None, .. }) = parse(self.example.as_bytes()) {
-            writeln!(f, "inside a structure; outside of one, an object needs a name: NAME := ...")?;
-        }
-        Ok(())
-    }
 }
