@@ -9,6 +9,7 @@ pub mod token;
 pub mod error;
 pub mod parse;
 pub mod print;
+mod operate;
 pub mod reader;
 pub mod binary;
 #[cfg(any(test, feature = "proptest"))]

@@ -343,28 +343,6 @@ pub const COMPLETE: &[Word] = &[
     Word::SectioningPlane,
 ];
 
-/// The words after `SET`.
-pub const SETTINGS: &[Word] = &[
-    Word::Color,
-    Word::Intensity,
-    Word::DepthClipping,
-    Word::Picking,
-    Word::ConditionalBit,
-    Word::LevelOfDetail,
-    Word::Rate,
-    Word::Characters,
-    Word::Contrast,
-    Word::Csm,
-    Word::Displays,
-    Word::Blinking,
-    Word::Plotter,
-    Word::Priority,
-    Word::LineTexture,
-];
-
-/// The words after `IF`.
-pub const CONDITIONS: &[Word] = &[Word::ConditionalBit, Word::LevelOfDetail, Word::Phase];
-
 /// The words before the vectors of a list.
 pub const VECTOR_OPTIONS: &[Word] = &[
     Word::BlockNormalized,
@@ -511,6 +489,7 @@ impl Word {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::operate::words_behind;
 
     #[test]
     fn any_prefix_from_the_shortest_form_on_is_accepted() {
@@ -554,8 +533,8 @@ mod tests {
         let statements: Vec<Word> = COMMANDS.iter().chain(OBJECTS).copied().collect();
         for context in [
             statements.as_slice(),
-            SETTINGS,
-            CONDITIONS,
+            words_behind(Word::Set),
+            words_behind(Word::If),
             VECTOR_OPTIONS,
             POLYGON_OPTIONS,
             SURFACE_OPTIONS,

@@ -8,8 +8,8 @@ use crate::{
         matrix::from_four_by_three,
         parse,
         syntax::{
-            Arc, Axis, Boundaries, Characters, Command, Destination, Fourth, Initialize, Input, NamePattern, Object,
-            Operate, VectorClass, VectorList,
+            Arc, Characters, Command, Destination, Fourth, Initialize, Input, NamePattern, Object, VectorClass,
+            VectorList,
         },
     },
     name::is_name_character,
@@ -396,60 +396,10 @@ fn object<W: Witness>(opcode: Opcode, reader: &mut Reader<'_, '_, W>) -> Result<
             let size = reader.u16("size")?;
             Object::Function { function, size: given.then_some(size) }
         }
-        opcode => {
+        Opcode::Operate(kind) => {
             let applied_to = reader.optional_name("applied to")?;
-            Object::Operate { operate: operate(opcode, reader)?, applied_to }
+            Object::Operate { operate: kind.decode(reader)?, applied_to }
         }
-    })
-}
-
-fn operate<W: Witness>(opcode: Opcode, reader: &mut Reader<'_, '_, W>) -> Result<Operate, BinaryError> {
-    Ok(match opcode {
-        Opcode::Rotate => {
-            let axis = match reader.u8("axis")? {
-                0 => Axis::X,
-                1 => Axis::Y,
-                2 => Axis::Z,
-                other => return Err(reader.error(1, "axis", BinaryProblem::Unknown(other.into()))),
-            };
-            Operate::Rotate { axis, angle: reader.f64("angle")? }
-        }
-        Opcode::Scale => Operate::Scale(DVec3::from_array(reader.reals("factor")?)),
-        Opcode::Translate => Operate::Translate(DVec3::from_array(reader.reals("component")?)),
-        Opcode::Matrix2 => Operate::Matrix2(DMat2::from_cols_array(&reader.reals("row by row")?)),
-        Opcode::Matrix3 => Operate::Matrix3(DMat3::from_cols_array(&reader.reals("row by row")?)),
-        Opcode::Matrix4x3 => Operate::Matrix4x3(matrix4x3(reader)?),
-        Opcode::Matrix4 => Operate::Matrix4(DMat4::from_cols_array(&reader.reals("row by row")?)),
-        Opcode::Look => Operate::Look {
-            at: DVec3::from_array(reader.reals("at")?),
-            from: DVec3::from_array(reader.reals("from")?),
-            up: if reader.boolean("up given")? { Some(DVec3::from_array(reader.reals("up")?)) } else { None },
-        },
-        Opcode::Window => {
-            let (x, y) = (reader.reals("x")?, reader.reals("y")?);
-            Operate::Window { x, y, boundaries: boundaries(reader)? }
-        }
-        Opcode::FieldOfView => {
-            let angle = reader.f64("angle")?;
-            Operate::FieldOfView { angle, boundaries: boundaries(reader)? }
-        }
-        Opcode::Viewport => {
-            let (horizontal, vertical) = (reader.reals("horizontal")?, reader.reals("vertical")?);
-            let given = reader.boolean("intensity given")?;
-            let intensity = if given { Some(reader.reals("intensity")?) } else { None };
-            Operate::Viewport { horizontal, vertical, intensity }
-        }
-        Opcode::SetColor => Operate::SetColor { hue: reader.f64("hue")?, saturation: reader.f64("saturation")? },
-        Opcode::SetIntensity => Operate::SetIntensity { on: reader.boolean("on")?, range: reader.reals("range")? },
-        Opcode::SetDepthClipping => Operate::SetDepthClipping(reader.boolean("on")?),
-        Opcode::XformMatrix => Operate::XformMatrix,
         other => return Err(reader.error(1, "opcode", BinaryProblem::Unknown(other.code().into()))),
     })
-}
-
-fn boundaries<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Option<Boundaries>, BinaryError> {
-    if !reader.boolean("boundaries given")? {
-        return Ok(None);
-    }
-    Ok(Some(Boundaries { front: reader.f64("front")?, back: reader.f64("back")? }))
 }

@@ -7,10 +7,7 @@ use crate::{
         MAX_POINTS, MAX_STATEMENT, MAX_TEXT,
         matrix::four_by_three,
         print::print,
-        syntax::{
-            Arc, Axis, Boundaries, Command, Destination, Initialize, NamePattern, Object, Operate, VectorClass,
-            VectorList,
-        },
+        syntax::{Arc, Command, Destination, Initialize, NamePattern, Object, VectorClass, VectorList},
     },
     record::{EncodeError, MAX_RECORD, Writer, within},
 };
@@ -228,10 +225,7 @@ fn definition(name: Option<&Name>, object: &Object, writer: &mut Writer<'_>) -> 
         Object::Instance(_) => Opcode::Instance,
         Object::Characters(_) => Opcode::Characters,
         Object::Function { .. } => Opcode::Function,
-        Object::Operate { operate, .. } => match operate_opcode(operate) {
-            Some(opcode) => opcode,
-            None => return Ok(false),
-        },
+        Object::Operate { operate, .. } if operate.kind().code().is_some() => Opcode::Operate(operate.kind()),
         _ => return Ok(false),
     };
     writer.u8(opcode.code());
@@ -253,85 +247,10 @@ fn definition(name: Option<&Name>, object: &Object, writer: &mut Writer<'_>) -> 
         }
         Object::Operate { operate, applied_to } => {
             writer.optional_name(applied_to.as_ref());
-            operate_fields(operate, writer);
+            operate.encode(writer);
         }
         // NIL and BEGIN_STRUCTURE have a name only.
         _ => {}
     }
     Ok(true)
-}
-
-/// The record of an operate node, if it has one of its own.
-fn operate_opcode(operate: &Operate) -> Option<Opcode> {
-    Some(match operate {
-        Operate::Rotate { .. } => Opcode::Rotate,
-        Operate::Scale(_) => Opcode::Scale,
-        Operate::Translate(_) => Opcode::Translate,
-        Operate::Matrix2(_) => Opcode::Matrix2,
-        Operate::Matrix3(_) => Opcode::Matrix3,
-        Operate::Matrix4x3(_) => Opcode::Matrix4x3,
-        Operate::Matrix4(_) => Opcode::Matrix4,
-        Operate::Look { .. } => Opcode::Look,
-        Operate::Window { .. } => Opcode::Window,
-        Operate::FieldOfView { .. } => Opcode::FieldOfView,
-        Operate::Viewport { .. } => Opcode::Viewport,
-        Operate::SetColor { .. } => Opcode::SetColor,
-        Operate::SetIntensity { .. } => Opcode::SetIntensity,
-        Operate::SetDepthClipping(_) => Opcode::SetDepthClipping,
-        Operate::XformMatrix => Opcode::XformMatrix,
-        _ => return None,
-    })
-}
-
-/// The fields of an operate node that has a record of its own.
-fn operate_fields(operate: &Operate, writer: &mut Writer<'_>) {
-    match operate {
-        Operate::Rotate { axis, angle } => {
-            writer.u8(match axis {
-                Axis::X => 0,
-                Axis::Y => 1,
-                Axis::Z => 2,
-            });
-            writer.reals(&[*angle]);
-        }
-        Operate::Scale(by) | Operate::Translate(by) => writer.reals(&by.to_array()),
-        Operate::Matrix2(m) => writer.reals(&m.to_cols_array()),
-        Operate::Matrix3(m) => writer.reals(&m.to_cols_array()),
-        Operate::Matrix4x3(m) => writer.reals(&four_by_three(m)),
-        Operate::Matrix4(m) => writer.reals(&m.to_cols_array()),
-        Operate::Look { at, from, up } => {
-            writer.reals(&at.to_array());
-            writer.reals(&from.to_array());
-            writer.u8(up.is_some().into());
-            writer.reals(up.as_ref().map_or(&[], |up| up.as_ref()));
-        }
-        Operate::Window { x, y, boundaries: b } => {
-            writer.reals(&[x[0], x[1], y[0], y[1]]);
-            boundaries(b, writer);
-        }
-        Operate::FieldOfView { angle, boundaries: b } => {
-            writer.reals(&[*angle]);
-            boundaries(b, writer);
-        }
-        Operate::Viewport { horizontal, vertical, intensity } => {
-            writer.reals(&[horizontal[0], horizontal[1], vertical[0], vertical[1]]);
-            writer.u8(intensity.is_some().into());
-            writer.reals(intensity.as_ref().map_or(&[], |range| range));
-        }
-        Operate::SetColor { hue, saturation } => writer.reals(&[*hue, *saturation]),
-        Operate::SetIntensity { on, range } => {
-            writer.u8((*on).into());
-            writer.reals(range);
-        }
-        Operate::SetDepthClipping(on) => writer.u8((*on).into()),
-        // XFORM MATRIX has none; the others travel as text.
-        _ => {}
-    }
-}
-
-fn boundaries(boundaries: &Option<Boundaries>, writer: &mut Writer<'_>) {
-    writer.u8(boundaries.is_some().into());
-    if let Some(Boundaries { front, back }) = boundaries {
-        writer.reals(&[*front, *back]);
-    }
 }

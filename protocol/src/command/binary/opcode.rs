@@ -1,30 +1,43 @@
 //! The opcodes of binary records.
 
+use crate::command::operate::OperateKind;
+
 macro_rules! opcodes {
     ($($(#[$meta:meta])* $opcode:ident $code:literal $word:literal,)*) => {
         /// What a binary record is: its first byte.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #[repr(u8)]
         pub enum Opcode {
-            $(#[doc = $word] $opcode = $code,)*
+            $(#[doc = $word] $opcode,)*
+            /// The definition of an operate node that has a record of its own.
+            Operate(OperateKind),
         }
 
         impl Opcode {
-            /// Every opcode.
-            pub const ALL: &[Opcode] = &[$(Opcode::$opcode,)*];
-
             /// The words for the record in listings.
             pub const fn word(self) -> &'static str {
                 match self {
                     $(Opcode::$opcode => $word,)*
+                    Opcode::Operate(kind) => kind.name(),
+                }
+            }
+
+            /// The byte; 0, no record, for an operate node that has none of its own.
+            pub const fn code(self) -> u8 {
+                match self {
+                    $(Opcode::$opcode => $code,)*
+                    Opcode::Operate(kind) => match kind.code() {
+                        Some(code) => code,
+                        None => 0,
+                    },
                 }
             }
 
             /// The opcode with a code.
             pub const fn from_code(code: u8) -> Option<Opcode> {
-                match code {
-                    $($code => Some(Opcode::$opcode),)*
-                    _ => None,
+                match (code, OperateKind::from_code(code)) {
+                    $(($code, _) => Some(Opcode::$opcode),)*
+                    (_, Some(kind)) => Some(Opcode::Operate(kind)),
+                    (_, None) => None,
                 }
             }
         }
@@ -41,21 +54,6 @@ opcodes! {
     VectorsBegin 0x10 "VECTOR_LIST, begin",
     VectorsPart 0x11 "VECTOR_LIST, part",
     VectorsEnd 0x12 "VECTOR_LIST, end",
-    Rotate 0x20 "ROTATE",
-    Scale 0x21 "SCALE",
-    Translate 0x22 "TRANSLATE",
-    Matrix2 0x23 "MATRIX_2X2",
-    Matrix3 0x24 "MATRIX_3X3",
-    Matrix4x3 0x25 "MATRIX_4X3",
-    Matrix4 0x26 "MATRIX_4X4",
-    Look 0x27 "LOOK",
-    Window 0x28 "WINDOW",
-    FieldOfView 0x29 "FIELD_OF_VIEW",
-    Viewport 0x2a "VIEWPORT",
-    SetColor 0x2b "SET COLOR",
-    SetIntensity 0x2c "SET INTENSITY",
-    SetDepthClipping 0x2d "SET DEPTH_CLIPPING",
-    XformMatrix 0x2e "XFORM MATRIX",
     Display 0x40 "DISPLAY",
     Remove 0x41 "REMOVE",
     Include 0x42 "INCLUDE",
@@ -70,8 +68,28 @@ opcodes! {
 }
 
 impl Opcode {
-    /// The byte.
-    pub const fn code(self) -> u8 {
-        self as u8
-    }
+    /// Every opcode, in the order of the codes.
+    pub const ALL: &[Opcode] = {
+        const COUNT: usize = {
+            let (mut count, mut code) = (0, 0);
+            while code < 256 {
+                count += Opcode::from_code(code as u8).is_some() as usize;
+                code += 1;
+            }
+            count
+        };
+        const ALL: [Opcode; COUNT] = {
+            let mut all = [Opcode::Nil; COUNT];
+            let (mut count, mut code) = (0, 0);
+            while code < 256 {
+                if let Some(opcode) = Opcode::from_code(code as u8) {
+                    all[count] = opcode;
+                    count += 1;
+                }
+                code += 1;
+            }
+            all
+        };
+        &ALL
+    };
 }

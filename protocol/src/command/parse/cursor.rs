@@ -8,7 +8,7 @@ use crate::command::{
 };
 
 /// The tokens of one statement.
-pub(super) struct Parser<'t> {
+pub(in crate::command) struct Parser<'t> {
     pub(super) lexer: Lexer<'t>,
     pub(super) token: Token,
     /// Where the last token that was taken begins and ends.
@@ -92,7 +92,7 @@ impl<'t> Parser<'t> {
     }
 
     /// The fault that the current token is not what was expected.
-    pub(super) fn fail(&self, expected: &'static [&'static str]) -> Fault {
+    pub(in crate::command) fn fail(&self, expected: &'static [&'static str]) -> Fault {
         let problem = match self.token.kind {
             TokenKind::Bad(problem) => problem,
             TokenKind::Name => self.missed.problem(self.text(self.token)),
@@ -102,11 +102,11 @@ impl<'t> Parser<'t> {
     }
 
     /// The fault that the current token is understood and not allowed.
-    pub(super) fn refuse(&self, problem: Problem) -> Fault {
+    pub(in crate::command) fn refuse(&self, problem: Problem) -> Fault {
         Fault { span: self.token.span(), problem, expected: &[] }
     }
 
-    pub(super) fn accept(&mut self, kind: TokenKind) -> bool {
+    pub(in crate::command) fn accept(&mut self, kind: TokenKind) -> bool {
         let found = self.token.kind == kind;
         if found {
             self.advance();
@@ -114,17 +114,21 @@ impl<'t> Parser<'t> {
         found
     }
 
-    pub(super) fn expect(&mut self, kind: TokenKind, expected: &'static [&'static str]) -> Result<(), Fault> {
+    pub(in crate::command) fn expect(
+        &mut self,
+        kind: TokenKind,
+        expected: &'static [&'static str],
+    ) -> Result<(), Fault> {
         if self.accept(kind) { Ok(()) } else { Err(self.fail(expected)) }
     }
 
     /// Whether the current token is a word.
-    pub(super) fn is(&mut self, word: Word) -> bool {
+    pub(in crate::command) fn is(&mut self, word: Word) -> bool {
         self.find(word.alone()).is_some()
     }
 
     /// Which of some words the current token is.
-    pub(super) fn find(&mut self, words: &'static [Word]) -> Option<Word> {
+    pub(in crate::command) fn find(&mut self, words: &'static [Word]) -> Option<Word> {
         if self.token.kind != TokenKind::Name {
             return None;
         }
@@ -135,23 +139,27 @@ impl<'t> Parser<'t> {
         found
     }
 
-    pub(super) fn accept_word(&mut self, word: Word) -> bool {
+    pub(in crate::command) fn accept_word(&mut self, word: Word) -> bool {
         self.accept_one_of(word.alone()).is_some()
     }
 
     /// Takes the current token if it is one of some words.
-    pub(super) fn accept_one_of(&mut self, words: &'static [Word]) -> Option<Word> {
+    pub(in crate::command) fn accept_one_of(&mut self, words: &'static [Word]) -> Option<Word> {
         let word = self.find(words)?;
         self.advance();
         Some(word)
     }
 
-    pub(super) fn expect_word(&mut self, word: Word, expected: &'static [&'static str]) -> Result<(), Fault> {
+    pub(in crate::command) fn expect_word(
+        &mut self,
+        word: Word,
+        expected: &'static [&'static str],
+    ) -> Result<(), Fault> {
         if self.accept_word(word) { Ok(()) } else { Err(self.fail(expected)) }
     }
 
     /// Takes the current token if it is one of some words, or says what was expected.
-    pub(super) fn expect_one_of(
+    pub(in crate::command) fn expect_one_of(
         &mut self,
         words: &'static [Word],
         expected: &'static [&'static str],

@@ -1,6 +1,6 @@
 //! The parts that commands have in common: names, numbers, ranges, switches, tuples.
 
-use super::Parser;
+use super::cursor::Parser;
 use crate::{
     Name,
     command::{
@@ -13,10 +13,10 @@ use crate::{
 use std::ops::Range;
 
 /// One more than the largest whole number of 32 bits.
-pub(super) const NUMBERS: i64 = u32::MAX as i64 + 1;
+pub(in crate::command) const NUMBERS: i64 = u32::MAX as i64 + 1;
 
 impl Parser<'_> {
-    pub(super) fn name(&mut self) -> Result<Name, Fault> {
+    pub(in crate::command) fn name(&mut self) -> Result<Name, Fault> {
         if self.token.kind != TokenKind::Name {
             return Err(self.fail(&["a name"]));
         }
@@ -38,11 +38,11 @@ impl Parser<'_> {
         Ok(names)
     }
 
-    pub(super) fn is_number(&self) -> bool {
+    pub(in crate::command) fn is_number(&self) -> bool {
         matches!(self.token.kind, TokenKind::Number(_))
     }
 
-    pub(super) fn real(&mut self) -> Result<f64, Fault> {
+    pub(in crate::command) fn real(&mut self) -> Result<f64, Fault> {
         let TokenKind::Number(decimal) = self.token.kind else {
             return Err(self.fail(&["a number"]));
         };
@@ -81,7 +81,7 @@ impl Parser<'_> {
     }
 
     /// `N` numbers; commas between them may be missing.
-    pub(super) fn reals<const N: usize>(&mut self) -> Result<[f64; N], Fault> {
+    pub(in crate::command) fn reals<const N: usize>(&mut self) -> Result<[f64; N], Fault> {
         let mut reals = [0.0; N];
         for (index, real) in reals.iter_mut().enumerate() {
             if index > 0 {
@@ -105,7 +105,7 @@ impl Parser<'_> {
     }
 
     /// Up to three numbers, and how many there were.
-    pub(super) fn up_to_three(&mut self) -> Result<([f64; 3], usize), Fault> {
+    pub(in crate::command) fn up_to_three(&mut self) -> Result<([f64; 3], usize), Fault> {
         let mut reals = [self.real()?, 0.0, 0.0];
         for count in 1..3 {
             let comma = self.accept(TokenKind::Comma);
@@ -118,7 +118,7 @@ impl Parser<'_> {
     }
 
     /// Two or three numbers; z is 0 if not given.
-    pub(super) fn point(&mut self) -> Result<[f64; 3], Fault> {
+    pub(in crate::command) fn point(&mut self) -> Result<[f64; 3], Fault> {
         let (point, count) = self.up_to_three()?;
         if count < 2 { Err(self.fail(&["the y component"])) } else { Ok(point) }
     }
@@ -154,14 +154,14 @@ impl Parser<'_> {
     }
 
     /// `lo:hi`
-    pub(super) fn range(&mut self) -> Result<[f64; 2], Fault> {
+    pub(in crate::command) fn range(&mut self) -> Result<[f64; 2], Fault> {
         let low = self.real()?;
         self.expect(TokenKind::Colon, &["`:`"])?;
         Ok([low, self.real()?])
     }
 
     /// A whole number in a range.
-    pub(super) fn integer(&mut self, range: Range<i64>) -> Result<i64, Fault> {
+    pub(in crate::command) fn integer(&mut self, range: Range<i64>) -> Result<i64, Fault> {
         let TokenKind::Number(decimal) = self.token.kind else {
             return Err(self.fail(&["a whole number"]));
         };
@@ -178,7 +178,7 @@ impl Parser<'_> {
     }
 
     /// A whole number of 32 bits without sign.
-    pub(super) fn count(&mut self) -> Result<u32, Fault> {
+    pub(in crate::command) fn count(&mut self) -> Result<u32, Fault> {
         Ok(self.integer(0..NUMBERS)? as u32)
     }
 
@@ -186,11 +186,6 @@ impl Parser<'_> {
     pub(super) fn equal_count(&mut self) -> Result<u32, Fault> {
         self.accept(TokenKind::Equal);
         self.count()
-    }
-
-    /// `ON` or `OFF`
-    pub(super) fn on_or_off(&mut self) -> Result<bool, Fault> {
-        Ok(self.expect_one_of(&[Word::On, Word::Off], &["ON", "OFF"])? == Word::On)
     }
 
     /// `<i>`: the number of an input, or the word or the number (0 to -6) of a special one.

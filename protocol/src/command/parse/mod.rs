@@ -1,12 +1,10 @@
 //! The parser: recursive descent over the tokens of one statement.
 
-mod attribute;
-mod cursor;
+pub(super) mod cursor;
 mod curve;
-mod field;
+pub(super) mod field;
 mod network;
 mod object;
-mod operate;
 mod polygon;
 mod system;
 mod value;

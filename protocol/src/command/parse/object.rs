@@ -6,6 +6,7 @@ use super::{
 };
 use crate::command::{
     error::{Fault, Problem},
+    operate::words_behind,
     syntax::{Characters, FontCharacter, Label, Labels, Object, Operate, Pattern},
     token::TokenKind,
     words::{self, Word},
@@ -41,7 +42,7 @@ impl Parser<'_> {
             Word::BeginStructure => Object::BeginStructure,
             Word::BeginFont => Object::BeginFont,
             Word::Instance => self.instance()?,
-            Word::Characters => return self.characters().map(Some),
+            Word::Characters if self.find(words_behind(word)).is_none() => Object::Characters(self.characters()?),
             Word::Labels => Object::Labels(self.labels()?),
             Word::VectorList => Object::VectorList(self.vector_list()?),
             Word::Polygon | Word::With | Word::Outline => Object::Polygons(self.polygons(word)?),
@@ -58,7 +59,7 @@ impl Parser<'_> {
             Word::Pattern => Object::Pattern(self.pattern()?),
             Word::RawBlock => Object::RawBlock(self.count()?),
             Word::Copy => self.copy()?,
-            word => Object::Operate { operate: self.operate(word)?, applied_to: self.applied_to()? },
+            word => Object::Operate { operate: Operate::parse(word, self)?, applied_to: self.applied_to()? },
         }))
     }
 
@@ -88,27 +89,11 @@ impl Parser<'_> {
         Ok(Object::Copy { source, start, count: self.equal_count()? })
     }
 
-    /// `[x,y[,z]] [STEP dx,dy] 'text'`, or ROTATE, SCALE or FONT.
-    fn characters(&mut self) -> Result<Object, Fault> {
-        let operate = match self.accept_one_of(&[Word::Rotate, Word::Scale, Word::Font]) {
-            Some(Word::Rotate) => Operate::CharacterRotate(self.real()?),
-            Some(Word::Scale) => {
-                self.accept_word(Word::By);
-                Operate::CharacterScale(match self.up_to_three()? {
-                    ([s, ..], 1) => DVec2::splat(s),
-                    ([x, y, _], 2) => DVec2::new(x, y),
-                    _ => return Err(self.fail(&["one or two factors"])),
-                })
-            }
-            Some(_) => Operate::CharacterFont(self.name()?),
-            None => {
-                let position = if self.is_number() { self.point()? } else { [0.0; 3] };
-                let step = if self.accept_word(Word::Step) { DVec2::from_array(self.reals()?) } else { DVec2::X };
-                let text = self.string()?;
-                return Ok(Object::Characters(Characters { position: DVec3::from_array(position), step, text }));
-            }
-        };
-        Ok(Object::Operate { operate, applied_to: self.applied_to()? })
+    /// `[x,y[,z]] [STEP dx,dy] 'text'`
+    fn characters(&mut self) -> Result<Characters, Fault> {
+        let position = if self.is_number() { self.point()? } else { [0.0; 3] };
+        let step = if self.accept_word(Word::Step) { DVec2::from_array(self.reals()?) } else { DVec2::X };
+        Ok(Characters { position: DVec3::from_array(position), step, text: self.string()? })
     }
 
     /// `x,y[,z] 'text'`, once or more.

@@ -67,7 +67,7 @@ impl Parser<'_> {
     }
 
     /// Four rows of three, completed with 0, 0, 0, 1.
-    pub(super) fn matrix4x3(&mut self) -> Result<DMat4, Fault> {
+    pub(in crate::command) fn matrix4x3(&mut self) -> Result<DMat4, Fault> {
         Ok(from_four_by_three(&self.reals()?))
     }
 

@@ -1,7 +1,6 @@
 //! Commands as text, such that parsing the text gives the same commands.
 
 mod object;
-mod operate;
 pub(super) mod printer;
 
 use super::{
@@ -74,11 +73,11 @@ impl Printer<'_> {
             Command::RemoveFollower(name) => self.put(format_args!("REMOVE FOLLOWER OF {name}")),
             Command::Prefix { name, operate } => {
                 self.put(format_args!("PREFIX {name} WITH "));
-                self.operate(operate);
+                operate.print(self);
             }
             Command::Follow { name, operate } => {
                 self.put(format_args!("FOLLOW {name} WITH "));
-                self.operate(operate);
+                operate.print(self);
             }
             Command::PatternWith { name, pattern } => self.put(format_args!("PATTERN {name} WITH {pattern}")),
             Command::ErasePattern(name) => self.put(format_args!("ERASE PATTERN FROM {name}")),

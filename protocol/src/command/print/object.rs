@@ -40,7 +40,7 @@ impl Printer<'_> {
                 }
             }
             Object::Operate { operate, applied_to } => {
-                self.operate(operate);
+                operate.print(self);
                 if let Some(name) = applied_to {
                     self.put(format_args!(" APPLIED TO {name}"));
                 }

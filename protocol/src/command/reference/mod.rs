@@ -3,8 +3,6 @@
 //! Tests hold the table to the parser: each example is read and gives the command of its row, each command and each
 //! keyword has a row, and each keyword in a row is one of the parser.
 
-mod attribute;
-mod condition;
 mod curve;
 mod data;
 mod entry;
@@ -15,33 +13,31 @@ pub(super) mod row;
 mod structure;
 mod system;
 mod text;
-mod transformation;
-mod viewing;
 
 pub use name_of::{name_of, name_of_object, name_of_operate};
 pub use row::{CommandRow, Confidence, InputRow, OptionRow};
 
-use super::{spelling::nearest, words::Word};
+use super::{operate, spelling::nearest, words::Word};
 use std::fmt::Write;
 
-/// The rows of each group, with its title.
-pub const GROUPS: &[(&str, &[CommandRow])] = &[
-    ("Structures", structure::ROWS),
-    ("Data", data::ROWS),
-    ("Curves", curve::ROWS),
-    ("Text", text::ROWS),
-    ("Transformations", transformation::ROWS),
-    ("Viewing", viewing::ROWS),
-    ("Attributes", attribute::ROWS),
-    ("Conditions", condition::ROWS),
-    ("Rendering and reading back", rendering::ROWS),
-    ("Function networks", network::ROWS),
-    ("System", system::ROWS),
+/// The rows of each group in parts, with its title.
+pub const GROUPS: &[(&str, &[&[CommandRow]])] = &[
+    ("Structures", &[structure::ROWS]),
+    ("Data", &[data::ROWS]),
+    ("Curves", &[curve::ROWS]),
+    ("Text", &[text::ROWS, operate::TEXT]),
+    ("Transformations", &[operate::TRANSFORMATIONS]),
+    ("Viewing", &[operate::VIEWING]),
+    ("Attributes", &[operate::ATTRIBUTES]),
+    ("Conditions", &[operate::CONDITIONS]),
+    ("Rendering and reading back", &[operate::RENDERING, rendering::ROWS, operate::READING_BACK]),
+    ("Function networks", &[network::ROWS]),
+    ("System", &[system::ROWS]),
 ];
 
 /// All rows, group by group.
 pub fn rows() -> impl Iterator<Item = &'static CommandRow> {
-    GROUPS.iter().flat_map(|group| group.1)
+    GROUPS.iter().flat_map(|group| group.1.iter().copied().flatten())
 }
 
 /// A name that no row has, with the nearest name if one is near.
@@ -98,7 +94,7 @@ pub fn list() -> String {
     for (index, (title, rows)) in GROUPS.iter().enumerate() {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}{title}", if index > 0 { "\n" } else { "" });
-        for row in *rows {
+        for row in rows.iter().copied().flatten() {
             let _ = writeln!(text, "  {:width$}  {}", row.name, row.summary);
         }
     }

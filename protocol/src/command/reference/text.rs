@@ -1,9 +1,6 @@
-//! Text and fonts.
+//! Text and fonts as data.
 
-use super::row::{CommandRow, Confidence::*, InputRow, PLAIN, input, option};
-
-/// The input of nodes that change the matrix of characters.
-const MATRIX: &[InputRow] = &[input("<1>", "2x2 matrix", "replaces the matrix")];
+use super::row::{CommandRow, Confidence::*, PLAIN, input, option};
 
 pub(super) const ROWS: &[CommandRow] = &[
     CommandRow {
@@ -62,55 +59,6 @@ pub(super) const ROWS: &[CommandRow] = &[
             option("P, L", "position and line, as in an itemized vector list", "", ""),
         ],
         example: "SCRIPT := BEGIN_FONT\n  C[73]: N = 2 P 0.5,0 L 0.5,1;\n  C[45]: P 0.2,0.5 L 0.8,0.5;\nEND_FONT;",
-        ..PLAIN
-    },
-    CommandRow {
-        name: "CHARACTER FONT",
-        section: "B.4",
-        summary: "The font of the characters below",
-        syntax: &["name := [CHARacters] FONT font_name [APPLied TO name1];"],
-        routines: &["PCHFON"],
-        example: "CHARACTER FONT SCRIPT APPLIED TO TITLE;",
-        ..PLAIN
-    },
-    CommandRow {
-        name: "STANDARD FONT",
-        section: "B.4",
-        summary: "The standard font for the characters below",
-        syntax: &["name := STANdard FONT [APPLied TO name1];"],
-        routines: &["PSTDFO"],
-        example: "STANDARD FONT APPLIED TO TITLE;",
-        ..PLAIN
-    },
-    CommandRow {
-        name: "CHARACTER ROTATE",
-        section: "B.4",
-        summary: "Turns the characters below in their plane",
-        syntax: &["name := CHARacters ROTate angle [APPLied TO name1];"],
-        options: &[option("angle", "degrees, counter-clockwise", "", "")],
-        inputs: MATRIX,
-        routines: &["PCHROT"],
-        example: "CHARACTER ROTATE 90 APPLIED TO TITLE;",
-        ..PLAIN
-    },
-    CommandRow {
-        name: "CHARACTER SCALE",
-        section: "B.4",
-        confidence: Confirmed,
-        summary: "Scales the characters below",
-        syntax: &["name := CHARacters SCAle [BY] s | sx,sy [APPLied TO name1];"],
-        inputs: MATRIX,
-        routines: &["PCHSCA"],
-        example: "CHARACTER SCALE 0.05,0.08 APPLIED TO TITLE;",
-        ..PLAIN
-    },
-    CommandRow {
-        name: "TEXT SIZE",
-        section: "B.4",
-        summary: "An absolute size of the characters below",
-        syntax: &["name := TEXT SIZE x [APPLied TO name1];"],
-        inputs: MATRIX,
-        example: "TEXT SIZE 0.04 APPLIED TO TITLE;",
         ..PLAIN
     },
 ];

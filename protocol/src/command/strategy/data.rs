@@ -1,12 +1,12 @@
 //! Random objects: data of every kind.
 
-use super::{
-    basic::{names, reals, singles, texts, vectors2, vectors3},
+use super::basic::{names, reals, singles, texts, vectors2, vectors3};
+use crate::command::{
     operate::operates,
-};
-use crate::command::syntax::{
-    Attributes, Bspline, Characters, CornerColor, FontCharacter, Fourth, Illumination, Label, Labels, Object, Pattern,
-    Polygon, PolygonVertex, Polynomial, SurfaceColor, VectorClass, VectorList,
+    syntax::{
+        Attributes, Bspline, Characters, CornerColor, FontCharacter, Fourth, Illumination, Label, Labels, Object,
+        Pattern, Polygon, PolygonVertex, Polynomial, SurfaceColor, VectorClass, VectorList,
+    },
 };
 use glam::DVec2;
 use proptest::prelude::*;

@@ -2,11 +2,10 @@
 
 pub(super) mod basic;
 mod data;
-mod operate;
 
+pub use super::operate::operates;
 pub use basic::{names, reals, singles};
 pub use data::{objects, vector_lists};
-pub use operate::operates;
 
 use super::syntax::{Arc, Command, Destination, Initialize, Input, NamePattern, Object};
 use crate::Value;

@@ -7,9 +7,10 @@ mod curve;
 mod operate;
 mod command;
 
+pub use super::operate::{Operate, OperateKind};
 pub use command::{Command, Initialize, NamePattern, Object};
 pub use curve::{Bspline, Polynomial};
 pub use data::{Characters, FontCharacter, Fourth, Label, Labels, Pattern, VectorClass, VectorList};
 pub use network::{Arc, Destination, Input};
-pub use operate::{Axis, Boundaries, CharacterOrientation, Comparison, Operate, Rate, Scopes};
+pub use operate::{Axis, Boundaries, CharacterOrientation, Comparison, Rate, Scopes};
 pub use polygon::{Attributes, CornerColor, Illumination, Polygon, PolygonVertex, SurfaceColor};

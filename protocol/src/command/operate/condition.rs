@@ -1,10 +1,16 @@
-//! Conditions.
+//! Rows of the conditions.
 
-use super::row::{CommandRow, Confidence::*, PLAIN, input, option};
+macro_rules! condition_rows {
+    ({ $next:ident $($rest:ident)* } $($before:tt)*) => { $next! { { $($rest)* } $($before)*
 
-pub(super) const ROWS: &[CommandRow] = &[
-    CommandRow {
-        name: "IF CONDITIONAL_BIT",
+CONDITIONS {
+    /// `IF CONDITIONAL_BIT n IS ON|OFF`.
+    IfConditionalBit {
+        /// 0..=14.
+        bit: u8 = BIT,
+        /// The state that lets through.
+        on: bool = loose(Word::Is, SWITCH),
+    } "IF CONDITIONAL_BIT" [If ConditionalBit] help {
         section: "B.8",
         confidence: Confirmed,
         summary: "Draws what is below only if a bit is on, or off",
@@ -16,9 +22,15 @@ pub(super) const ROWS: &[CommandRow] = &[
         routines: &["PIFBIT"],
         example: "IF CONDITIONAL_BIT 2 IS ON THEN CAR;",
         ..PLAIN
-    },
-    CommandRow {
-        name: "IF LEVEL_OF_DETAIL",
+    };
+
+    /// `IF LEVEL_OF_DETAIL <= n`.
+    IfLevelOfDetail {
+        /// How the level is compared with `level`.
+        comparison: Comparison = Sign,
+        /// 0..=32767.
+        level: u16 = LEVEL,
+    } "IF LEVEL_OF_DETAIL" [If LevelOfDetail] help {
         section: "B.8",
         summary: "Draws what is below only at some levels of detail",
         syntax: &["name := IF LEVel_of_detail < | <= | = | <> | >= | > n [THEN name1];"],
@@ -27,14 +39,19 @@ pub(super) const ROWS: &[CommandRow] = &[
         routines: &["PIFLEV"],
         example: "IF LEVEL_OF_DETAIL >= 3 THEN BOLTS;",
         ..PLAIN
-    },
-    CommandRow {
-        name: "IF PHASE",
+    };
+
+    /// `IF PHASE IS ON|OFF`.
+    IfPhase(on: bool = loose(Word::Is, SWITCH)) "IF PHASE" [If Phase] help {
         section: "B.8",
         summary: "Draws what is below only in one phase of the nearest SET RATE above",
         syntax: &["name := IF PHASE [IS] ON | OFF [THEN name1];"],
         routines: &["PIFPHA"],
         example: "IF PHASE IS ON THEN LAMP;",
         ..PLAIN
-    },
-];
+    };
+}
+    } };
+}
+
+pub(super) use condition_rows;

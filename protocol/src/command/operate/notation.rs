@@ -1,0 +1,188 @@
+//! How a field of a command is written: read, printed, carried in a record, made at random; and what stands around it.
+
+use crate::{
+    command::{error::Fault, parse::cursor::Parser, print::printer::Printer, token::TokenKind, words::Word},
+    record::{BinaryError, Reader, Witness, Writer},
+};
+#[cfg(any(test, feature = "proptest"))]
+use proptest::prelude::*;
+use std::fmt::Debug;
+
+/// A way to write values of one kind in a command.
+pub(super) trait Notation {
+    /// What is written.
+    type Value: Clone + Debug + 'static;
+
+    /// Reads a value.
+    ///
+    /// # Errors
+    /// [`Fault`] says what was expected.
+    fn parse(&self, parser: &mut Parser<'_>) -> Result<Self::Value, Fault>;
+
+    /// Prints a value with what separates it from the words before; nothing if the value is the one that is left out.
+    fn print(&self, value: &Self::Value, printer: &mut Printer<'_>);
+
+    /// Random values.
+    #[cfg(any(test, feature = "proptest"))]
+    fn any(&self) -> BoxedStrategy<Self::Value>;
+}
+
+/// A notation whose values also travel in records.
+pub(super) trait Fields: Notation {
+    /// Writes the fields of a value.
+    fn write(&self, value: &Self::Value, writer: &mut Writer<'_>);
+
+    /// Reads the fields of a value.
+    ///
+    /// # Errors
+    /// [`BinaryError`] names the field.
+    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<Self::Value, BinaryError>;
+}
+
+/// What a field is called in the listing of records and in errors.
+#[derive(Clone, Copy)]
+pub(super) struct Label {
+    /// The field.
+    pub name: &'static str,
+    /// Whether the field is given.
+    pub given: &'static str,
+}
+
+/// What stands before a value.
+enum Lead {
+    /// A word that must be there.
+    Word(Word),
+    /// A word that may be left out, and is printed.
+    Loose(Word),
+    /// A word that may be left out, and is not printed.
+    Silent(Word),
+    /// A `=` that may be left out, and is printed.
+    Equal,
+}
+
+/// A value behind a word or a sign.
+pub(super) struct Behind<N>(Lead, N);
+
+/// A value behind a word that must be there.
+pub(super) const fn after<N>(word: Word, notation: N) -> Behind<N> {
+    Behind(Lead::Word(word), notation)
+}
+
+/// A value behind a word that may be left out, and is printed.
+pub(super) const fn loose<N>(word: Word, notation: N) -> Behind<N> {
+    Behind(Lead::Loose(word), notation)
+}
+
+/// A value behind a word that may be left out, and is not printed.
+pub(super) const fn silent<N>(word: Word, notation: N) -> Behind<N> {
+    Behind(Lead::Silent(word), notation)
+}
+
+/// A value behind a `=` that may be left out, and is printed.
+pub(super) const fn equal<N>(notation: N) -> Behind<N> {
+    Behind(Lead::Equal, notation)
+}
+
+impl<N: Notation> Notation for Behind<N> {
+    type Value = N::Value;
+
+    fn parse(&self, parser: &mut Parser<'_>) -> Result<N::Value, Fault> {
+        match self.0 {
+            Lead::Word(word) => parser.expect_word(word, word.expected())?,
+            Lead::Loose(word) | Lead::Silent(word) => {
+                parser.accept_word(word);
+            }
+            Lead::Equal => {
+                parser.accept(TokenKind::Equal);
+            }
+        }
+        self.1.parse(parser)
+    }
+
+    fn print(&self, value: &N::Value, printer: &mut Printer<'_>) {
+        match self.0 {
+            Lead::Word(word) | Lead::Loose(word) => {
+                printer.text(" ");
+                printer.word(word);
+            }
+            Lead::Silent(_) => {}
+            Lead::Equal => printer.text(" ="),
+        }
+        self.1.print(value, printer);
+    }
+
+    #[cfg(any(test, feature = "proptest"))]
+    fn any(&self) -> BoxedStrategy<N::Value> {
+        self.1.any()
+    }
+}
+
+impl<N: Fields> Fields for Behind<N> {
+    fn write(&self, value: &N::Value, writer: &mut Writer<'_>) {
+        self.1.write(value, writer);
+    }
+
+    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<N::Value, BinaryError> {
+        self.1.read(label, reader)
+    }
+}
+
+/// A value that is given if a word stands before it.
+pub(super) struct Given<N>(pub Word, pub N);
+
+impl<N: Notation> Notation for Given<N> {
+    type Value = Option<N::Value>;
+
+    fn parse(&self, parser: &mut Parser<'_>) -> Result<Option<N::Value>, Fault> {
+        if parser.accept_word(self.0) { self.1.parse(parser).map(Some) } else { Ok(None) }
+    }
+
+    fn print(&self, value: &Option<N::Value>, printer: &mut Printer<'_>) {
+        if let Some(value) = value {
+            printer.text(" ");
+            printer.word(self.0);
+            self.1.print(value, printer);
+        }
+    }
+
+    #[cfg(any(test, feature = "proptest"))]
+    fn any(&self) -> BoxedStrategy<Option<N::Value>> {
+        prop::option::of(self.1.any()).boxed()
+    }
+}
+
+impl<N: Fields> Fields for Given<N> {
+    fn write(&self, value: &Option<N::Value>, writer: &mut Writer<'_>) {
+        writer.u8(value.is_some().into());
+        if let Some(value) = value {
+            self.1.write(value, writer);
+        }
+    }
+
+    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<Option<N::Value>, BinaryError> {
+        if reader.boolean(label.given)? { self.1.read(label, reader).map(Some) } else { Ok(None) }
+    }
+}
+
+/// A value that is given if a number stands there; a comma before it may be missing and is not printed.
+pub(super) struct More<N>(pub N);
+
+impl<N: Notation> Notation for More<N> {
+    type Value = Option<N::Value>;
+
+    fn parse(&self, parser: &mut Parser<'_>) -> Result<Option<N::Value>, Fault> {
+        parser.accept(TokenKind::Comma);
+        if parser.is_number() { self.0.parse(parser).map(Some) } else { Ok(None) }
+    }
+
+    fn print(&self, value: &Option<N::Value>, printer: &mut Printer<'_>) {
+        if let Some(value) = value {
+            self.0.print(value, printer);
+        }
+    }
+
+    #[cfg(any(test, feature = "proptest"))]
+    fn any(&self) -> BoxedStrategy<Option<N::Value>> {
+        prop::option::of(self.0.any()).boxed()
+    }
+}
