@@ -23,11 +23,7 @@ const TOP_LEVEL: &[&str] = &[
 ];
 
 /// Rooms whose files still use each other in circles, and how many files each circle has at the most. Elsewhere there is none.
-const CIRCLES: &[(&str, usize)] = &[
-    ("host/script", 3),
-    ("host/script/argument", 4),
-    ("tests/corpus/classes", 4),
-];
+const CIRCLES: &[(&str, usize)] = &[("host/script", 3), ("host/script/argument", 4), ("tests/corpus/classes", 4)];
 
 /// The names of the paths that begin with `prefix::`, also those in braces: `crate::{a::B, c}` gives a and c.
 fn named(code: &str, prefix: &str) -> BTreeSet<String> {
