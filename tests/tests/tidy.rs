@@ -22,9 +22,6 @@ const TOP_LEVEL: &[&str] = &[
     "peris-run",
 ];
 
-/// Rooms whose files still use each other in circles, and how many files each circle has at the most. Elsewhere there is none.
-const CIRCLES: &[(&str, usize)] = &[("host/script", 3), ("host/script/argument", 4), ("tests/corpus/classes", 4)];
-
 /// The names of the paths that begin with `prefix::`, also those in braces: `crate::{a::B, c}` gives a and c.
 fn named(code: &str, prefix: &str) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
@@ -159,25 +156,24 @@ fn crates_name_only_the_crates_below_them() {
 #[test]
 fn no_files_use_each_other_in_circles() {
     let mut faults = Vec::new();
-    let mut still = BTreeMap::new();
     for Crate { name, folder, .. } in CRATES {
         let uses = Uses::of(&root().join(folder).join("src"));
         assert!(uses.edges.len() < 9 || uses.edges.values().any(|used| !used.is_empty()), "{name}: the test is blind");
         for circle in uses.circles() {
             let names: Vec<String> = circle.iter().map(|module| module.join("/")).collect();
-            let room = format!("{name}/{}", names[0]);
-            let most = CIRCLES.iter().find(|(known, _)| *known == room).map_or(0, |(_, most)| *most);
-            still.insert(room.clone(), circle.len());
-            if circle.len() > most {
-                let why = "let one of them say what it needs in its own words, or move what both need below them";
-                faults.push(format!("{room}: {} use each other in a circle; {why}", names.join(", ")));
-            }
+            let why = "let one of them say what it needs in its own words, or move what both need below them";
+            faults.push(format!("{name}: {} use each other in a circle; {why}", names.join(", ")));
         }
     }
-    for (room, _) in CIRCLES.iter().filter(|(room, _)| !still.contains_key(*room)) {
-        faults.push(format!("{room}: there is no circle any more; take it off the list"));
-    }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn one_file_of_the_host_names_the_crate_of_binary_forms() {
+    let src = root().join("host/src");
+    let names = |path: &&PathBuf| code(&read(path)).contains("bincode");
+    let files: Vec<PathBuf> = sources(&src).iter().filter(names).cloned().collect();
+    assert_eq!(files, [src.join("encoding.rs")]);
 }
 
 /// Families of kinds that grow: the crate, the enumeration, the words of its kinds, and the room that may tell them apart.

@@ -1,8 +1,8 @@
 //! From the values of a call to the parameters of a row.
 
-use super::builder::Handle;
-use super::function::{Default, Function, Kind, Parameter};
-use super::lists::{contours, curve, indices, loops, numbers, objects, points, sides, vector};
+use super::handle::Handle;
+use super::lists::{contours, curve, indices, loops, number, numbers, objects, points, sides, vector};
+use super::parameter::{Default, Kind, Parameter};
 use super::spline::ControlMeaning;
 use crate::color::Color;
 use crate::curve::SplineCurve;
@@ -44,20 +44,25 @@ pub(super) struct Bound {
 }
 
 impl Bound {
-    /// Assigns the values of a call to the parameters of `function` and checks each.
+    /// Assigns the values of a call to the parameters of a function and checks each.
     ///
-    /// - `library`: where names of reflectances are looked up.
-    pub(super) fn new(function: &Function, values: &[Dynamic], library: &Library) -> Result<Bound, String> {
+    /// - `usage`: how the function is called, for messages. `library`: where names of reflectances are looked up.
+    pub(super) fn new(
+        parameters: &'static [Parameter],
+        usage: impl Fn() -> String,
+        values: &[Dynamic],
+        library: &Library,
+    ) -> Result<Bound, String> {
         let mut bound = Bound { values: Vec::new() };
         let mut rest = values;
-        let mut parameters = function.parameters.iter();
+        let mut following = parameters.iter();
         while let Some(first) = rest.first() {
             if rest.len() == 1 && first.is_map() && !first.is::<Handle>() {
-                bound.take_map(function, first, library)?;
+                bound.take_map(parameters, first, library)?;
                 break;
             }
-            let Some(parameter) = parameters.next() else {
-                return Err(format!("too many values; use {}", function.usage()));
+            let Some(parameter) = following.next() else {
+                return Err(format!("too many values; use {}", usage()));
             };
             let three =
                 parameter.kind.takes_three() && rest.len() >= 3 && rest[..3].iter().all(|v| number(v).is_some());
@@ -66,18 +71,18 @@ impl Bound {
             rest = &rest[used..];
         }
         let missing = |p: &&Parameter| p.default == Default::Required && bound.get(p.name).is_none();
-        match function.parameters.iter().find(missing) {
-            Some(p) => Err(format!("{} is missing; use {}", p.name, function.usage())),
+        match parameters.iter().find(missing) {
+            Some(p) => Err(format!("{} is missing; use {}", p.name, usage())),
             None => Ok(bound),
         }
     }
 
-    fn take_map(&mut self, function: &Function, map: &Dynamic, library: &Library) -> Result<(), String> {
+    fn take_map(&mut self, parameters: &'static [Parameter], map: &Dynamic, library: &Library) -> Result<(), String> {
         let map = map.read_lock::<Map>().ok_or("the map cannot be read")?;
         for (key, value) in map.iter() {
-            let named = function.parameters.iter().find(|p| p.kind != Kind::Object && p.name == key.as_str());
+            let named = parameters.iter().find(|p| p.kind != Kind::Object && p.name == key.as_str());
             let Some(parameter) = named else {
-                let names = function.parameters.iter().filter(|p| p.kind != Kind::Object);
+                let names = parameters.iter().filter(|p| p.kind != Kind::Object);
                 let names: Vec<&str> = names.map(|p| p.name).collect();
                 return Err(format!("unknown parameter {key}; it takes {}", names.join(", ")));
             };
@@ -163,11 +168,6 @@ values! {
     sides: Sides -> Vec<(Handle, SurfaceSide)>,
     spline: Spline -> ControlMeaning,
     loops: Loops -> Vec<Vec<SplineCurve>>,
-}
-
-/// A finite number.
-pub(super) fn number(value: &Dynamic) -> Option<f64> {
-    value.as_float().ok().or_else(|| value.as_int().ok().map(|i| i as f64)).filter(|x| x.is_finite())
 }
 
 /// A number, or a pattern of numbers: as bright as a pattern is.

@@ -2,7 +2,7 @@
 
 use super::definition::{Definition, Definitions};
 use super::folders::Folders;
-use super::function::Done;
+use super::handle::{Done, Handle};
 use crate::database::Library;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Position, Scene, Shape};
 use glam::{DMat4, DVec3};
@@ -11,10 +11,6 @@ use std::collections::HashMap;
 
 /// Longest name of an object.
 const MOST_LETTERS: usize = 200;
-
-/// What a script holds of an object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Handle(usize);
 
 /// The scene so far.
 pub(super) struct Builder {

@@ -2,9 +2,11 @@
 
 use super::argument::Bound;
 use super::builder::Builder;
-use super::function::Default::Is;
-use super::function::{Done, Function, Kind, parameter};
+use super::function::Function;
+use super::handle::Done;
 use super::lighting::add;
+use super::parameter::Default::Is;
+use super::parameter::{Kind, parameter};
 use crate::color::{Beyond, Color, Spectrum};
 use crate::illumination::Light;
 use crate::illumination::atmosphere::{

@@ -1,14 +1,17 @@
 //! The interpreter: limits, bindings from the table, and one run.
 
 use super::argument::Bound;
-use super::builder::{Builder, Handle};
+use super::builder::Builder;
 use super::definition::Definition;
-use super::error::{self, OutOfMemory, ScriptError};
+use super::error::{self, MAX_OPERATIONS, OutOfMemory, ScriptError};
+use super::evaluated::{Evaluated, Inputs};
 use super::folders::Folders;
-use super::function::{Function, Kind};
+use super::function::Function;
+use super::functions::{functions, makes_shapes};
+use super::handle::Handle;
+use super::parameter::Kind;
 use super::printed::Printed;
 use super::spline::ControlMeaning;
-use super::{Evaluated, Inputs, functions, makes_shapes};
 use crate::curve::SplineCurve;
 use crate::illumination::Paint;
 use crate::illumination::distribution::{FacetError, FacetTable};
@@ -21,8 +24,6 @@ use std::cell::RefCell;
 use std::path::Path;
 use std::rc::Rc;
 
-/// Steps that a script may take.
-pub const MAX_OPERATIONS: u64 = 20_000_000;
 /// Longest script, bytes.
 pub const MAX_SCRIPT_BYTES: u64 = 4 << 20;
 /// Longest string in a script, bytes.
@@ -53,7 +54,15 @@ pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
 }
 
 /// Runs a script.
-pub(super) fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
+///
+/// - `text`: the script.
+/// - `name`: what messages call it.
+/// - `folder`: where the relative paths in it begin.
+/// - `inputs`: what it is given.
+///
+/// # Errors
+/// [`ScriptError`], with line and column where there are any.
+pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
     let state: State = Rc::new(RefCell::new(Builder::new(Folders::new(folder, &inputs.allowed), &inputs.definitions)));
     let printed = Rc::new(RefCell::new(Printed::default()));
     let mut engine = limited();
@@ -162,7 +171,8 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
     } else {
         values
     };
-    let bound = Bound::new(function, values, &state.borrow().library).map_err(failed)?;
+    let bound =
+        Bound::new(function.parameters, || function.usage(), values, &state.borrow().library).map_err(failed)?;
     let given = (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)?;
     let at = context.call_position();
     if let (Some(handle), Some(line)) = (given.clone().try_cast::<Handle>(), at.line()) {

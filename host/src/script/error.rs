@@ -1,12 +1,15 @@
 //! What can be wrong with a script, and where.
 
-use super::functions;
+use super::functions::functions;
 use crate::memory;
 use crate::scene::SceneError;
 use crate::spelling;
 use rhai::{EvalAltResult, ParseErrorType, Position};
 use std::fmt;
 use std::path::PathBuf;
+
+/// Steps that a script may take.
+pub const MAX_OPERATIONS: u64 = 20_000_000;
 
 /// Why a script gives no scene.
 #[derive(Debug, thiserror::Error)]
@@ -121,7 +124,7 @@ pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {
             memory::readable(memory::limit().unwrap_or_default())
         ),
         E::ErrorTooManyOperations(_) => {
-            format!("the script takes more than {} steps; does it end?", super::MAX_OPERATIONS)
+            format!("the script takes more than {} steps; does it end?", MAX_OPERATIONS)
         }
         E::ErrorStackOverflow(_) => "too many calls within calls; does the recursion end?".into(),
         E::ErrorDataTooLarge(what, _) => format!("too large: {what}"),

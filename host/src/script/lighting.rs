@@ -2,8 +2,10 @@
 
 use super::argument::Bound;
 use super::builder::Builder;
-use super::function::Default::{Is, Required};
-use super::function::{Done, Function, Kind, Parameter, parameter};
+use super::function::Function;
+use super::handle::Done;
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, Parameter, parameter};
 use crate::color::srgb::LUMINANCE;
 use crate::color::{Color, Spectrum, light_of_temperature};
 use crate::illumination::Light;

@@ -1,7 +1,6 @@
 //! Lists in the values of a call: points, numbers, indices, curves, sides.
 
-use super::argument::number;
-use super::builder::Handle;
+use super::handle::Handle;
 use super::spline::{ControlMeaning, side};
 use crate::curve::SplineCurve;
 use crate::surface::SurfaceSide;
@@ -90,4 +89,9 @@ pub(super) fn loops(value: &Dynamic) -> Option<Vec<Vec<SplineCurve>>> {
     let is_list_of_curves = each(value, curve).is_some_and(|curves| !curves.is_empty());
     let one = if is_list_of_curves { None } else { ring(value) };
     one.map(|one| vec![one]).or_else(|| each(value, ring))
+}
+
+/// A finite number.
+pub(super) fn number(value: &Dynamic) -> Option<f64> {
+    value.as_float().ok().or_else(|| value.as_int().ok().map(|i| i as f64)).filter(|x| x.is_finite())
 }

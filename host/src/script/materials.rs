@@ -2,9 +2,11 @@
 
 use super::argument::Bound;
 use super::builder::{Builder, value};
-use super::function::Default::{Is, Required};
-use super::function::{Done, Function, Kind, OBJECT, Parameter, parameter};
+use super::function::Function;
+use super::handle::Done;
 use super::lighting::{SPECTRUM, color_of_light};
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, OBJECT, Parameter, parameter};
 use crate::color::{Color, shipped};
 use crate::illumination::Paint;
 use crate::illumination::material::{

@@ -1,7 +1,8 @@
 //! What scripts do with sculptured surfaces: evaluating, trimming, joining, filling, closing.
 
-use super::builder::{Builder, Handle, value};
-use super::function::Done;
+use super::builder::{Builder, value};
+use super::handle::Done;
+use super::handle::Handle;
 use crate::curve::{Curve, SplineCurve};
 use crate::scene::{Sculpture, Shape, Sheet};
 use crate::surface::{

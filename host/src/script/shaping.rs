@@ -2,8 +2,10 @@
 
 use super::argument::Bound;
 use super::builder::{Builder, check_bounding, check_nesting, nesting_of, value};
-use super::function::Default::{Is, Required};
-use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
+use super::function::Function;
+use super::handle::Done;
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, OBJECT, TOLERANCE, parameter};
 use crate::scene::{Object, Rounded, Shape};
 use glam::DMat4;
 use rhai::Dynamic;

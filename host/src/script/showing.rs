@@ -1,8 +1,9 @@
 //! Functions of the scene language that say how pictures are shown, one row each.
 
-use super::function::Default::{Is, Required};
-use super::function::{Function, Kind, parameter};
+use super::function::Function;
 use super::lighting::spectrum;
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, parameter};
 use crate::picture::display::{Tone, neutral};
 use rhai::Dynamic;
 

@@ -2,8 +2,10 @@
 
 use super::argument::Bound;
 use super::builder::Builder;
-use super::function::Default::{Is, Required};
-use super::function::{Done, Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
+use super::function::Function;
+use super::handle::Done;
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, OBJECT, Parameter, TOLERANCE, parameter};
 use crate::scene::{Operation, Shape, Solid};
 use crate::solid::Primitive;
 use glam::{DVec2, DVec3};

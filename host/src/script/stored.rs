@@ -2,9 +2,10 @@
 
 use super::argument::Bound;
 use super::builder::{Builder, value};
-use super::function::Default::Required;
-use super::function::{Function, Kind, OBJECT, Parameter, parameter};
+use super::function::Function;
 use super::lighting::add;
+use super::parameter::Default::Required;
+use super::parameter::{Kind, OBJECT, Parameter, parameter};
 use crate::database::{self, Content, Record};
 use crate::scene::Shape;
 use rhai::Dynamic;

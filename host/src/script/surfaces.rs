@@ -2,8 +2,10 @@
 
 use super::argument::Bound;
 use super::builder::{Builder, value};
-use super::function::Default::{Is, Required};
-use super::function::{Done, Function, Kind, OBJECT, Parameter, TOLERANCE, parameter};
+use super::function::Function;
+use super::handle::Done;
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, OBJECT, Parameter, TOLERANCE, parameter};
 use super::sculpting::{array, on_curve};
 use super::spline::{ControlMeaning, SIDES};
 use crate::scene::{Sculpture, Shape, Sheet};

@@ -2,8 +2,10 @@
 
 use super::argument::Bound;
 use super::builder::Builder;
-use super::function::Default::{Is, Required};
-use super::function::{Done, Function, Kind, OBJECT, TOLERANCE, parameter};
+use super::function::Function;
+use super::handle::Done;
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, OBJECT, TOLERANCE, parameter};
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
 use crate::picture::{Filter, MAX_PIXELS};

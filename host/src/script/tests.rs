@@ -10,6 +10,7 @@ use crate::solid::Primitive;
 use crate::surface::Tolerance;
 use glam::DVec3;
 use std::f64::consts::PI;
+use std::path::Path;
 
 pub(super) fn run(text: &str) -> Evaluated {
     evaluate(text, "test.rhai", Path::new(""), &Inputs::default()).unwrap_or_else(|e| panic!("{e}"))

@@ -2,8 +2,10 @@
 
 use super::argument::Bound;
 use super::builder::{Builder, value};
-use super::function::Default::{Is, Required};
-use super::function::{Done, Function, Kind, OBJECT, Parameter, parameter};
+use super::function::Function;
+use super::handle::Done;
+use super::parameter::Default::{Is, Required};
+use super::parameter::{Kind, OBJECT, Parameter, parameter};
 use crate::database::{self, Record};
 use crate::illumination::Paint;
 use crate::illumination::texture::{Band, Content, Image, Laying, Motif, Number, Pattern, Relief, Varying};

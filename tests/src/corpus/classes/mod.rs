@@ -1,14 +1,12 @@
 //! The classes of the corpus, and how their cases are made.
 
+mod shapes;
 mod pairs;
 mod surfaces;
 mod trees;
 
 use super::Case;
-use glam::{DAffine3, DVec3};
-use host::mesh::Mesh;
-use host::surface::{Sphere, Tolerance, box_faces, tessellate};
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
 /// A kind of difficulty.
@@ -52,50 +50,3 @@ pub const CLASSES: &[Class] = &[
     Class { name: "results into results, ten deep", cases: 500, make: trees::deep },
     Class { name: "results in single precision", cases: 1000, make: trees::single },
 ];
-
-fn cube(low: DVec3, high: DVec3) -> Mesh {
-    tessellate(&box_faces(low, high), Tolerance::new(1.0, 90.0)).expect("boxes are within all limits")
-}
-
-fn unit() -> Mesh {
-    cube(DVec3::splat(-0.5), DVec3::splat(0.5))
-}
-
-fn ball(center: DVec3, radius: f64) -> Mesh {
-    tessellate(&[Sphere::new(center, radius)], Tolerance::new(0.04 * radius, 90.0))
-        .expect("spheres are within all limits")
-}
-
-fn moved(mesh: &Mesh, by: DAffine3) -> Mesh {
-    mesh.transformed(&by)
-}
-
-fn shifted(mesh: &Mesh, by: DVec3) -> Mesh {
-    moved(mesh, DAffine3::from_translation(by))
-}
-
-fn joined(meshes: &[Mesh]) -> Mesh {
-    let mut all = Mesh::default();
-    meshes.iter().for_each(|mesh| all.append(mesh, 0));
-    all
-}
-
-fn pair(one: Mesh, two: Mesh) -> Case {
-    Case::Pair { solids: [one, two], common: None }
-}
-
-fn vector(random: &mut Pcg64Mcg) -> DVec3 {
-    DVec3::from([0; 3].map(|_| random.random_range(-1.0..1.0)))
-}
-
-fn direction(random: &mut Pcg64Mcg) -> DVec3 {
-    vector(random).normalize_or(DVec3::Z)
-}
-
-fn power(random: &mut Pcg64Mcg, low: f64, high: f64) -> f64 {
-    10f64.powf(random.random_range(low..high))
-}
-
-fn turned(mesh: &Mesh, random: &mut Pcg64Mcg, angle: f64) -> Mesh {
-    moved(mesh, DAffine3::from_axis_angle(direction(random), angle))
-}

@@ -1,7 +1,7 @@
 //! Pairs of solids.
 
 use super::super::Case;
-use super::{ball, cube, direction, joined, moved, pair, power, shifted, turned, unit, vector};
+use super::shapes::{ball, cube, direction, joined, moved, pair, power, shifted, turned, unit, vector};
 use glam::{DAffine3, DVec3};
 use host::mesh::{Mesh, bunny};
 use rand::RngExt;

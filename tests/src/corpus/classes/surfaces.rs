@@ -1,7 +1,7 @@
 //! Surfaces that are not simple.
 
 use super::super::Case;
-use super::{cube, joined, power, shifted, turned, unit, vector};
+use super::shapes::{cube, joined, power, shifted, turned, unit, vector};
 use glam::DVec3;
 use host::mesh::Mesh;
 use rand::RngExt;

@@ -1,7 +1,7 @@
 //! Expressions over several solids, and results that are operands again.
 
 use super::super::Case;
-use super::{ball, cube, direction, moved, power, shifted, turned, unit, vector};
+use super::shapes::{ball, cube, direction, moved, power, shifted, turned, unit, vector};
 use glam::{DAffine3, DVec3};
 use host::mesh::{Mesh, bunny};
 use host::solid::Expression;

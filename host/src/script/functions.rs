@@ -1,0 +1,38 @@
+//! The tables of all functions.
+
+use super::function::Function;
+use super::{daylight, lighting, materials, shaping, showing, solids, stored, subdividing, surfaces, table, texturing};
+
+/// Every function that a script may call: those that make and combine objects, then the others.
+pub fn functions() -> impl Iterator<Item = &'static Function> {
+    [
+        solids::FUNCTIONS,
+        shaping::FUNCTIONS,
+        surfaces::FUNCTIONS,
+        subdividing::FUNCTIONS,
+        materials::FUNCTIONS,
+        texturing::FUNCTIONS,
+        lighting::FUNCTIONS,
+        daylight::FUNCTIONS,
+        showing::FUNCTIONS,
+        stored::FUNCTIONS,
+        table::FUNCTIONS,
+    ]
+    .into_iter()
+    .flatten()
+}
+
+/// Whether a function gives an object its shape, rather than a place, a material or a name.
+pub(super) fn makes_shapes(function: &Function) -> bool {
+    let families = [solids::FUNCTIONS, shaping::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS];
+    families.into_iter().flatten().any(|row| row.name == function.name)
+}
+
+/// The reference of all functions, as Markdown.
+pub fn reference() -> String {
+    let mut text = String::from("# Functions of a scene script\n");
+    for function in functions() {
+        text.push_str(&format!("\n## {}\n\n```\n{}\n```\n", function.name, function.help()));
+    }
+    text
+}
