@@ -21,7 +21,7 @@ pub struct Object {
     /// How its surface reflects. Without one, an operand of a composite has that of the whole that it is part of, a
     /// composite that of its first operand, and others have the default.
     pub material: Option<Material>,
-    /// Largest distance between surface and triangles in scene units; without one, that of the [`Settings`].
+    /// Largest distance between surface and triangles in scene units; without one, that of the scene.
     pub tolerance: Option<f64>,
 }
 
@@ -154,7 +154,7 @@ impl Shape {
 impl Object {
     /// The materials of its surface, each once, and which of them its triangles have; nothing if that is the same for all.
     ///
-    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`Made`] tells.
+    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`Made`](super::Made) tells.
     pub fn materials(&self, operand_of: &[u32]) -> (Vec<Material>, Vec<u32>) {
         let Some((composite, whole)) = self.composite() else {
             return (vec![self.own_material().unwrap_or_default()], Vec::new());

@@ -30,7 +30,7 @@ pub struct Sighting<'a> {
     pub side: Side,
     /// For which lane refracted directions are drawn.
     pub lane: usize,
-    /// What the patterns give at the place, as [`Optics::paint`] tells; nothing for a material that has none.
+    /// What the patterns give at the place, as [`Optics::paint`](super::Optics::paint) tells; nothing for a material that has none.
     pub painted: &'a [Channels],
 }
 
