@@ -44,6 +44,7 @@ const fn capitals<const N: usize>(form: &str) -> [u8; N] {
     bytes
 }
 
+/// Words as text. It is called in constants only: what is no text does not compile.
 const fn ascii(bytes: &'static [u8]) -> &'static str {
     match str::from_utf8(bytes) {
         Ok(text) => text,
