@@ -111,6 +111,9 @@ impl Filter {
     /// The words for all of them.
     pub const WORDS: [&str; ROWS.len()] = words!(ROWS);
 
+    /// All of them, each with its word.
+    pub const NAMED: [(&'static str, Filter); ROWS.len()] = named!(ROWS, filter);
+
     /// The one that a word names.
     pub fn of_word(word: &str) -> Option<Filter> {
         ROWS.iter().find(|row| row.word == word).map(|row| row.filter)

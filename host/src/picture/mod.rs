@@ -13,6 +13,19 @@ macro_rules! words {
     }};
 }
 
+/// The words of a table of rows, each with the value that it stands for.
+macro_rules! named {
+    ($rows:expr, $field:ident) => {{
+        let mut named = [("", $rows[0].$field); $rows.len()];
+        let mut row = 0;
+        while row < $rows.len() {
+            named[row] = ($rows[row].word, $rows[row].$field);
+            row += 1;
+        }
+        named
+    }};
+}
+
 mod compose;
 mod depth;
 mod difference;

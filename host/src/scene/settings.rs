@@ -129,7 +129,7 @@ impl Default for ImageSettings {
 
 impl Default for GeometrySettings {
     fn default() -> GeometrySettings {
-        GeometrySettings { tolerance: None, angle: 45.0, exact_surfaces: true, shutter: 1.0 }
+        GeometrySettings::DEFAULT
     }
 }
 
@@ -149,13 +149,13 @@ impl Default for LightSettings {
 
 impl Default for RadiositySettings {
     fn default() -> RadiositySettings {
-        RadiositySettings { error: 0.005, finest: 1.0 / 200.0, directions: 32, tolerance: 1e-6 }
+        RadiositySettings::DEFAULT
     }
 }
 
 impl Default for PhotonSettings {
     fn default() -> PhotonSettings {
-        PhotonSettings { count: 200_000, radius: None, point_depth: None }
+        PhotonSettings::DEFAULT
     }
 }
 
@@ -194,6 +194,10 @@ impl ImageSettings {
 }
 
 impl GeometrySettings {
+    /// What holds without a word.
+    pub const DEFAULT: GeometrySettings =
+        GeometrySettings { tolerance: None, angle: 45.0, exact_surfaces: true, shutter: 1.0 };
+
     fn check(&self) -> Result<(), String> {
         if !(self.angle > 0.0 && self.angle <= 180.0) {
             return Err(format!("angle {} is not within 0 to 180 degrees", self.angle));
@@ -215,6 +219,10 @@ impl LightSettings {
 }
 
 impl RadiositySettings {
+    /// What holds without a word.
+    pub const DEFAULT: RadiositySettings =
+        RadiositySettings { error: 0.005, finest: 1.0 / 200.0, directions: 32, tolerance: 1e-6 };
+
     fn check(&self) -> Result<(), String> {
         let is_part = |part: f64| part > 0.0 && part.is_finite();
         match is_part(self.error) && is_part(self.finest) && is_part(self.tolerance) && self.directions > 0 {
@@ -225,6 +233,9 @@ impl RadiositySettings {
 }
 
 impl PhotonSettings {
+    /// What holds without a word.
+    pub const DEFAULT: PhotonSettings = PhotonSettings { count: 200_000, radius: None, point_depth: None };
+
     fn check(&self) -> Result<(), String> {
         if self.radius.is_some_and(|radius| !(radius > 0.0 && radius.is_finite())) {
             return Err("the radius of caught light is not a length above 0".into());

@@ -87,17 +87,17 @@ impl Builder {
     }
 
     /// Lets an object move.
-    pub(super) fn let_move(&mut self, handle: Option<Handle>, motion: Motion) -> Done {
+    pub(super) fn let_move(&mut self, handle: Handle, motion: Motion) -> Done {
         self.object(handle)?;
-        if let Some(slot) = handle.and_then(|handle| self.motions.get_mut(handle.0)) {
+        if let Some(slot) = self.motions.get_mut(handle.0) {
             *slot = Some(motion);
         }
-        Ok(value(handle))
+        Ok(Dynamic::from(handle))
     }
 
     /// Refuses an object that moves where only what is still can be used.
-    pub(super) fn check_still(&mut self, handle: Option<Handle>) -> Result<(), String> {
-        let moves = handle.and_then(|handle| self.motions.get(handle.0)).is_some_and(Option::is_some);
+    pub(super) fn check_still(&mut self, handle: Handle) -> Result<(), String> {
+        let moves = self.motions.get(handle.0).is_some_and(Option::is_some);
         let name = self.object(handle)?.name.clone();
         if moves { Err(format!("{name} moves; let the whole move that it becomes part of")) } else { Ok(()) }
     }
@@ -120,13 +120,13 @@ impl Builder {
     }
 
     /// The object behind a handle.
-    pub(super) fn object(&mut self, handle: Option<Handle>) -> Result<&mut Object, String> {
-        let object = handle.and_then(|h| self.objects.get_mut(h.0)).ok_or("there is no such object")?;
+    pub(super) fn object(&mut self, handle: Handle) -> Result<&mut Object, String> {
+        let object = self.objects.get_mut(handle.0).ok_or("there is no such object")?;
         object.as_mut().ok_or_else(|| "the object became part of another; copy() it before".into())
     }
 
     /// Names an object.
-    pub(super) fn name(&mut self, handle: Option<Handle>, name: &str) -> Done {
+    pub(super) fn name(&mut self, handle: Handle, name: &str) -> Done {
         let object = self.object(handle)?;
         if name.chars().count() > MOST_LETTERS {
             return Err(format!("a name has at most {MOST_LETTERS} characters"));
@@ -135,22 +135,22 @@ impl Builder {
             return Err("a name has no control characters".into());
         }
         object.name = name.to_owned();
-        Ok(value(handle))
+        Ok(Dynamic::from(handle))
     }
 
     /// Adds a copy of an object.
-    pub(super) fn copy(&mut self, handle: Option<Handle>) -> Result<Handle, String> {
+    pub(super) fn copy(&mut self, handle: Handle) -> Result<Handle, String> {
         let Object { shape, transform, material, tolerance, .. } = self.object(handle)?.clone();
-        let motion = handle.and_then(|handle| self.motions.get(handle.0).copied().flatten());
+        let motion = self.motions.get(handle.0).copied().flatten();
         let copy = self.add(shape, tolerance)?;
         self.motions[copy.0] = motion;
-        let object = self.object(Some(copy))?;
+        let object = self.object(copy)?;
         (object.transform, object.material) = (transform, material);
         Ok(copy)
     }
 
     /// Makes one solid of two objects, which are no objects of their own any more.
-    pub(super) fn combine(&mut self, operation: Operation, one: Option<Handle>, two: Option<Handle>) -> Done {
+    pub(super) fn combine(&mut self, operation: Operation, one: Handle, two: Handle) -> Done {
         if one == two {
             return Err("an object cannot be combined with itself; copy() it before".into());
         }
@@ -174,9 +174,9 @@ impl Builder {
             }
         };
         check_nesting(composite.nesting)?;
-        [one, two].into_iter().flatten().for_each(|handle| self.use_up(handle));
+        [one, two].into_iter().for_each(|handle| self.use_up(handle));
         let whole = self.add(Shape::Composite(composite), None)?;
-        self.object(Some(whole))?.material = material;
+        self.object(whole)?.material = material;
         Ok(Dynamic::from(whole))
     }
 
@@ -189,7 +189,7 @@ impl Builder {
 
     /// Divides a solid by the plane through `at`: what is behind stays, what is in front, where `normal` points, becomes
     /// another object.
-    pub(super) fn split(&mut self, handle: Option<Handle>, normal: DVec3, at: DVec3) -> Done {
+    pub(super) fn split(&mut self, handle: Handle, normal: DVec3, at: DVec3) -> Done {
         self.check_still(handle)?;
         let whole = self.object(handle)?.clone();
         check_bounding(&whole)?;
@@ -218,20 +218,15 @@ impl Builder {
     }
 
     /// Moves an object by a further transformation, after those before.
-    pub(super) fn transform(&mut self, handle: Option<Handle>, by: DMat4) -> Done {
+    pub(super) fn transform(&mut self, handle: Handle, by: DMat4) -> Done {
         let object = self.object(handle)?;
         let placed = by * object.transform;
         if !placed.is_finite() {
             return Err(format!("{} would be moved out of all bounds", object.name));
         }
         object.transform = placed;
-        Ok(value(handle))
+        Ok(Dynamic::from(handle))
     }
-}
-
-/// What a script gets of an object.
-pub(super) fn value(handle: Option<Handle>) -> Dynamic {
-    handle.map_or(Dynamic::UNIT, Dynamic::from)
 }
 
 /// How deep objects are nested in an object.

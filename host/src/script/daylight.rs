@@ -1,12 +1,11 @@
 //! The function of the scene language that lights a scene by the sun and a clear sky.
 
-use super::argument::Bound;
 use super::builder::Builder;
-use super::function::Function;
+use super::function::{Function, function};
 use super::handle::Done;
+use super::kinds::{Flag, Number, Text};
 use super::lighting::add;
-use super::parameter::Default::Is;
-use super::parameter::{Kind, parameter};
+use super::parameter::{optional, with_default};
 use crate::color::{Beyond, Color, Spectrum};
 use crate::illumination::Light;
 use crate::illumination::atmosphere::{
@@ -16,75 +15,82 @@ use crate::illumination::light::{Panorama, SkyDisc, SkyMap};
 use glam::DVec3;
 use std::sync::Arc;
 
-const DEGREES: Kind = Kind::Number(-360.0, 360.0);
+const DEGREES: Number = Number(-360.0, 360.0);
 
 /// The function.
-pub(super) const FUNCTIONS: &[Function] = &[Function {
-    name: "sun_and_sky",
-    summary: "Lights the scene by the sun and a clear sky, of a place, a date and an hour or of where the sun is; -z is north. Its light is that of the day: an exposure is best left to the meter.",
-    parameters: &[
-        parameter("latitude", Kind::Number(-90.0, 90.0), Is("30.26, Hangzhou"), "degrees, north above 0"),
-        parameter("longitude", Kind::Number(-180.0, 180.0), Is("120.12, Hangzhou"), "degrees, east above 0"),
-        parameter("date", Kind::Text, Is("\"1988-06-21\""), "year, month and day"),
-        parameter("hour", Kind::Number(0.0, 24.0), Is("10"), "of the day, 13.5 for half past one"),
-        parameter(
-            "zone",
-            Kind::Number(-14.0, 14.0),
-            Is("that of the longitude"),
+pub(super) const FUNCTIONS: &[Function] = &[function! {
+    sun_and_sky(
+        latitude: with_default(Number(-90.0, 90.0), 30.26, "degrees, north above 0; without it, that of Hangzhou"),
+        longitude: with_default(Number(-180.0, 180.0), 120.12, "degrees, east above 0; without it, that of Hangzhou"),
+        date: with_default(Text, "1988-06-21", "year, month and day"),
+        hour: with_default(Number(0.0, 24.0), 10.0, "of the day, 13.5 for half past one"),
+        zone: optional(
+            Number(-14.0, 14.0),
+            "that of the longitude",
             "hours by which clocks are ahead of Greenwich",
         ),
-        parameter(
-            "elevation",
-            Kind::Number(-20.0, 90.0),
-            Is("by place, date and hour"),
+        elevation: optional(
+            Number(-20.0, 90.0),
+            "by place, date and hour",
             "of the sun over the horizon, degrees",
         ),
-        parameter(
-            "azimuth",
+        azimuth: optional(
             DEGREES,
-            Is("by place, date and hour; 180 with an elevation"),
+            "by place, date and hour; 180 with an elevation",
             "of the sun, clockwise from north, degrees",
         ),
-        parameter(
-            "turbidity",
-            Kind::Number(1.0, 10.0),
-            Is("3"),
+        turbidity: with_default(
+            Number(1.0, 10.0),
+            3.0,
             "how much haze there is: 1 none, 2 clear, 3 ordinary, 10 thick",
         ),
-        parameter(
-            "ground",
-            Kind::Number(0.0, 1.0),
-            Is("0.2"),
+        ground: with_default(
+            Number(0.0, 1.0),
+            0.2,
             "the part of the light that the ground beyond the scene reflects",
         ),
-        parameter("altitude", Kind::Number(0.0, 50_000.0), Is("50"), "of the scene over that ground, metres"),
-        parameter("factor", Kind::Number(0.0, 1e9), Is("1"), "what all of it is multiplied with"),
-        parameter("sun", Kind::Flag, Is("true"), "whether the sun shines; without it, it stands behind something"),
-    ],
-    example: "sun_and_sky(#{ latitude: 48.2, longitude: 16.4, date: \"2026-09-23\", hour: 17.5 });",
-    action: sun_and_sky,
+        altitude: with_default(Number(0.0, 50_000.0), 50.0, "of the scene over that ground, metres"),
+        factor: with_default(Number(0.0, 1e9), 1.0, "what all of it is multiplied with"),
+        sun: with_default(Flag, true, "whether the sun shines; without it, it stands behind something"),
+    )
+    "Lights the scene by the sun and a clear sky, of a place, a date and an hour or of where the sun is; -z is north. Its light is that of the day: an exposure is best left to the meter."
+    "sun_and_sky(#{ latitude: 48.2, longitude: 16.4, date: \"2026-09-23\", hour: 17.5 });"
+    |builder| {
+        let [azimuth, elevation] = match elevation {
+            Some(elevation) => [azimuth.unwrap_or(180.0), elevation].map(f64::to_radians),
+            None => {
+                let zone = zone.unwrap_or((longitude / 15.0).round());
+                let [year, month, day] = read_date(&date)?;
+                let moment = Moment { year, month: month as u32, day: day as u32, hour: hour - zone };
+                let [found, elevation] = solar_position(&moment, latitude, longitude);
+                [azimuth.map_or(found, f64::to_radians), elevation]
+            }
+        };
+        let atmosphere = Atmosphere { turbidity, albedo: ground, altitude, elevation };
+        let sky = ClearSky::new(&atmosphere);
+        let done = add_sky(builder, &sky, azimuth, factor)?;
+        let is_up = sky.sun.iter().any(|light| *light > 0.0);
+        if !(is_up && sun) {
+            return Ok(done);
+        }
+        let towards =
+            DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), -azimuth.cos() * elevation.cos());
+        add_sun(builder, &sky, towards, factor)
+    }
 }];
 
-fn sun_and_sky(builder: &mut Builder, bound: &Bound) -> Done {
-    let number = |name, default| bound.number(name).unwrap_or(default);
-    let [azimuth, elevation] = place_of_sun(bound)?;
-    let atmosphere = Atmosphere {
-        turbidity: number("turbidity", 3.0),
-        albedo: number("ground", 0.2),
-        altitude: number("altitude", 50.0),
-        elevation,
-    };
-    let sky = ClearSky::new(&atmosphere);
-    let factor = number("factor", 1.0);
-    let towards = DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), -azimuth.cos() * elevation.cos());
-    let map = SkyMap { file: "a clear sky".into(), panorama: Some(Arc::new(panorama(&sky)?)), disc: None };
+/// The light of the sky.
+///
+/// - `azimuth`: of the sun, radians.
+fn add_sky(builder: &mut Builder, sky: &ClearSky, azimuth: f64, factor: f64) -> Done {
+    let map = SkyMap { file: "a clear sky".into(), panorama: Some(Arc::new(panorama(sky)?)), disc: None };
     // The table begins at the sun; the panorama's middle is -z.
     let turned = -azimuth.to_degrees();
-    let done = add(builder, Light::Sky { map: Some(map), radiance: Color::grey(factor), turned })?;
-    let is_up = sky.sun.iter().any(|light| *light > 0.0);
-    if !(is_up && bound.flag("sun").unwrap_or(true)) {
-        return Ok(done);
-    }
+    add(builder, Light::Sky { map: Some(map), radiance: Color::grey(factor), turned })
+}
+
+/// The disc of the sun.
+fn add_sun(builder: &mut Builder, sky: &ClearSky, towards: DVec3, factor: f64) -> Done {
     let disc = SkyDisc { towards, radius: SUN_RADIUS };
     let samples: Vec<(f64, f64)> =
         sky.sun.iter().enumerate().map(|(index, light)| (node(index), light / disc.solid_angle() * factor)).collect();
@@ -93,22 +99,8 @@ fn sun_and_sky(builder: &mut Builder, bound: &Bound) -> Done {
     add(builder, Light::Sky { map: Some(map), radiance: Color::Spectrum(spectrum), turned: 0.0 })
 }
 
-/// Azimuth and elevation of the sun, radians.
-fn place_of_sun(bound: &Bound) -> Result<[f64; 2], String> {
-    if let Some(elevation) = bound.number("elevation") {
-        return Ok([bound.number("azimuth").unwrap_or(180.0).to_radians(), elevation.to_radians()]);
-    }
-    let number = |name, default| bound.number(name).unwrap_or(default);
-    let (latitude, longitude) = (number("latitude", 30.26), number("longitude", 120.12));
-    let zone = number("zone", (longitude / 15.0).round());
-    let [year, month, day] = date(bound.text("date").unwrap_or("1988-06-21"))?;
-    let moment = Moment { year, month: month as u32, day: day as u32, hour: number("hour", 10.0) - zone };
-    let [azimuth, elevation] = solar_position(&moment, latitude, longitude);
-    Ok([bound.number("azimuth").map_or(azimuth, f64::to_radians), elevation])
-}
-
 /// Year, month and day of `1988-06-21`.
-fn date(text: &str) -> Result<[i32; 3], String> {
+fn read_date(text: &str) -> Result<[i32; 3], String> {
     let wrong = || format!("'{text}' is no date: give year, month and day, such as 1988-06-21");
     let parts: Vec<i32> = text.split('-').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
     let [year, month, day] = parts[..] else { return Err(wrong()) };

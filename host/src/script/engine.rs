@@ -1,6 +1,5 @@
 //! The interpreter: limits, bindings from the table, and one run.
 
-use super::argument::Bound;
 use super::builder::Builder;
 use super::definition::Definition;
 use super::error::{self, MAX_OPERATIONS, OutOfMemory, ScriptError};
@@ -8,8 +7,8 @@ use super::evaluated::{Evaluated, Inputs};
 use super::folders::Folders;
 use super::function::Function;
 use super::functions::{functions, makes_shapes};
+use super::given::Given;
 use super::handle::Handle;
-use super::parameter::Kind;
 use super::printed::Printed;
 use super::spline::ControlMeaning;
 use crate::curve::SplineCurve;
@@ -163,7 +162,7 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
         Box::new(EvalAltResult::ErrorRuntime(message.into(), context.call_position()))
     };
     // Functions of the script run before the scene is taken hold of: they may build, too.
-    let takes_functions = function.parameters.iter().any(|parameter| parameter.kind == Kind::Function);
+    let takes_functions = function.parameters.iter().any(|parameter| parameter.takes.is_function());
     let sampled: Vec<Dynamic>;
     let values = if takes_functions {
         sampled = values.iter().map(|value| sample(function, context, value)).collect::<Result<_, _>>()?;
@@ -171,17 +170,16 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
     } else {
         values
     };
-    let bound =
-        Bound::new(function.parameters, || function.usage(), values, &state.borrow().library).map_err(failed)?;
-    let given = (function.action)(&mut state.borrow_mut(), &bound).map_err(failed)?;
+    let mut given = Given::new(function.parameters, || function.usage(), values).map_err(failed)?;
+    let made = (function.action)(&mut state.borrow_mut(), &mut given).map_err(failed)?;
     let at = context.call_position();
-    if let (Some(handle), Some(line)) = (given.clone().try_cast::<Handle>(), at.line()) {
+    if let (Some(handle), Some(line)) = (made.clone().try_cast::<Handle>(), at.line()) {
         let mut builder = state.borrow_mut();
         if makes_shapes(function) || !builder.is_noted(handle) {
             builder.note(handle, Position { line, column: at.position().unwrap_or(1) });
         }
     }
-    Ok(given)
+    Ok(made)
 }
 
 /// A function of a script as a table, also in a map of values; other values as they are.

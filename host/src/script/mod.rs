@@ -4,10 +4,11 @@
 //! are derived.
 
 mod handle;
-mod parameter;
 mod spline;
-mod lists;
-mod argument;
+mod parameter;
+mod kinds;
+mod shared;
+mod given;
 mod definition;
 mod folders;
 mod printed;
@@ -46,5 +47,5 @@ pub use evaluated::{Evaluated, Inputs};
 pub use function::Function;
 pub use functions::{functions, reference};
 pub use loading::{load, load_file};
-pub use parameter::{Kind, Parameter};
+pub use parameter::Parameter;
 pub use shipped::{EMBEDDED, Embedded};

@@ -1,152 +1,260 @@
 //! What functions take: names, kinds of values, defaults, help.
 
-/// What a function takes.
-#[derive(Clone, Copy, Debug)]
+use super::handle::Handle;
+use super::spline::ControlMeaning;
+use crate::curve::SplineCurve;
+use crate::database::Library;
+use crate::illumination::Paint;
+use crate::illumination::distribution::FacetTable;
+use crate::illumination::texture::Number;
+use rhai::{Dynamic, ImmutableString};
+
+/// What a function takes: a row of its help.
+#[derive(Clone, Copy)]
 pub struct Parameter {
     /// Its name, as in the map.
     pub name: &'static str,
-    /// What values it takes.
-    pub kind: Kind,
-    /// What it is when it is not given.
-    pub default: Default,
-    /// What it means, with its unit.
-    pub help: &'static str,
+    /// What it takes.
+    pub(super) takes: &'static dyn Described,
 }
 
-/// What holds for a parameter that is not given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Default {
-    /// It must be given.
-    Required,
-    /// The text says what holds instead.
-    Is(&'static str),
-}
+/// A kind of value, and what the value of a script becomes.
+pub(super) trait Kind {
+    /// What a value becomes.
+    type Value;
+    /// Whether three bare numbers may stand for one value.
+    const TAKES_THREE: bool = false;
+    /// Whether it is an object: such a value stands before a dot or in a list of values, never in a map.
+    const IS_OBJECT: bool = false;
+    /// Whether it is a function, which is sampled before the call.
+    const IS_FUNCTION: bool = false;
 
-/// What values a parameter takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// An object that another function returned; before the dot in `object.function(...)`.
-    Object,
-    /// A number within limits.
-    Number(f64, f64),
-    /// A number within limits, or a pattern of such numbers.
-    Amount(f64, f64),
-    /// A number within limits, or a string.
-    NumberOrText(f64, f64),
-    /// A whole number within limits.
-    Integer(i64, i64),
-    /// A length above 0.
-    Length,
-    /// Three numbers `[x, y, z]`; as the only arguments also without brackets.
-    Vector,
-    /// One number for all directions or three numbers; none is 0.
-    Factors,
-    /// Three lengths above 0, or one for all.
-    Lengths,
-    /// Reflected fractions 0 to 1: `[red, green, blue]`, or one number for all.
-    Fractions,
-    /// A function of one number.
-    Function,
-    /// The name of a distribution, or one of the user's.
-    Distribution,
-    /// What is reflected: fractions, the name of a spectrum, or a pattern.
-    Reflectance,
-    /// Powers 0 and more: `[red, green, blue]`, or one number for all.
-    Powers,
-    /// "x", "y", "z" or a vector `[x, y, z]`.
-    Axis,
-    /// A string.
-    Text,
-    /// true or false.
-    Flag,
-    /// A number, a whole number, true or false, or a string.
-    Scalar,
-    /// A list of points [x, y] or [x, y, z].
-    Points,
-    /// A list of points, or of several such lists.
-    Contours,
-    /// A number, a list of numbers, or several such lists.
-    Numbers,
-    /// A list of whole numbers from 0, or several such lists.
-    Indices,
-    /// A list of objects.
-    Objects,
-    /// A list of objects, each with the name of a side.
-    Sides,
-    /// What control points mean in one direction.
-    Spline,
-    /// A curve, or the control points of a path.
-    Curve,
-    /// A closed loop of curves, or several.
-    Loops,
-    /// One of some words.
-    Word(&'static [&'static str]),
-}
-
-/// How closely the triangles of a curved object follow it.
-pub(super) const TOLERANCE: Parameter = Parameter {
-    name: "tolerance",
-    kind: Kind::Length,
-    default: Default::Is("that of the scene"),
-    help: "largest distance between surface and triangles, scene units",
-};
-
-/// The object before the dot.
-pub(super) const OBJECT: Parameter =
-    Parameter { name: "object", kind: Kind::Object, default: Default::Required, help: "the object" };
-
-/// A row of the parameters of a function.
-pub(super) const fn parameter(name: &'static str, kind: Kind, default: Default, help: &'static str) -> Parameter {
-    Parameter { name, kind, default, help }
-}
-
-impl Kind {
     /// The kind in words, as in "must be ...".
-    pub fn words(self) -> String {
-        match self {
-            Kind::Object => "an object".into(),
-            Kind::Number(min, max) if max.is_infinite() && min.is_infinite() => "a number".into(),
-            Kind::Number(min, max) if max.is_infinite() => format!("a number not below {min}"),
-            Kind::Number(min, max) => format!("a number from {min} to {max}"),
-            Kind::Amount(min, max) => format!("{} or a pattern of such numbers", Kind::Number(min, max).words()),
-            Kind::NumberOrText(min, max) => format!("{} or a string", Kind::Number(min, max).words()),
-            Kind::Integer(min, max) => format!("a whole number from {min} to {max}"),
-            Kind::Length => "a length above 0".into(),
-            Kind::Vector => "three numbers [x, y, z]".into(),
-            Kind::Factors => "a number or three [x, y, z], none of them 0".into(),
-            Kind::Lengths => "a length above 0, or three [x, y, z]".into(),
-            Kind::Fractions => "a number from 0 to 1, or three [red, green, blue]".into(),
-            Kind::Reflectance => {
-                "a number from 0 to 1, three [red, green, blue], the name of a reflectance, or a pattern".into()
-            }
-            Kind::Powers => "a number not below 0, or three [red, green, blue]".into(),
-            Kind::Axis => "\"x\", \"y\", \"z\" or a vector [x, y, z]".into(),
-            Kind::Text => "a string".into(),
-            Kind::Function => "a function |x| ... of a number".into(),
-            Kind::Distribution => "a name, or what user_distribution() returned".into(),
-            Kind::Flag => "true or false".into(),
-            Kind::Scalar => "a number, true or false, or a string".into(),
-            Kind::Points => "a list of points [[x, y], ...], with a third number where it is used".into(),
-            Kind::Contours => "a list of points [[x, y], ...] or a list of such lists".into(),
-            Kind::Numbers => "a number or a list of numbers, or several lists of them".into(),
-            Kind::Indices => "a list of whole numbers from 0, or several such lists".into(),
-            Kind::Objects => "a list of objects".into(),
-            Kind::Sides => {
-                "a list of pairs of an object and one of \"low u\", \"high u\", \"low v\", \"high v\"".into()
-            }
-            Kind::Spline => "what bezier(), b_spline(), beta_spline() or bbb_spline() return".into(),
-            Kind::Curve => "a curve, or a list of points [[x, y, z], ...]".into(),
-            Kind::Loops => {
-                "a list of loops, each a closed curve, a list of curves, or a list of corners [[u, v], ...]".into()
-            }
-            Kind::Word(words) => words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(" or "),
-        }
+    fn words(&self) -> String;
+
+    /// A value; none if it is not of this kind.
+    fn read(&self, value: &Dynamic) -> Option<Self::Value>;
+
+    /// What a string stands for in the library; none where strings name nothing there.
+    fn look_up(&self, _name: &str, _library: &Library) -> Option<Result<Self::Value, String>> {
+        None
     }
 }
 
-impl Kind {
+/// A kind whose default can be written as a constant.
+pub(super) trait HasDefault: Kind {
+    /// How the default is written.
+    type Default: Copy;
+
+    /// What the default becomes.
+    fn of_default(&self, default: Self::Default) -> Self::Value;
+
+    /// The default as help shows it: as a script would write it.
+    fn shown(&self, default: Self::Default) -> String;
+}
+
+/// What help and the binding of values ask of a parameter, whatever its type.
+pub(super) trait Described {
+    /// What it means, with its unit.
+    fn help(&self) -> &'static str;
+    /// Its kind in words.
+    fn words(&self) -> String;
+    /// What holds where it is not given; none if it must be given.
+    fn otherwise(&self) -> Option<String>;
     /// Whether three bare numbers may stand for one value.
-    pub(super) fn takes_three(self) -> bool {
-        matches!(self, Kind::Vector | Kind::Factors | Kind::Lengths | Kind::Fractions | Kind::Powers)
+    fn takes_three(&self) -> bool;
+    /// Whether it is an object.
+    fn is_object(&self) -> bool;
+    /// Whether it is a function.
+    fn is_function(&self) -> bool;
+}
+
+/// A parameter with its type.
+pub(super) trait Takes: Described {
+    /// What the action of a function gets.
+    type Value;
+
+    /// The value of a call, checked.
+    fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<Self::Value, String>;
+}
+
+/// A parameter that must be given.
+#[derive(Clone, Copy)]
+pub(super) struct Required<K> {
+    kind: K,
+    help: &'static str,
+}
+
+/// A parameter with a default.
+#[derive(Clone, Copy)]
+pub(super) struct Defaulted<K, D> {
+    kind: K,
+    default: D,
+    note: &'static str,
+    help: &'static str,
+}
+
+/// A parameter that may be left out.
+#[derive(Clone, Copy)]
+pub(super) struct Optional<K> {
+    kind: K,
+    otherwise: &'static str,
+    help: &'static str,
+}
+
+/// A parameter that changes a setting, which stays where it is not given.
+#[derive(Clone, Copy)]
+pub(super) struct Kept<K, D> {
+    kind: K,
+    default: D,
+    help: &'static str,
+}
+
+/// A parameter that must be given.
+pub(super) const fn required<K: Kind + Copy>(kind: K, help: &'static str) -> Required<K> {
+    Required { kind, help }
+}
+
+/// A parameter with a default.
+pub(super) const fn with_default<K>(kind: K, default: K::Default, help: &'static str) -> Defaulted<K, K::Default>
+where
+    K: HasDefault + Copy,
+{
+    Defaulted { kind, default, note: "", help }
+}
+
+/// A parameter that may be left out.
+///
+/// - `otherwise`: what holds then, in words.
+pub(super) const fn optional<K: Kind + Copy>(kind: K, otherwise: &'static str, help: &'static str) -> Optional<K> {
+    Optional { kind, otherwise, help }
+}
+
+/// A parameter that changes a setting.
+///
+/// - `default`: that of a scene where the setting was never changed.
+pub(super) const fn kept<K>(kind: K, default: K::Default, help: &'static str) -> Kept<K, K::Default>
+where
+    K: HasDefault + Copy,
+{
+    Kept { kind, default, help }
+}
+
+impl<K: Copy, D: Copy> Defaulted<K, D> {
+    /// With a word about the default, as "0: polished".
+    pub(super) const fn note(self, note: &'static str) -> Defaulted<K, D> {
+        Defaulted { note, ..self }
+    }
+}
+
+/// Passes on what a parameter tells of its kind; `otherwise` differs.
+macro_rules! described {
+    (|$parameter:ident| $otherwise:expr) => {
+        fn help(&self) -> &'static str {
+            self.help
+        }
+
+        fn words(&self) -> String {
+            self.kind.words()
+        }
+
+        fn otherwise(&self) -> Option<String> {
+            let $parameter = self;
+            $otherwise
+        }
+
+        fn takes_three(&self) -> bool {
+            K::TAKES_THREE
+        }
+
+        fn is_object(&self) -> bool {
+            K::IS_OBJECT
+        }
+
+        fn is_function(&self) -> bool {
+            K::IS_FUNCTION
+        }
+    };
+}
+
+impl<K: Kind> Described for Required<K> {
+    described!(|_parameter| None);
+}
+
+impl<K: HasDefault> Described for Defaulted<K, K::Default> {
+    described!(|parameter| {
+        let colon = if parameter.note.is_empty() { "" } else { ": " };
+        Some(format!("{}{colon}{}", parameter.kind.shown(parameter.default), parameter.note))
+    });
+}
+
+impl<K: Kind> Described for Optional<K> {
+    described!(|parameter| Some(parameter.otherwise.to_owned()));
+}
+
+impl<K: HasDefault> Described for Kept<K, K::Default> {
+    described!(|parameter| Some(parameter.kind.shown(parameter.default)));
+}
+
+impl<K: Kind> Takes for Required<K> {
+    type Value = K::Value;
+
+    fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<K::Value, String> {
+        checked(&self.kind, name, given.ok_or_else(|| format!("{name} is missing"))?, library)
+    }
+}
+
+impl<K: HasDefault> Takes for Defaulted<K, K::Default> {
+    type Value = K::Value;
+
+    fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<K::Value, String> {
+        given.map_or_else(|| Ok(self.kind.of_default(self.default)), |value| checked(&self.kind, name, value, library))
+    }
+}
+
+impl<K: Kind> Takes for Optional<K> {
+    type Value = Option<K::Value>;
+
+    fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<Option<K::Value>, String> {
+        given.map(|value| checked(&self.kind, name, value, library)).transpose()
+    }
+}
+
+impl<K: HasDefault> Takes for Kept<K, K::Default> {
+    type Value = Option<K::Value>;
+
+    fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<Option<K::Value>, String> {
+        given.map(|value| checked(&self.kind, name, value, library)).transpose()
+    }
+}
+
+/// A value of this kind.
+fn checked<K: Kind>(kind: &K, name: &str, value: &Dynamic, library: &Library) -> Result<K::Value, String> {
+    let text = value.read_lock::<ImmutableString>();
+    if let Some(found) = text.and_then(|text| kind.look_up(&text, library)) {
+        return found.map_err(|error| format!("{name}: {error}"));
+    }
+    kind.read(value).ok_or_else(|| format!("{name} must be {}, not {}", kind.words(), in_short(value)))
+}
+
+/// The value as messages show it: short.
+fn in_short(value: &Dynamic) -> String {
+    const LONGEST: usize = 60;
+    for (is_one, words) in [
+        (value.is::<Handle>(), "an object"),
+        (value.is::<SplineCurve>(), "a curve"),
+        (value.is::<ControlMeaning>(), "a kind of spline"),
+        (value.is::<Paint>(), "a pattern"),
+        (value.is::<Number>(), "a pattern of numbers"),
+        (value.is::<FacetTable>(), "a distribution"),
+    ] {
+        if is_one {
+            return words.into();
+        }
+    }
+    let text = format!("{value:?}");
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} ...", &text[..end]),
+        None => text,
     }
 }

@@ -1,8 +1,7 @@
 //! What scripts do with sculptured surfaces: evaluating, trimming, joining, filling, closing.
 
-use super::builder::{Builder, value};
-use super::handle::Done;
-use super::handle::Handle;
+use super::builder::Builder;
+use super::handle::{Done, Handle};
 use crate::curve::{Curve, SplineCurve};
 use crate::scene::{Sculpture, Shape, Sheet};
 use crate::surface::{
@@ -46,7 +45,7 @@ fn report(joint: &Joint) -> Dynamic {
 
 impl Builder {
     /// The sheets of an object, placed as it is.
-    fn placed_sheets(&mut self, handle: Option<Handle>) -> Result<Vec<Sheet>, String> {
+    fn placed_sheets(&mut self, handle: Handle) -> Result<Vec<Sheet>, String> {
         let object = self.object(handle)?;
         let Shape::Sculpture(sculpture) = &object.shape else {
             return Err(format!("{} is no surface", object.name));
@@ -58,14 +57,14 @@ impl Builder {
     }
 
     /// The only spline surface of an object, placed as it is.
-    pub(super) fn spline_surface(&mut self, handle: Option<Handle>) -> Result<SplineSurface, String> {
+    pub(super) fn spline_surface(&mut self, handle: Handle) -> Result<SplineSurface, String> {
         match self.placed_sheets(handle)?.pop() {
             Some(Sheet::Spline { surface, .. }) if self.sheet_count(handle)? == 1 => Ok(*surface),
             _ => Err(format!("{} is not one surface over a mesh of control points", self.object(handle)?.name)),
         }
     }
 
-    fn sheet_count(&mut self, handle: Option<Handle>) -> Result<usize, String> {
+    fn sheet_count(&mut self, handle: Handle) -> Result<usize, String> {
         Ok(match &self.object(handle)?.shape {
             Shape::Sculpture(sculpture) => sculpture.sheets.len(),
             _ => 0,
@@ -73,7 +72,7 @@ impl Builder {
     }
 
     /// Gives an object another sheet, which is placed already.
-    fn set_sheet(&mut self, handle: Option<Handle>, sheet: Sheet) -> Result<(), String> {
+    fn set_sheet(&mut self, handle: Handle, sheet: Sheet) -> Result<(), String> {
         let object = self.object(handle)?;
         object.shape = Shape::Sculpture(Box::new(Sculpture::of(sheet)));
         object.transform = DMat4::IDENTITY;
@@ -81,7 +80,7 @@ impl Builder {
     }
 
     /// Point and normal of a surface at parts of its parameters.
-    pub(super) fn surface_at(&mut self, handle: Option<Handle>, part: DVec2) -> Done {
+    pub(super) fn surface_at(&mut self, handle: Handle, part: DVec2) -> Done {
         let surface = self.spline_surface(handle)?;
         let [low, high] = surface.domain();
         let uv = low * (DVec2::ONE - part) + high * part;
@@ -89,22 +88,17 @@ impl Builder {
     }
 
     /// Trims a surface by loops in parts of its parameters.
-    pub(super) fn trim(&mut self, handle: Option<Handle>, loops: &[Vec<SplineCurve>], holes: bool) -> Done {
+    pub(super) fn trim(&mut self, handle: Handle, loops: &[Vec<SplineCurve>], holes: bool) -> Done {
         if self.sheet_count(handle)? > 1 {
             return Err("an object of several surfaces cannot be trimmed; trim them before".into());
         }
         let sheet = self.placed_sheets(handle)?.pop().ok_or("there is no surface")?;
         self.set_sheet(handle, sheet.trimmed(loops, holes)?)?;
-        Ok(value(handle))
+        Ok(Dynamic::from(handle))
     }
 
     /// Changes the second surface so that it continues the first; returns what holds then.
-    pub(super) fn join(
-        &mut self,
-        handles: [Option<Handle>; 2],
-        sides: [SurfaceSide; 2],
-        smoothness: Smoothness,
-    ) -> Done {
+    pub(super) fn join(&mut self, handles: [Handle; 2], sides: [SurfaceSide; 2], smoothness: Smoothness) -> Done {
         if handles[0] == handles[1] {
             return Err("a surface cannot be joined to itself".into());
         }
@@ -130,7 +124,7 @@ impl Builder {
     pub(super) fn continuity(&mut self, handles: impl IntoIterator<Item = Handle>) -> Done {
         let mut sheets = Vec::new();
         for handle in handles {
-            sheets.extend(self.placed_sheets(Some(handle))?);
+            sheets.extend(self.placed_sheets(handle)?);
         }
         let joints = Sculpture { sheets }.joints(SAMPLES).map_err(|error| error.to_string())?;
         Ok(Dynamic::from_array(joints.iter().map(report).collect::<Array>()))
@@ -145,8 +139,8 @@ impl Builder {
     ) -> Done {
         let mut sides = Vec::new();
         for (handle, side) in around {
-            let surface = self.spline_surface(Some(*handle))?;
-            let name = &self.object(Some(*handle))?.name;
+            let surface = self.spline_surface(*handle)?;
+            let name = &self.object(*handle)?.name;
             sides.extend(hole_sides(&surface, *side).map_err(|problem| format!("{name}: {problem}"))?);
         }
         let sides = chained(sides);
@@ -164,21 +158,21 @@ impl Builder {
             if handles[..k].contains(handle) {
                 return Err("a surface is named twice".into());
             }
-            sheets.extend(self.placed_sheets(Some(*handle))?);
+            sheets.extend(self.placed_sheets(*handle)?);
         }
         let Some(first) = handles.first() else { return Err("there are no surfaces".into()) };
         let (material, tolerance) = {
-            let first = self.object(Some(*first))?;
+            let first = self.object(*first)?;
             (first.material.clone(), first.tolerance)
         };
         let sculpture = Sculpture { sheets };
         if closed {
             sculpture.check_closed().map_err(|error| error.to_string())?;
         }
-        handles.iter().try_for_each(|handle| self.check_still(Some(*handle)))?;
+        handles.iter().try_for_each(|handle| self.check_still(*handle))?;
         handles.iter().for_each(|handle| self.use_up(*handle));
         let whole = self.add(Shape::Sculpture(Box::new(sculpture)), tolerance)?;
-        self.object(Some(whole))?.material = material;
+        self.object(whole)?.material = material;
         Ok(whole)
     }
 }

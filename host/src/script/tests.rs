@@ -3,7 +3,7 @@
 use super::*;
 use crate::color::Color;
 use crate::illumination::light::{Patch, SkyDisc, SkyMap};
-use crate::illumination::material::{Body, Form, Shaped};
+use crate::illumination::material::{Body, Classic, Form, Index, Shaped, Transparent};
 use crate::illumination::{Light, Material};
 use crate::scene::Shape;
 use crate::solid::Primitive;
@@ -140,6 +140,15 @@ fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
             .to_string()
             .contains("has no roughness")
     );
+}
+
+#[test]
+fn a_material_of_defaults_is_the_default_of_its_kind() {
+    let body = |call: &str| run(&format!("cube(1).{call};")).scene.objects[0].material.clone().map(|made| made.body);
+    assert_eq!(body("material(#{})"), Some(Body::Classic(Classic::default())));
+    assert_eq!(body("principled(#{})"), Some(Body::Principled(Box::default())));
+    let clear = Transparent::clear(Index::Constant(1.5));
+    assert_eq!(body("glass(#{})"), Some(Body::Transparent(clear)));
 }
 
 #[test]

@@ -41,6 +41,9 @@ impl Tone {
     /// The words for all of them.
     pub const WORDS: [&str; ROWS.len()] = words!(ROWS);
 
+    /// All of them, each with its word.
+    pub const NAMED: [(&'static str, Tone); ROWS.len()] = named!(ROWS, tone);
+
     /// The one that a word names.
     pub fn of_word(word: &str) -> Option<Tone> {
         ROWS.iter().find(|row| row.word == word).map(|row| row.tone)

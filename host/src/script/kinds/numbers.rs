@@ -1,0 +1,135 @@
+//! Kinds of numbers.
+
+use super::words::Text;
+use crate::script::parameter::{HasDefault, Kind};
+use rhai::Dynamic;
+use std::fmt::Display;
+
+/// A number within limits, the least and the greatest; infinite ones are none.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Number(pub(in crate::script) f64, pub(in crate::script) f64);
+
+/// A length above 0.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Length;
+
+/// A whole number within limits, the least and the greatest.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Integer<T>(pub(in crate::script) T, pub(in crate::script) T);
+
+/// A number within limits, or a string.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct NumberOrText(pub(in crate::script) f64, pub(in crate::script) f64);
+
+/// What a number or a string becomes.
+pub(in crate::script) enum NumberOrTextValue {
+    Number(f64),
+    Text(String),
+}
+
+/// Any finite number.
+pub(in crate::script) const ANY_NUMBER: Number = Number(f64::NEG_INFINITY, f64::INFINITY);
+
+impl Kind for Number {
+    type Value = f64;
+
+    fn words(&self) -> String {
+        match *self {
+            Number(min, max) if max.is_infinite() && min.is_infinite() => "a number".into(),
+            Number(min, max) if max.is_infinite() => format!("a number not below {min}"),
+            Number(min, max) => format!("a number from {min} to {max}"),
+        }
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<f64> {
+        number(value).filter(|x| (self.0..=self.1).contains(x))
+    }
+}
+
+impl Kind for Length {
+    type Value = f64;
+
+    fn words(&self) -> String {
+        "a length above 0".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<f64> {
+        number(value).filter(|x| *x > 0.0)
+    }
+}
+
+impl<T: TryFrom<i64> + PartialOrd + Copy + Display> Kind for Integer<T> {
+    type Value = T;
+
+    fn words(&self) -> String {
+        format!("a whole number from {} to {}", self.0, self.1)
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<T> {
+        let whole = T::try_from(value.as_int().ok()?).ok();
+        whole.filter(|whole| (self.0..=self.1).contains(whole))
+    }
+}
+
+impl Kind for NumberOrText {
+    type Value = NumberOrTextValue;
+
+    fn words(&self) -> String {
+        format!("{} or a string", Number(self.0, self.1).words())
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<NumberOrTextValue> {
+        let number = Number(self.0, self.1).read(value).map(NumberOrTextValue::Number);
+        number.or_else(|| Text.read(value).map(NumberOrTextValue::Text))
+    }
+}
+
+impl HasDefault for Number {
+    type Default = f64;
+
+    fn of_default(&self, default: f64) -> f64 {
+        default
+    }
+
+    fn shown(&self, default: f64) -> String {
+        shown(default)
+    }
+}
+
+impl HasDefault for Length {
+    type Default = f64;
+
+    fn of_default(&self, default: f64) -> f64 {
+        default
+    }
+
+    fn shown(&self, default: f64) -> String {
+        shown(default)
+    }
+}
+
+impl<T: TryFrom<i64> + PartialOrd + Copy + Display> HasDefault for Integer<T> {
+    type Default = T;
+
+    fn of_default(&self, default: T) -> T {
+        default
+    }
+
+    fn shown(&self, default: T) -> String {
+        default.to_string()
+    }
+}
+
+/// A finite number.
+pub(in crate::script) fn number(value: &Dynamic) -> Option<f64> {
+    value.as_float().ok().or_else(|| value.as_int().ok().map(|i| i as f64)).filter(|x| x.is_finite())
+}
+
+/// A number as a script would write it.
+pub(super) fn shown(number: f64) -> String {
+    match number {
+        std::f64::consts::PI => "pi".into(),
+        small if small != 0.0 && small.abs() < 1e-4 => format!("{small:e}"),
+        number => format!("{number}"),
+    }
+}

@@ -1,0 +1,126 @@
+//! Kinds of words, flags and objects.
+
+use super::numbers::number;
+use crate::script::handle::Handle;
+use crate::script::parameter::{HasDefault, Kind};
+use rhai::{Dynamic, ImmutableString};
+
+/// An object that another function returned; before the dot in `object.function(...)`.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct AnObject;
+
+/// A string.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Text;
+
+/// true or false.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Flag;
+
+/// A number, a whole number, true or false, or a string.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Scalar;
+
+/// One of some words, each with what it stands for.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Word<T: 'static>(pub(in crate::script) &'static [(&'static str, T)]);
+
+impl Kind for AnObject {
+    type Value = Handle;
+    const IS_OBJECT: bool = true;
+
+    fn words(&self) -> String {
+        "an object".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<Handle> {
+        value.read_lock::<Handle>().map(|handle| *handle)
+    }
+}
+
+impl Kind for Text {
+    type Value = String;
+
+    fn words(&self) -> String {
+        "a string".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<String> {
+        value.read_lock::<ImmutableString>().map(|text| text.to_string())
+    }
+}
+
+impl Kind for Flag {
+    type Value = bool;
+
+    fn words(&self) -> String {
+        "true or false".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<bool> {
+        value.as_bool().ok()
+    }
+}
+
+impl Kind for Scalar {
+    type Value = Dynamic;
+
+    fn words(&self) -> String {
+        "a number, true or false, or a string".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<Dynamic> {
+        let is_scalar = value.is_bool() || value.is_string() || number(value).is_some();
+        is_scalar.then(|| value.clone())
+    }
+}
+
+impl<T: Copy> Kind for Word<T> {
+    type Value = T;
+
+    fn words(&self) -> String {
+        self.0.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(" or ")
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<T> {
+        let text = value.read_lock::<ImmutableString>()?;
+        self.0.iter().find(|(word, _)| text.as_str() == *word).map(|(_, meant)| *meant)
+    }
+}
+
+impl HasDefault for Text {
+    type Default = &'static str;
+
+    fn of_default(&self, default: &'static str) -> String {
+        default.into()
+    }
+
+    fn shown(&self, default: &'static str) -> String {
+        format!("{default:?}")
+    }
+}
+
+impl HasDefault for Flag {
+    type Default = bool;
+
+    fn of_default(&self, default: bool) -> bool {
+        default
+    }
+
+    fn shown(&self, default: bool) -> String {
+        default.to_string()
+    }
+}
+
+impl<T: Copy + PartialEq> HasDefault for Word<T> {
+    type Default = T;
+
+    fn of_default(&self, default: T) -> T {
+        default
+    }
+
+    fn shown(&self, default: T) -> String {
+        let word = self.0.iter().find(|(_, meant)| *meant == default).map(|(word, _)| *word);
+        format!("{:?}", word.unwrap_or_default())
+    }
+}

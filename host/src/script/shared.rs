@@ -1,0 +1,11 @@
+//! Parameters that several functions share.
+
+use super::kinds::{AnObject, Length};
+use super::parameter::{Optional, Required, optional, required};
+
+/// The object before the dot.
+pub(super) const OBJECT: Required<AnObject> = required(AnObject, "the object");
+
+/// How closely the triangles of a curved object follow it.
+pub(super) const TOLERANCE: Optional<Length> =
+    optional(Length, "that of the scene", "largest distance between surface and triangles, scene units");
